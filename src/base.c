@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+#include "base.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static const struct {
+    int status;
+    const char *meaning;
+} error_rows[] = {
+#define ERROR(name, status, meaning) {status, meaning},
+#include "errors.def"
+#undef ERROR
+};
+
+int err_status(enum err e)
+{
+    return error_rows[e].status;
+}
+
+const char *err_meaning(enum err e)
+{
+    return error_rows[e].meaning;
+}
+
+enum err diag_fail(struct diag *d, enum err code, const char *format, ...)
+{
+    if (d && d->code == ERR_OK) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(d->text, sizeof d->text, format, args);
+        va_end(args);
+        d->code = code;
+    }
+    return code;
+}
+
+void diag_warn(struct diag *d, const char *format, ...)
+{
+    if (!d || !d->warn) return;
+    char text[sizeof d->text];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    d->warn(d->warn_context, text);
+}
+
+struct arena_block {
+    struct arena_block *next;
+};
+
+/* The header takes a whole aligned unit, so that the piece behind the margin stays aligned. */
+enum { BLOCK_HEADER = ARENA_ALIGN };
+
+static long fail_countdown = -1;
+
+void arena_fail_after(long n)
+{
+    fail_countdown = n;
+}
+
+static bool rehearsed_failure(void)
+{
+    if (fail_countdown < 0) return false;
+    return fail_countdown-- == 0;
+}
+
+void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
+{
+    const size_t overhead = BLOCK_HEADER + 2 * (size_t)ARENA_MARGIN;
+    if (size && count > (SIZE_MAX - overhead - ARENA_ALIGN) / size) {
+        diag_fail(d, ERR_MEMORY, "%s: %zu items of %zu bytes are more than memory can address", what,
+                  count, size);
+        return NULL;
+    }
+    const size_t want = (count * size + ARENA_ALIGN - 1) / ARENA_ALIGN * ARENA_ALIGN;
+    if (a->limit && (want > a->limit || a->bytes > a->limit - want)) {
+        diag_fail(d, ERR_MEMORY,
+                  "%s: %.3g GB would raise the run to %.3g GB, more than the %.3g GB it may use", what,
+                  1e-9 * (double)want, 1e-9 * (double)(a->bytes + want), 1e-9 * (double)a->limit);
+        return NULL;
+    }
+    unsigned char *raw = rehearsed_failure() ? NULL : aligned_alloc(ARENA_ALIGN, want + overhead);
+    if (!raw) {
+        diag_fail(d, ERR_MEMORY, "%s: no memory for %zu bytes (%zu in use)", what, want, a->bytes);
+        return NULL;
+    }
+    memset(raw, 0, want + overhead);
+    struct arena_block *block = (struct arena_block *)(void *)raw;
+    block->next = a->blocks;
+    a->blocks = block;
+    a->bytes += want;
+    return raw + BLOCK_HEADER + ARENA_MARGIN;
+}
+
+void arena_free(struct arena *a)
+{
+    while (a->blocks) {
+        struct arena_block *next = a->blocks->next;
+        free(a->blocks);
+        a->blocks = next;
+    }
+    a->bytes = 0;
+}
+
+double wall_clock(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+int thread_count(void)
+{
+#ifdef _OPENMP
+    return omp_get_max_threads();
+#else
+    return 1;
+#endif
+}
+
+int thread_index(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}

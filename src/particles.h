@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ * What a particle is: flat arrays declared from fields.def, one set of them for each kind. */
+#ifndef SPHFSI_PARTICLES_H
+#define SPHFSI_PARTICLES_H
+
+#include "base.h"
+
+/* Field groups: the unit of allocation. */
+enum group {
+    G_POINT = 1 << 0,       /* every particle */
+    G_DENSITY = 1 << 1,     /* fluid, and walls and structures that meet fluid */
+    G_RATE = 1 << 2,        /* fluid, moving walls, structures */
+    G_FLUID = 1 << 3,       /* fluid */
+    G_STAGE = 1 << 4,       /* predictor-corrector: fluid and solid */
+    G_STAGE_FLUID = 1 << 5, /* predictor-corrector: fluid */
+    G_VERLET = 1 << 6,      /* Verlet: fluid */
+    G_REFERENCE = 1 << 7,   /* solid, moving walls */
+    G_SOLID = 1 << 8,       /* solid */
+    G_COUPLED = 1 << 9,     /* solid that meets fluid */
+};
+
+enum keep { KEEP_STATE, KEEP_DERIVED };
+
+/* The kinds of particles; each kind is a struct particles of its own. */
+enum kind { KIND_FLUID, KIND_WALL, KIND_SOLID, KIND_COUNT };
+extern const char *const kind_names[KIND_COUNT];
+
+/* The particles of one kind. A pointer is NULL while its group is off. Memory: the arena's. */
+struct particles {
+    int64_t n;        /* particles now */
+    int64_t capacity; /* room in each array; vector loads may run past it (ARENA_MARGIN) */
+    unsigned groups;
+#define FIELD(type, name, group, keep, unit, meaning) type *name;
+#include "fields.def"
+#undef FIELD
+};
+
+/* One row of fields.def as data. */
+struct field_info {
+    const char *name, *type, *unit, *meaning;
+    size_t size;   /* bytes of one item */
+    size_t offset; /* of the pointer in struct particles */
+    unsigned group;
+    enum keep keep;
+};
+extern const struct field_info field_table[];
+extern const int field_count;
+
+/* The array of a field, or NULL while its group is off. */
+void *field_array(const struct particles *p, const struct field_info *f);
+
+/* Allocates the arrays of the named groups for `capacity` particles. */
+enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
+                          const char *what, struct diag *d) SPHFSI_CHECKED;
+
+/* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
+void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch);
+
+/* FNV-1a hash of every STATE field, in array order, continuing from `seed`. */
+uint64_t particles_hash(const struct particles *p, uint64_t seed);
+
+/* Bytes the groups of p take in all. */
+size_t particles_bytes(const struct particles *p);
+
+#endif

@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT
+ * What the user asked for: the case file as a struct (from params.def) and the points sampled from
+ * its shapes. All memory belongs to the scene's arena. Units: SI. */
+#ifndef SPHFSI_SCENE_H
+#define SPHFSI_SCENE_H
+
+#include "base.h"
+
+enum { SCENE_TEXT = 256, SCENE_NAME = 64, SCENE_MAX_SECTIONS = 64 };
+
+enum shape_kind { SHAPE_BOX, SHAPE_POLYGON, SHAPE_POLYLINE, SHAPE_CIRCLE };
+
+struct shape {
+    enum shape_kind kind;
+    int n;            /* points: box 2 (lower left, upper right), circle 1, else >= 2 */
+    double (*pt)[2];
+    double size;      /* radius of a circle; thickness of a polyline, to the left of its direction if
+                         positive, to the right if negative; else 0 */
+    int line;
+};
+
+struct shape_list {
+    int n;
+    struct shape *item;
+};
+
+struct number_list {
+    int n;
+    double *value;
+};
+
+/* Up to two expressions in x and y; see expr.h. NULL: not given. */
+struct expr;
+struct scene_expr {
+    struct expr *e[2];
+};
+
+/* One struct for each section of params.def: struct scene_top, struct scene_fluid, ... Each carries
+ * the name behind its section word and the line it starts at. */
+struct scene_section_common {
+    char name[SCENE_NAME];
+    int line;
+#define SECTION(section, named)             \
+    };                                      \
+    struct scene_##section {                \
+        struct scene_section_common common;
+#define REAL(section, key, def, lo, hi, unit, meaning) double key;
+#define INTEGER(section, key, def, lo, hi, meaning) int key;
+#define CHOICE(section, key, def, names, meaning) int key;
+#define TEXT(section, key, def, meaning) char key[SCENE_TEXT];
+#define VECTOR(section, key, dx, dy, unit, meaning) double key[2];
+#define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
+#define SHAPES(section, key, meaning) struct shape_list key;
+#define NUMBERS(section, key, unit, meaning) struct number_list key;
+#include "params.def"
+};
+
+/* Values of the CHOICE keys, in the order of their names in params.def. */
+enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET };
+enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
+enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
+enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
+enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
+enum plane { PLANE_STRAIN, PLANE_STRESS };
+enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
+enum motion_kind { MOTION_VELOCITY, MOTION_POLYNOMIAL, MOTION_TABLE };
+enum probe_quantity { PROBE_DISPLACEMENT, PROBE_VELOCITY, PROBE_PRESSURE };
+
+/* Points sampled from the shapes of one kind. Solids: body after body, each in rows along its
+ * longer side, so that neighbours in the lattice are mostly neighbours in memory. */
+struct scene_points {
+    int64_t n;
+    double *x, *y;
+    int32_t *body;    /* index of the section among those of its kind */
+    uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
+};
+
+/* Tabulated motion, loaded from its file: n rows. n == 0: none. */
+struct motion_table {
+    int n;
+    double *t, *dx, *dy;
+};
+
+/* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
+struct scene {
+    char path[4096];         /* of the case file */
+    struct arena arena;      /* owns everything below */
+#define SCENE_MEMBER_0(section) struct scene_##section section;
+#define SCENE_MEMBER_1(section)      \
+    struct scene_##section *section; \
+    int n_##section;
+#define SECTION(section, named) SCENE_MEMBER_##named(section)
+#include "params.def"
+    struct motion_table *motion_data; /* [n_motion] */
+    struct scene_points points[3];    /* by enum kind of particles.h: fluid, wall, solid */
+    double h, c0, rho0;               /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
+    double domain_lower[2], domain_upper[2]; /* in effect */
+};
+
+/* Reads and checks a case file. `sets` are the --set arguments ("key=value" or "section.key=value";
+ * a named section is section NAME: "solid gate.young=1e6" or "gate.young=1e6"). On success the
+ * caller frees with scene_free; on failure nothing remains to be freed. */
+enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
+                    struct diag *d) SPHFSI_CHECKED;
+/* The same from text in memory; `path` names it in messages and anchors relative file names. */
+enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
+                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
+void scene_free(struct scene *s);
+
+/* Samples all shapes into s->points and fixes h, c0, rho0 and the domain (geometry.c). Called by
+ * scene_read and scene_parse after the sections have been read. */
+enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Value of an expression at a point, and at construction time of the scene (expr.h has the grammar). */
+double scene_expr_at(const struct expr *e, double x, double y);
+
+/* Writes the effective case, every value and default spelled out in SI units; parsing it again gives
+ * an equal scene. */
+enum err scene_write(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
+
+/* Prescribed motion: displacement from the initial place, velocity and acceleration at a time. */
+struct motion_state {
+    double d[2], v[2], a[2];
+};
+struct motion_state motion_at(const struct scene *s, int motion_index, double time);
+
+/* Index of a named section, or -1. */
+int scene_find_motion(const struct scene *s, const char *name);
+int scene_find_solid(const struct scene *s, const char *name);
+
+#endif
