@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * Cell list in Morton order: where a particle lies in memory and who its neighbours are. */
+#ifndef SPHFSI_CELLS_H
+#define SPHFSI_CELLS_H
+
+#include "particles.h"
+
+/* The particles of one kind by cell. Cells are numbered cy * nx + cx. */
+struct cell_list {
+    int32_t *start, *count; /* [nx * ny]: range in cell order; count 0: empty */
+    int32_t *active;        /* cells that hold particles, in Morton order */
+    int32_t n_active;
+    int32_t *order;         /* particle at each place of the cell order; fluid is kept sorted in
+                               memory, so that there place = particle and order is NULL */
+};
+
+/* A grid of cells no smaller than the reach of the interaction plus a skin. */
+struct cells {
+    double lower[2], side[2]; /* m */
+    int nx, ny;
+    struct cell_list kind[KIND_COUNT];
+    uint64_t *pair_a, *pair_b; /* sorting scratch, (Morton key, particle) in one word */
+    int32_t *permutation;
+    void *scratch;             /* 8 bytes for each particle of the largest kind */
+};
+
+/* Lays the grid over [lower, upper) with cells of at least `reach` and makes room for the kinds'
+ * capacities. */
+enum err cells_create(struct cells *c, struct arena *a, const double lower[2], const double upper[2],
+                      double reach, const struct particles kinds[KIND_COUNT], struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Sorts the particles of one kind into cells, by Morton key and then id; the fluid itself is
+ * permuted. Particles outside the grid come last and are left out: their number is returned, and
+ * p->n counts them still (they are at p->n - lost ... p->n - 1 of a fluid). Non-finite positions
+ * count as outside. */
+int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p);
+
+/* Builds the cell list of particles that are sorted already, from their `cell` fields (restart). */
+void cells_resume(struct cells *c, enum kind kind, struct particles *p);
+
+SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
+SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }
+
+/* Centre of a cell. */
+SPHFSI_INLINE double cell_centre_x(const struct cells *c, int32_t cell)
+{
+    return c->lower[0] + ((double)cell_x(c, cell) + 0.5) * c->side[0];
+}
+SPHFSI_INLINE double cell_centre_y(const struct cells *c, int32_t cell)
+{
+    return c->lower[1] + ((double)cell_y(c, cell) + 0.5) * c->side[1];
+}
+
+#endif

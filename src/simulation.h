@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT
+ * A run in memory: the scene's particles, their neighbours, the models, and what happens in which
+ * order. Knows nothing of files or command lines. */
+#ifndef SPHFSI_SIMULATION_H
+#define SPHFSI_SIMULATION_H
+
+#include "cells.h"
+#include "effects.h"
+#include "fluid.h"
+#include "monitor.h"
+#include "particles.h"
+#include "scene.h"
+#include "solid.h"
+
+enum phase {
+#define PHASE(name, meaning) PHASE_##name,
+#include "phases.def"
+#undef PHASE
+    PHASE_COUNT
+};
+extern const char *const phase_names[PHASE_COUNT];
+
+enum bound {
+#define BOUND(name, source) BOUND_##name,
+#include "bounds.def"
+#undef BOUND
+    BOUND_COUNT
+};
+extern const char *const bound_names[BOUND_COUNT];
+extern const char *const bound_sources[BOUND_COUNT];
+
+/* Scalars carried from step to step, from state.def. */
+struct state {
+#define STATE(type, name, unit, meaning) type name;
+#include "state.def"
+#undef STATE
+    int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
+};
+
+struct simulation {
+    const struct scene *scene; /* borrowed; outlives the simulation */
+    struct arena arena;
+    struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
+    struct cells cells;
+    struct fluid fluid;   /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct solid solid;   /* model of the solid; unused without one */
+    unsigned effects;     /* bits of effects.h */
+    struct state state;
+    double dt_bound[BOUND_COUNT];     /* bounds found at the last step, s; INFINITY where none */
+    double dt_solid;                  /* stable step of the solid times its safety, s */
+    int substeps;                     /* solid steps in the last fluid step */
+    double phase_seconds[PHASE_COUNT];
+    struct guard guard;
+};
+
+/* Builds the state at time zero from a scene (or, with a checkpoint to be loaded, the frame for it).
+ * On failure nothing remains to be freed. */
+enum err simulation_create(struct simulation *s, const struct scene *scene, struct diag *d)
+    SPHFSI_CHECKED;
+void simulation_free(struct simulation *s);
+
+/* Takes one time step, ending no later than t_limit (> time), and exactly there if the step reaches
+ * within a step of it. ERR_GUARD: the state is no longer sound; the sentence is in d. */
+enum err simulation_step(struct simulation *s, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
+/* After the STATE fields, n of each kind and s->state have been loaded from a checkpoint: rebuilds
+ * everything derived. The next step gives the same bits as in the uninterrupted run. */
+enum err simulation_resume(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Brings DERIVED fields that output shows (pressure of fluid, wall and solid; displacement gradient)
+ * up to date with the state, without changing the state. */
+void simulation_refresh(struct simulation *s);
+
+/* Energy, momentum and extremes now; calls simulation_refresh. */
+struct ledger simulation_ledger(struct simulation *s);
+
+/* Hash of every STATE field and state scalar. */
+uint64_t simulation_hash(const struct simulation *s);
+
+/* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
+double simulation_pressure_at(const struct simulation *s, double x, double y);
+
+#endif
