@@ -1,0 +1,166 @@
+# sphfsi: two-dimensional fluid-structure interaction with smoothed particle hydrodynamics
+#
+#   make                 ./sphfsi and build/release/libsphfsi.a
+#   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
+#   make test            build and run the tests           (FILTER=cells for some of them)
+#   make test-sanitize   the quick tests under ASan and UBSan
+#   make bench           build and run bench/*.c
+#   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
+#   make check | format  style, layers and exported symbols | clang-format in place
+#   make install         to PREFIX (/usr/local), below DESTDIR
+#   make info | dist | clean | distclean
+#
+# Variables: CC, CFLAGS, LDFLAGS, ARCH (native, x86-64-v3, x86-64-v4, armv8-a, ...), HDF5_PREFIX,
+# UNITY_DIR, PYTHON, WERROR=1, V=1 (show commands), SETUP=no (install nothing that is missing).
+
+VERSION := 0.1.0
+CONFIG  ?= release
+ARCH    ?= native
+PREFIX  ?= /usr/local
+OUT     ?= runs/gate$(if $(DP),-dp$(subst $() ,,$(DP)))
+B       := build/$(CONFIG)
+Q       := $(if $(V),,@)
+
+# Nothing is built by these goals, so nothing is looked for or installed either.
+IDLE  := help info format dist clean distclean
+GOALS := $(or $(MAKECMDGOALS),all)
+ifneq ($(filter-out $(IDLE),$(GOALS)),)
+  NEEDS := build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate,$(GOALS)),plot)
+  HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
+           SETUP='$(SETUP)'
+  ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
+    $(error tools/setup.sh $(NEEDS) did not succeed; see above)
+  endif
+endif
+-include build/hdf5.mk build/unity.mk
+PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
+
+# --- flags (CMakeLists.txt lists the same ones; tools/check_style.py compares them) ---
+# No contraction, no reassociation: the same bits from every compiler and instruction set.
+COMMON := -std=gnu11 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
+WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
+OPT-release  := -O3 -DNDEBUG
+OPT-serial   := -O3 -DNDEBUG
+OPT-debug    := -O0 -g
+OPT-sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
+                -fno-sanitize-recover=undefined
+$(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug sanitize))
+ifneq ($(filter true 1,$(CI) $(WERROR)),)
+  WARN += -Werror
+endif
+# -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
+OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd,-fopenmp)
+# Older clang on AArch64 knows -mcpu=native only.
+MARCH := $(or $(shell $(CC) -march=$(ARCH) -E -x c /dev/null >/dev/null 2>&1 && \
+                      echo -march=$(ARCH)),-mcpu=$(ARCH))
+COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude $(HDF5_CFLAGS) \
+           $(CPPFLAGS) $(CFLAGS)
+LINK     = $(COMPILE) $(LDFLAGS) -o $@ $^ $(HDF5_LIBS) -lm
+DESCRIBE := $(shell git describe --always --dirty --exclude='*' 2>/dev/null)
+FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
+
+# --- files ---
+LIB     := $(B)/libsphfsi.a
+PROGRAM := $(if $(filter release,$(CONFIG)),sphfsi,$(B)/sphfsi)
+LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
+BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
+SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
+TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
+             $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
+
+.PHONY: all help debug sanitize serial test test-sanitize bench gate check format info install \
+        dist clean distclean FORCE
+.SECONDARY:
+.DELETE_ON_ERROR:
+
+all: $(PROGRAM) $(LIB)
+
+help:
+	@sed -n '/^#/!q; s/^# \{0,1\}//p' Makefile
+
+debug sanitize serial:
+	@$(MAKE) --no-print-directory CONFIG=$@ all
+
+# --- rules ---
+# Rebuild when compiler or flags change, and the files that name the version when that does.
+STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/null)
+STAMP_TEXT-version := $(FULL_VERSION)
+$(B)/flags $(B)/version: FORCE
+	@mkdir -p $(B); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
+$(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*.c)): $(B)/version
+
+$(B)/%.o: %.c $(B)/flags
+	@mkdir -p $(@D); $(if $(V),,echo '  CC  $<')
+	$(Q)$(COMPILE) $(EXTRA) -DSPHFSI_VERSION='"$(FULL_VERSION)"' -MMD -MP -c -o $@ $<
+
+$(LIB): $(LIB_OBJ)
+	$(Q)rm -f $@ && $(AR) rcs $@ $^
+
+$(PROGRAM): $(B)/src/main.o $(LIB)
+	$(Q)$(LINK)
+
+# Benches and tests may look inside the library.
+$(B)/bench/%.o: EXTRA = -Isrc
+$(B)/tests/%.o: EXTRA = -Isrc -Itests/support $(UNITY_CFLAGS)
+
+$(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
+	$(Q)$(COMPILE) $(UNITY_CFLAGS) -w -c -o $@ $<
+
+$(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(LIB)
+	$(Q)$(LINK)
+
+$(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
+	$(Q)$(LINK)
+
+test: $(PROGRAM) $(TESTS)
+	@SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
+
+test-sanitize:
+	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
+
+bench: $(BENCHES)
+	@set -e; for b in $(BENCHES); do echo "== $$b"; $$b $(ARGS); done
+
+gate: $(PROGRAM)
+	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \
+	   echo "$(OUT) holds a finished run, which is only drawn again (remove it to run it anew)"; \
+	 elif ls $(OUT)/*.ckpt >/dev/null 2>&1; then \
+	   ./$(PROGRAM) cases/gate.cfg --out $(OUT) --restart $(if $(DP),--set 'dp=$(DP)') $(ARGS); \
+	 else \
+	   ./$(PROGRAM) cases/gate.cfg --out $(OUT) $(if $(DP),--set 'dp=$(DP)') $(ARGS); \
+	 fi
+	$(Q)$(PROJECT_PYTHON) tools/plot_m1.py $(OUT) --out $(OUT)/m1.png
+	$(Q)$(PROJECT_PYTHON) tools/plot_fields.py $(OUT)
+	@echo "pictures:"; ls $(OUT)/*.png | sed 's/^/  /'
+
+check: $(LIB)
+	@$(PROJECT_PYTHON) tools/check_style.py --library $(LIB)
+
+format:
+	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch])
+
+info:
+	@echo "sphfsi   $(FULL_VERSION)"; echo "compile  $(COMPILE)"; echo "link     $(HDF5_LIBS) -lm"; \
+	 echo "python   $(PROJECT_PYTHON)"; echo "unity    $(or $(UNITY_SRC),not looked for yet)"
+
+install: $(PROGRAM) $(LIB)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include)
+	install -m 755 $(PROGRAM) $(DESTDIR)$(PREFIX)/bin/sphfsi
+	install -m 644 $(LIB) $(DESTDIR)$(PREFIX)/lib
+	install -m 644 include/sphfsi.h $(DESTDIR)$(PREFIX)/include
+	@sed -e 's|@CMAKE_INSTALL_PREFIX@|$(PREFIX)|' -e 's|@PROJECT_VERSION@|$(VERSION)|' \
+	     -e 's|@SPHFSI_LINK@|$(HDF5_LIBS) $(OMP) -lm|' -e 's|@CMAKE_INSTALL_LIBDIR@|lib|' \
+	     tools/sphfsi.pc.in >$(DESTDIR)$(PREFIX)/lib/pkgconfig/sphfsi.pc
+
+dist:
+	@mkdir -p build
+	git archive --prefix=sphfsi-$(VERSION)/ -o build/sphfsi-$(VERSION).tar.gz HEAD
+
+clean:
+	rm -rf sphfsi build/release build/serial build/debug build/sanitize
+
+# Runs are results, not build products: they stay.
+distclean: clean
+	rm -rf build .venv
+
+-include $(wildcard $(B)/*/*.d $(B)/*/*/*.d)

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""Checks what a formatter cannot: layers, sizes, words, flags and exported symbols.
+
+Prints one line per finding, `file:line: what`; warnings do not fail. Needs only Python itself.
+"""
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+# An include points to a lower floor, or stays on its own. A new file in src/ is added here.
+FLOORS = [
+    "base simd tensor2 errors",
+    "fields particles morton cells smoothing eos",
+    "params effects case expr geometry motion scene",
+    "fluid_fx fluid fluid_sweep wall solid material interface monitor ledger",
+    "timestep symplectic verlet multirate simulation bounds phases state",
+    "probes snapshot checkpoint report series",
+    "sphfsi api main",
+]
+FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
+
+MAX_FILE = 600      # lines
+MAX_FUNCTION = 60   # lines; more is a warning
+MAX_COLUMNS = 110   # the formatter aims at 100; comments and tables get some slack
+CLANG_FORMAT = 14   # other versions break lines differently
+LIBC = set("assert ctype errno fenv float inttypes limits locale math signal stdarg stdbool "
+           "stddef stdint stdio stdlib string time".split())
+# Written apart, so that this file does not find itself.
+BANNED = re.compile(r"\bFIX" r"ME\b|\bXX" r"X\b|\bTO" r"DO\b(?!\s*\(#\d+\))")
+INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')
+
+errors = 0
+
+
+def report(path, line, text, warning=False):
+    global errors
+    errors += not warning
+    where = f"{path.relative_to(ROOT)}:{line}" if line else f"{path.relative_to(ROOT)}"
+    print(f"{where}: {'warning: ' if warning else ''}{text}")
+
+
+def check_layers(path, lines):
+    here = FLOOR_OF.get(path.stem)
+    if here is None:
+        report(path, 0, "has no floor; add it to FLOORS in tools/check_style.py")
+        return
+    for number, line in enumerate(lines, 1):
+        include = INCLUDE.match(line)
+        if not include:
+            continue
+        stem = Path(include[2]).stem
+        if path.name == "main.c" and stem != "sphfsi" and (include[1] == '"' or stem not in LIBC):
+            report(path, number, f"main.c may include sphfsi.h and the C library, not {include[2]}")
+        elif include[1] == '"' and stem not in FLOOR_OF:
+            report(path, number, f"{include[2]} has no floor; add it to FLOORS in tools/check_style.py")
+        elif include[1] == '"' and FLOOR_OF[stem] > here:
+            report(path, number, f"floor {here} includes {include[2]} of floor {FLOOR_OF[stem]}")
+
+
+def check_sizes(path, lines):
+    if len(lines) > MAX_FILE:
+        report(path, 0, f"{len(lines)} lines, more than {MAX_FILE}")
+    start = None
+    for number, line in enumerate(lines, 1):
+        if line == "{":
+            start = number
+        elif line == "}" and start:
+            if number - start - 1 > MAX_FUNCTION:
+                report(path, start, f"function of {number - start - 1} lines, more than "
+                       f"{MAX_FUNCTION}", warning=True)
+            start = None
+
+
+def check_text(path, lines):
+    for number, line in enumerate(lines, 1):
+        if path.suffix in (".c", ".h", ".def") and "\t" in line:
+            report(path, number, "tab")
+        # A .def is a table, one row a line; prose in .md has its tables, too.
+        if path.suffix not in (".md", ".def") and len(line) > MAX_COLUMNS:
+            report(path, number, f"{len(line)} columns, more than {MAX_COLUMNS}")
+        if line != line.rstrip():
+            report(path, number, "blanks at the end")
+        word = BANNED.search(line)
+        if word:
+            report(path, number, f"{word[0]} (an issue's number makes the last one acceptable)")
+
+
+def check_flags():
+    """Makefile and CMakeLists.txt compile with the same flags and carry the same version."""
+    make, cmake = ROOT / "Makefile", ROOT / "CMakeLists.txt"
+    makefile, cmakelists = make.read_text(), cmake.read_text()
+    ours = set(" ".join(re.findall(r"^(?:COMMON|WARN) *:= (.*)$", makefile, re.M)).split())
+    listed = re.search(r"set\(SPHFSI_FLAGS(.*?)\)", cmakelists, re.S)
+    theirs = {flag for flag in listed[1].split() if not flag.startswith("-march=")}
+    for flag in sorted(ours ^ theirs):
+        report(cmake if flag in ours else make, 0, f"lacks the flag {flag} of the other build")
+    versions = [re.search(r"^VERSION := (\S+)", makefile, re.M)[1],
+                re.search(r"project\(sphfsi VERSION (\S+)", cmakelists)[1],
+                re.search(r"^version: (\S+)", (ROOT / "CITATION.cff").read_text(), re.M)[1]]
+    if len(set(versions)) > 1:
+        report(make, 0, f"version {versions[0]}, CMakeLists.txt {versions[1]}, "
+               f"CITATION.cff {versions[2]}")
+
+
+def check_symbols(library):
+    """What the library shows to the linker's dynamic side begins with sphfsi_."""
+    tool = shutil.which("readelf")
+    if not tool:
+        print("exported symbols not checked: no readelf here")
+        return
+    table = subprocess.run([tool, "-sW", library], capture_output=True, text=True, check=True)
+    for line in table.stdout.splitlines():
+        column = line.split()
+        if len(column) == 8 and column[4] in ("GLOBAL", "WEAK") and column[5] == "DEFAULT" \
+                and column[6] != "UND" and not column[7].startswith("sphfsi_"):
+            report(library, 0, f"exports {column[7]}; hide it or name it sphfsi_...")
+
+
+def check_format(paths):
+    tool = shutil.which(f"clang-format-{CLANG_FORMAT}") or shutil.which("clang-format")
+    version = subprocess.run([tool, "--version"], capture_output=True, text=True).stdout if tool else ""
+    if f"version {CLANG_FORMAT}." not in version:
+        print(f"format not checked: no clang-format {CLANG_FORMAT} here")
+        return
+    for path in paths:
+        result = subprocess.run([tool, "--dry-run", "-Werror", path], capture_output=True, text=True)
+        if result.returncode:
+            line = re.match(r"[^:]*:(\d+):", result.stderr)
+            report(path, int(line[1]) if line else 0, "not formatted; `make format` does it")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--library", type=Path, help="library whose exported symbols to check")
+    args = parser.parse_args()
+
+    code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases")
+            for path in sorted((ROOT / folder).rglob("*"))
+            if path.suffix in (".c", ".h", ".def", ".py", ".sh", ".cfg")]
+    for path in code + [ROOT / "Makefile", ROOT / "CMakeLists.txt"] + sorted(ROOT.glob("*.md")):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        check_text(path, lines)
+        if path.parent.name in ("src", "include"):
+            check_layers(path, lines)
+        if path.suffix in (".c", ".h", ".py", ".sh"):
+            check_sizes(path, lines)
+    check_flags()
+    check_format([path for path in code if path.suffix in (".c", ".h")])
+    if args.library:
+        check_symbols(args.library.resolve())
+    print(f"style: {errors} error{'s' * (errors != 1)}")
+    return errors > 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
