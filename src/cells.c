@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+#include "cells.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "morton.h"
+
+/* A particle outside the grid sorts behind every cell. */
+enum { OUTSIDE = -1 };
+#define OUTSIDE_KEY UINT32_MAX
+
+/* Digits of the radix sort. */
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 64 };
+
+static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
+                            const struct particles *p, bool keep_order, struct diag *d)
+{
+    list->start = arena_alloc(a, n_cells, sizeof *list->start, "cell list", d);
+    list->count = arena_alloc(a, n_cells, sizeof *list->count, "cell list", d);
+    list->active = arena_alloc(a, (size_t)p->capacity, sizeof *list->active, "cell list", d);
+    if (!list->start || !list->count || !list->active) return ERR_MEMORY;
+    if (!keep_order) return ERR_OK;
+    list->order = arena_alloc(a, (size_t)p->capacity, sizeof *list->order, "cell list", d);
+    return list->order ? ERR_OK : ERR_MEMORY;
+}
+
+enum err cells_create(struct cells *c, struct arena *a, const double lower[2], const double upper[2],
+                      double reach, const struct particles kinds[KIND_COUNT], struct diag *d)
+{
+    memset(c, 0, sizeof *c);
+    double n[2];
+    for (int k = 0; k < 2; k++) {
+        c->lower[k] = lower[k];
+        n[k] = max2(1, floor((upper[k] - lower[k]) / reach));
+        if (!(n[k] <= MORTON_CELLS))
+            return diag_fail(d, ERR_INPUT,
+                             "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
+                             "smaller or dp larger",
+                             upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, reach);
+        c->side[k] = (upper[k] - lower[k]) / n[k];
+    }
+    c->nx = (int)n[0];
+    c->ny = (int)n[1];
+    if (n[0] * n[1] > INT32_MAX)
+        return diag_fail(d, ERR_INPUT, "the domain has %d x %d cells, too many to number", c->nx, c->ny);
+
+    int64_t most = 0;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        if (kinds[k].capacity == 0) continue;
+        if (kinds[k].capacity > most) most = kinds[k].capacity;
+        TRY(list_create(&c->kind[k], a, (size_t)c->nx * (size_t)c->ny, &kinds[k], k != KIND_FLUID, d));
+    }
+    c->pair_a = arena_alloc(a, (size_t)most, sizeof *c->pair_a, "sorting", d);
+    c->pair_b = arena_alloc(a, (size_t)most, sizeof *c->pair_b, "sorting", d);
+    c->permutation = arena_alloc(a, (size_t)most, sizeof *c->permutation, "sorting", d);
+    c->scratch = arena_alloc(a, (size_t)most, 8, "sorting", d);
+    return c->pair_a && c->pair_b && c->permutation && c->scratch ? ERR_OK : ERR_MEMORY;
+}
+
+static int32_t cell_of(const struct cells *c, double x, double y)
+{
+    const double fx = (x - c->lower[0]) / c->side[0], fy = (y - c->lower[1]) / c->side[1];
+    if (!(fx >= 0 && fx < c->nx && fy >= 0 && fy < c->ny)) return OUTSIDE;
+    return (int32_t)fy * c->nx + (int32_t)fx;
+}
+
+static uint32_t key_of(const struct cells *c, int32_t cell)
+{
+    if (cell == OUTSIDE) return OUTSIDE_KEY;
+    return morton_key((uint32_t)cell_x(c, cell), (uint32_t)cell_y(c, cell));
+}
+
+/* Bits that tell the keys in use apart, with one more so that OUTSIDE_KEY stays last. */
+static int key_bits(const struct cells *c)
+{
+    int bits = 1;
+    while ((1 << bits) < c->nx || (1 << bits) < c->ny)
+        bits++;
+    return 2 * bits + 1;
+}
+
+/* Where each digit of each thread's share begins in the sorted order. */
+static void digit_starts(int64_t (*histogram)[DIGITS], int threads)
+{
+    int64_t sum = 0;
+    for (int digit = 0; digit < DIGITS; digit++) {
+        for (int t = 0; t < threads; t++) {
+            const int64_t count = histogram[t][digit];
+            histogram[t][digit] = sum;
+            sum += count;
+        }
+    }
+}
+
+/* One stable counting pass over a digit of the keys, which lie in the upper half of each word. */
+static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift)
+{
+    static int64_t histogram[MAX_SORT_THREADS][DIGITS];
+    const int threads = thread_count() < MAX_SORT_THREADS ? thread_count() : MAX_SORT_THREADS;
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++) {
+        memset(histogram[t], 0, sizeof histogram[t]);
+        for (int64_t k = n * t / threads; k < n * (t + 1) / threads; k++)
+            histogram[t][(from[k] >> shift) & (DIGITS - 1)]++;
+    }
+    digit_starts(histogram, threads);
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++)
+        for (int64_t k = n * t / threads; k < n * (t + 1) / threads; k++)
+            to[histogram[t][(from[k] >> shift) & (DIGITS - 1)]++] = from[k];
+}
+
+/* Within a cell the order is by id, so that it does not depend on the history of the run. */
+static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
+{
+    for (int64_t k = 1; k < n; k++) {
+        const uint64_t moved = pair[k];
+        const int64_t moved_id = id[(uint32_t)moved];
+        int64_t j = k;
+        for (; j > 0 && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id; j--)
+            pair[j] = pair[j - 1];
+        pair[j] = moved;
+    }
+}
+
+static void list_clear(struct cell_list *list)
+{
+    for (int32_t k = 0; k < list->n_active; k++)
+        list->count[list->active[k]] = 0;
+    list->n_active = 0;
+}
+
+/* Ranges and active cells from the cells of the particles in cell order. */
+static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
+{
+    list_clear(list);
+    for (int64_t k = 0; k < n; k++) {
+        const int32_t c = cell[list->order ? list->order[k] : k];
+        if (c == OUTSIDE) break;
+        if (list->count[c]++ == 0) {
+            list->start[c] = (int32_t)k;
+            list->active[list->n_active++] = c;
+        }
+    }
+}
+
+int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
+{
+    struct cell_list *list = &c->kind[kind];
+    const int64_t n = p->n;
+    if (n == 0) return 0;
+    int64_t outside = 0;
+#pragma omp parallel for schedule(static) reduction(+ : outside)
+    for (int64_t k = 0; k < n; k++) {
+        p->cell[k] = cell_of(c, p->x[k], p->y[k]);
+        c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
+        outside += p->cell[k] == OUTSIDE;
+    }
+    uint64_t *from = c->pair_a, *to = c->pair_b;
+    for (int shift = 32; shift < 32 + key_bits(c); shift += DIGIT_BITS) {
+        radix_pass(from, to, n, shift);
+        uint64_t *const swap = from;
+        from = to;
+        to = swap;
+    }
+    order_by_id(from, n, p->id);
+
+    int32_t *const order = list->order ? list->order : c->permutation;
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < n; k++)
+        order[k] = (int32_t)(uint32_t)from[k];
+    if (!list->order) particles_permute(p, order, n, c->scratch);
+    list_fill(list, p->cell, n);
+    return outside;
+}
+
+void cells_resume(struct cells *c, enum kind kind, struct particles *p)
+{
+    struct cell_list *list = &c->kind[kind];
+    if (list->order) {
+        for (int64_t k = 0; k < p->n; k++)
+            c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
+        uint64_t *from = c->pair_a, *to = c->pair_b;
+        for (int shift = 32; shift < 64; shift += DIGIT_BITS) {
+            radix_pass(from, to, p->n, shift);
+            uint64_t *const swap = from;
+            from = to;
+            to = swap;
+        }
+        order_by_id(from, p->n, p->id);
+        for (int64_t k = 0; k < p->n; k++)
+            list->order[k] = (int32_t)(uint32_t)from[k];
+    }
+    list_fill(list, p->cell, p->n);
+}

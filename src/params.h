@@ -1,0 +1,70 @@
+/* SPDX-License-Identifier: MIT
+ * params.def as data: one row for each section and each key, for everything that reads, checks,
+ * writes or lists the values of a scene. */
+#ifndef SPHFSI_PARAMS_H
+#define SPHFSI_PARAMS_H
+
+#include "scene.h"
+
+enum section_id {
+#define SECTION(section, named) SECTION_##section,
+#include "params.def"
+    SECTION_COUNT
+};
+
+struct section_info {
+    const char *word;
+    bool named;          /* an array of them in struct scene, with its count */
+    size_t offset;       /* in struct scene: of the struct, or of the pointer to the array */
+    size_t count_offset; /* in struct scene: of the count (named only) */
+    size_t size;         /* of one struct */
+};
+extern const struct section_info section_table[SECTION_COUNT];
+
+enum param_type {
+    PARAM_REAL,
+    PARAM_INTEGER,
+    PARAM_CHOICE,
+    PARAM_TEXT,
+    PARAM_VECTOR,
+    PARAM_FIELD_EXPR,
+    PARAM_SHAPES,
+    PARAM_NUMBERS
+};
+
+struct param {
+    enum section_id section;
+    enum param_type type;
+    const char *key, *meaning;
+    const char *unit;         /* NULL where the type has none */
+    const char *choices;      /* "a|b|c" of a CHOICE */
+    const char *text_default; /* of a TEXT */
+    double number_default[2]; /* one for REAL, INTEGER and CHOICE (index), two for VECTOR */
+    bool needed;
+    double low, high;
+    bool low_open, high_open; /* the bound itself is excluded */
+    int count;                /* expressions of a FIELD_EXPR */
+    size_t offset;            /* in the section's struct */
+};
+extern const struct param param_table[];
+extern const int param_count;
+
+/* How many sections of a kind the scene has; the index-th struct of them. */
+int section_count(const struct scene *s, enum section_id id);
+void *section_at(const struct scene *s, enum section_id id, int index);
+
+/* The row of a key, or NULL. */
+const struct param *param_find(enum section_id section, const char *key);
+
+/* The name of a CHOICE's value, copied into `name`. */
+void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
+
+/* The candidate nearest to a misspelt word, or NULL if none is near. Call for each candidate with
+ * the same `best`, which starts as {0}. */
+struct nearest {
+    const char *name;
+    int distance;
+};
+void nearest_offer(struct nearest *best, const char *word, const char *candidate);
+
+#endif
