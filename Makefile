@@ -25,7 +25,7 @@ Q       := $(if $(V),,@)
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate,$(GOALS)),plot)
+  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate check,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -103,8 +103,10 @@ $(PROGRAM): $(B)/src/main.o $(LIB)
 $(B)/bench/%.o: EXTRA = -Isrc
 $(B)/tests/%.o: EXTRA = -Isrc -Itests/support $(UNITY_CFLAGS)
 
+# Unity writes to stderr, which is not buffered: a crash loses nothing.
 $(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
-	$(Q)$(COMPILE) $(UNITY_CFLAGS) -w -c -o $@ $<
+	$(Q)$(COMPILE) $(UNITY_CFLAGS) -w -include stdio.h '-DUNITY_OUTPUT_CHAR(c)=fputc(c, stderr)' \
+	  -c -o $@ $<
 
 $(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(LIB)
 	$(Q)$(LINK)

@@ -21,7 +21,8 @@ run_one() {
     if command -v timeout >/dev/null; then
         command=(timeout -k 10 "${TEST_TIMEOUT:-600}" "${command[@]}")
     fi
-    "${command[@]}" >"$output" 2>&1 </dev/null
+    # In a subshell, whose remark on a crash goes to the log.
+    ("${command[@]}"; exit $?) >"$output" 2>&1 </dev/null
     status=$?
     [ $status != 124 ] || note="timed out"
 
@@ -39,7 +40,7 @@ run_one() {
             fi
         fi
         if [ "$failed" = 0 ] && [ "$skipped" != 0 ]; then
-            note=$(sed -n 's/.*:IGNORE:* *//p' "$output" | head -n 1)
+            note="$skipped skipped: $(sed -n 's/.*:IGNORE:* *//p' "$output" | head -n 1)"
         fi
     else
         case $status in

@@ -206,10 +206,10 @@ private_sources() {
     codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
     [ -n "$codename" ] || return 1
     cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
-        grep -E "^deb .*[[:space:]]$codename[[:space:]]+.*main" | sed 's/^deb /deb-src /' >"$1.list"
+        grep -E "^deb .*[[:space:]]$codename[[:space:]]+.*(main|universe)" | sed 's/^deb /deb-src /' >"$1.list"
     cat /etc/apt/sources.list.d/*.sources 2>/dev/null |
         awk -v RS= -v ORS='\n\n' "/Suites:[^\n]*[[:space:]]$codename([[:space:]]|\$)/ &&
-            /Components:[^\n]*main/" | sed 's/^Types:.*/Types: deb-src/' >"$1.sources"
+            /Components:[^\n]*(main|universe)/" | sed 's/^Types:.*/Types: deb-src/' >"$1.sources"
     [ -s "$1.list" ] || [ -s "$1.sources" ]
 }
 
@@ -221,7 +221,7 @@ fetch_unity_from_debian() {
     private_sources "$apt/parts/source" || return 1
     local options=(-qq -o Dir::Etc::SourceList=/dev/null -o Dir::Etc::SourceParts="$apt/parts"
         -o Dir::State::Lists="$apt/lists" -o Dir::Cache="$apt/cache" -o Acquire::Languages=none
-        -o APT::Sandbox::User="$(id -un)" -o Acquire::http::Timeout=20 -o Acquire::Retries=2)
+        -o APT::Sandbox::User=root -o Acquire::http::Timeout=20 -o Acquire::Retries=2)
     say "fetching Unity from Debian's source package cjson"
     (cd "$apt" && apt-get "${options[@]}" update &&
         apt-get "${options[@]}" source --download-only cjson) >"$apt/log" 2>&1
@@ -266,7 +266,7 @@ install_packages() {
         >>build/apt.log 2>&1 || say "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
 }
 
-unique() { printf '%s\n' "$@" | awk '!seen[$0]++' | tr '\n' ' '; }
+unique() { printf '%s\n' "$@" | awk '!seen[$0]++'; }
 
 mkdir -p build
 find_all "$@"
@@ -281,12 +281,12 @@ if [ ${#packages[@]} -gt 0 ] && sudo=$(privilege); then
 fi
 [ ${#missing[@]} -gt 0 ] || exit 0
 
-for item in "${missing[@]}"; do say "missing: $item"; done
+unique "${missing[@]}" | while read -r item; do say "missing: $item"; done
 if have brew && [ ${#formulas[@]} -gt 0 ]; then
-    say "to install it: brew install $(unique "${formulas[@]}")"
+    say "to install it: brew install $(echo $(unique "${formulas[@]}"))"
     case "${formulas[*]}" in *gcc*) say "and then: make CC=gcc-14 (or its version)" ;; esac
 elif [ ${#packages[@]} -gt 0 ]; then
-    say "to install it on Debian or Ubuntu: sudo apt-get install $(unique "${packages[@]}")"
+    say "to install it on Debian or Ubuntu: sudo apt-get install $(echo $(unique "${packages[@]}"))"
     have apt-get || say "elsewhere the packages have similar names"
 fi
 exit 1
