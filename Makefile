@@ -48,6 +48,8 @@ $(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug
 ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
+# clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles.
+WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
 OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd,-fopenmp)
 # Older clang on AArch64 knows -mcpu=native only.

@@ -206,7 +206,8 @@ private_sources() {
     codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
     [ -n "$codename" ] || return 1
     cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list 2>/dev/null |
-        grep -E "^deb .*[[:space:]]$codename[[:space:]]+.*(main|universe)" | sed 's/^deb /deb-src /' >"$1.list"
+        grep -E "^deb .*[[:space:]]$codename[[:space:]]+.*(main|universe)" |
+        sed 's/^deb /deb-src /' >"$1.list"
     cat /etc/apt/sources.list.d/*.sources 2>/dev/null |
         awk -v RS= -v ORS='\n\n' "/Suites:[^\n]*[[:space:]]$codename([[:space:]]|\$)/ &&
             /Components:[^\n]*(main|universe)/" | sed 's/^Types:.*/Types: deb-src/' >"$1.sources"
