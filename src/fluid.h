@@ -4,6 +4,7 @@
 #define SPHFSI_FLUID_H
 
 #include "cells.h"
+#include "effects.h"
 
 /* Constants of the fluid, SI. */
 struct fluid_constants {
@@ -20,24 +21,67 @@ struct fluid_extremes {
     double approach;      /* max |h v.x/(r^2 + eta^2)| of Eq. 28b, m/s */
 };
 
-/* Copies in cell order that the sweeps read: positions relative to the cell's centre; float in
- * mixed, double in double precision. */
+/* Copies in cell order that the sweeps read: positions relative to the cell's centre in units of h,
+ * volume in units of h^2, the rest in SI; float in mixed, double in double precision. */
+enum lane_field { LANE_X, LANE_Y, LANE_U, LANE_V, LANE_VOLUME, LANE_P, LANE_DENS, LANE_FIELDS };
+
 struct lanes {
-    void *x, *y, *u, *v, *volume, *p, *dens;
+    void *field[LANE_FIELDS];
 };
 
-struct fluid_sweeps;
+/* Most candidates of one kind that a sweep takes from the nine cells around a particle. More than
+ * this means particles have collapsed onto each other: a guard stops the run before. */
+enum { TILE_CAPACITY = 1152, CELL_CAPACITY = TILE_CAPACITY / 9 };
+
+struct fluid;
+
+/* The sweeps of one precision and set of effects. */
+struct fluid_sweeps {
+    const char *name;
+    unsigned effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
+    size_t lane_size, tile_size;
+    /* Pressure by the equation of state, and lanes of the fluid. */
+    void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their lanes, and the
+     * fluid's force on solid particles (Eq. 21b). */
+    void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                    enum kind kind);
+    /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
+    void (*rates)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+};
+#define ANY_EFFECTS (~0u)
+
+/* Pair effects that kernels are stamped for. */
+#define PAIR_EFFECTS (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS)
+
+extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
 struct fluid {
     struct fluid_constants k;
     unsigned effects;
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
-    const char *kernel_name;
     struct lanes lanes[KIND_COUNT];
     int32_t *near_fluid[KIND_COUNT];   /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
     void *tiles;                       /* [threads] of candidate tiles */
+    int threads;
     struct fluid_extremes extremes;
 };
+
+/* Chooses the kernel and makes room for lanes and tiles. `generic` takes the unstamped kernel. */
+enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
+                      const struct particles kinds[KIND_COUNT], bool generic, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* After sorting: finds the cells of walls and solids that have fluid within reach. */
+void fluid_find_near(struct fluid *f, const struct cells *c);
+
+/* Most particles of any kind in one cell. */
+int32_t fluid_crowding(const struct cells *c);
+
+/* One evaluation: pressures, dummies, rates. Positions must lie within the skin of the last sorting.
+ * phase_seconds: time of lanes, wall and fluid is added to [0], [1], [2]. */
+void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                    double phase_seconds[3]);
 
 #endif

@@ -30,10 +30,7 @@
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
-typedef struct {
-    double v __attribute__((vector_size(SIMD_WIDE_BYTES)));
-} vwide_box; /* only to spell the type below on one line */
-typedef __typeof__(((vwide_box *)0)->v) vwide;
+typedef double vwide __attribute__((vector_size(SIMD_WIDE_BYTES)));
 
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
@@ -152,12 +149,14 @@ SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
     return (vwide)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 }
 SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b) { return (vwide)_mm512_min_pd((__m512d)a, (__m512d)b); }
+SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)_mm512_sqrt_pd((__m512d)a); }
 #else
 SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
 {
     return (vwide)vfma_double((vdouble)a, (vdouble)b, (vdouble)c);
 }
 SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b) { return (vwide)vmin_double((vdouble)a, (vdouble)b); }
+SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)vsqrt_double((vdouble)a); }
 #endif
 
 /* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. Maximum likewise. */

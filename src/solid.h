@@ -5,35 +5,74 @@
 
 #include "particles.h"
 #include "scene.h"
-
-struct solid_pack;
-struct solid_slot;
+#include "simd.h"
 
 /* Constants of one body, SI. */
 struct solid_body {
-    double lambda, mu;   /* Lame constants in effect (plane stress: the reduced lambda) */
+    double lambda, mu;   /* Lame constants */
     double density, young;
-    double viscosity;    /* alpha_s c_s h rho0 of Eq. 14b; 0: none */
+    double mass;         /* of a particle per depth, rho0 dp^2 */
+    double viscosity;    /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
     double sound_speed;  /* c_s of Eq. 29 */
-    double kappa;
+    double kappa;        /* Eq. 17 */
     double gravity[2];
     int law, plane, symmetric;
+};
+
+/* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
+ * weights that are zero where that lane has no such neighbour. */
+struct solid_slot {
+    double gx[LANES_WIDE], gy[LANES_WIDE]; /* V_b grad_0 W_0ab, 1/m */
+    double X[LANES_WIDE], Y[LANES_WIDE];   /* X_ab, m */
+    double hourglass[LANES_WIDE];          /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
+    int64_t offset;
+} __attribute__((aligned(64)));
+
+/* Particles i .. i + lanes - 1 of one body, which have their neighbours in common slots. Packs of equal
+ * surroundings share their slots: on a lattice all of the interior needs one set. */
+struct solid_pack {
+    int32_t i, lanes, body;
+    int32_t first_slot, n_slots;
 };
 
 struct solid {
     int n_bodies;
     struct solid_body *body;
-    double h, volume;         /* smoothing length; dp^2 */
+    double h, dp;
     int64_t n_packs, n_slots;
     struct solid_pack *pack;
     struct solid_slot *slot;
+    bool coupled;             /* meets fluid */
     double omega_max;         /* largest frequency of the linearised operator, 1/s */
     double damping_max;       /* largest rate of its viscous part, 1/s */
+    double stable_step;       /* the largest stable step that follows from both, s */
     double paper_step;        /* Eq. 29, s */
 };
+
+/* Builds constants, reference neighbours and L^-1 of the particles p (X, Y, body, free are set). */
+enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene, struct particles *p,
+                      struct diag *d) SPHFSI_CHECKED;
+
+/* Displacement gradient and P L^-1 of every particle (Eqs. 9-13b). */
+void solid_stress(const struct solid *s, struct particles *p);
+
+/* Total acceleration (Eq. 21b) into sx, sy from stresses that are up to date; zero where clamped. */
+void solid_forces(const struct solid *s, struct particles *p);
+
+/* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With
+ * `centred`: half drift, kick, half drift, which is second order in time. */
+void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred);
+
+/* Largest frequency and damping rate of the operator, by power iteration on the force routine around
+ * the undeformed state, and the stable step that follows. Uses and restores u and v. */
+void solid_find_step(struct solid *s, struct particles *p);
 
 /* Cauchy stress (xx, yy, xy, zz), Pa, and det F of a particle from its displacement gradient. */
 void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
                   double *det);
+
+/* Strain energy and energy of the hourglass force of all particles, J/m; smallest det F. */
+void solid_energy(const struct solid *s, const struct particles *p, double *elastic, double *hourglass,
+                  double *det_low);
 
 #endif

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+#include "fluid.h"
+
+#include <string.h>
+
+static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
+{
+    const unsigned wanted = f->effects & PAIR_EFFECTS;
+    while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted))
+        table++;
+    f->sweeps = table;
+}
+
+static struct fluid_constants constants_of(const struct scene *s)
+{
+    const struct scene_fluid *fluid = &s->fluid[0];
+    return (struct fluid_constants){
+        .h = s->h,
+        .c0 = s->c0,
+        .rho0 = s->rho0,
+        .mass = s->rho0 * square(s->top.dp),
+        .alpha = fluid->artificial_viscosity,
+        .delta = fluid->density_diffusion,
+        .gravity = {s->top.gravity[0], s->top.gravity[1]},
+    };
+}
+
+static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, size_t size, struct diag *d)
+{
+    for (int m = 0; m < LANE_FIELDS; m++) {
+        lanes->field[m] = arena_alloc(a, (size_t)n, size, "lanes of the fluid's sweep", d);
+        if (!lanes->field[m]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
+                      const struct particles kinds[KIND_COUNT], bool generic, struct diag *d)
+{
+    memset(f, 0, sizeof *f);
+    f->k = constants_of(s);
+    f->effects = effects;
+    choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
+                  generic);
+    f->threads = thread_count();
+    f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->sweeps->tile_size, "candidate tiles", d);
+    if (!f->tiles) return ERR_MEMORY;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        if (kinds[k].capacity == 0) continue;
+        TRY(lanes_create(&f->lanes[k], a, kinds[k].capacity, f->sweeps->lane_size, d));
+        if (k == KIND_FLUID) continue;
+        f->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity, sizeof *f->near_fluid[k],
+                                       "cells near fluid", d);
+        if (!f->near_fluid[k]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+static bool fluid_around(const struct cells *c, int32_t cell)
+{
+    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < c->ny; y++)
+        for (int x = cx > 0 ? cx - 1 : 0; x <= cx + 1 && x < c->nx; x++)
+            if (c->kind[KIND_FLUID].count[y * c->nx + x]) return true;
+    return false;
+}
+
+void fluid_find_near(struct fluid *f, const struct cells *c)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct cell_list *list = &c->kind[kind];
+        int32_t n = 0;
+        for (int32_t k = 0; k < list->n_active; k++)
+            if (fluid_around(c, list->active[k])) f->near_fluid[kind][n++] = list->active[k];
+        f->n_near_fluid[kind] = n;
+    }
+}
+
+int32_t fluid_crowding(const struct cells *c)
+{
+    int32_t most = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int32_t k = 0; k < c->kind[kind].n_active; k++)
+            if (c->kind[kind].count[c->kind[kind].active[k]] > most)
+                most = c->kind[kind].count[c->kind[kind].active[k]];
+    return most;
+}
+
+void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                    double phase_seconds[3])
+{
+    const double start = wall_clock();
+    f->sweeps->lanes(f, kinds, c);
+    const double copied = wall_clock();
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
+    const double extrapolated = wall_clock();
+    f->sweeps->rates(f, kinds, c);
+    phase_seconds[0] += copied - start;
+    phase_seconds[1] += extrapolated - copied;
+    phase_seconds[2] += wall_clock() - extrapolated;
+}

@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's sweeps with pair arithmetic in double. */
+#include "simd.h"
+
+#define real double
+#define vreal vdouble
+#define LANES LANES_DOUBLE
+#define SWEEP(name) name##_double
+#define SWEEP_LABEL "double"
+#define vload vload_double
+#define vstore vstore_double
+#define vset vset_double
+#define vfma vfma_double
+#define vmin vmin_double
+#define vmax vmax_double
+#define vsqrt vsqrt_double
+#define vsum vsum_double
+#define vtop vtop_double
+
+#include "fluid_sweep.h"

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT
+ * One inline function for each law between two particles of the fluid, over a pack of pairs. The
+ * text is compiled once for float and once for double lanes: the including file defines `real`,
+ * `vreal` and the verbs. Lengths are in units of h, so that
+ *   grad_a W_ab = -(KERNEL_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 1 - |xi|/2),
+ * and every sum below is to be multiplied by -KERNEL_SLOPE/h. The clamp of t removes pairs beyond the
+ * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
+ * b flips the sign of a force and nothing else. */
+
+/* Particle a, spread over the lanes. */
+struct receiver {
+    vreal x, y, u, v, p, dens;
+    vreal diffusion; /* 2 delta c0/(1 + dens) of Eq. 6, m/s */
+};
+
+/* Pairs of a with a pack of candidates b. */
+struct pair {
+    vreal x, y;        /* xi_ab */
+    vreal r2;          /* |xi_ab|^2 */
+    vreal vx;          /* v_ab . xi_ab, m/s */
+    vreal slope;       /* V_b/h^2 t^3 */
+    vreal p, dens;     /* of b */
+};
+
+struct sums {
+    vreal ax, ay;      /* Pa */
+    vreal rate;        /* m/s */
+    vreal approach;    /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
+};
+
+/* Constants of the sweep, spread over the lanes. */
+struct lane_constants {
+    vreal viscosity;   /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal gx, gy;      /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;        /* (eta/h)^2 = 0.01 */
+};
+
+/* Geometry of the pairs, Eq. 5. */
+SPHFSI_INLINE struct pair pair_load(const struct receiver *a, const real *x, const real *y,
+                                    const real *u, const real *v, const real *volume)
+{
+    struct pair q;
+    q.x = a->x - vload(x);
+    q.y = a->y - vload(y);
+    q.r2 = vfma(q.y, q.y, q.x * q.x);
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), vsqrt(q.r2), vset(1)));
+    q.slope = vload(volume) * (t * t * t);
+    q.vx = vfma(a->v - vload(v), q.y, (a->u - vload(u)) * q.x);
+    return q;
+}
+
+/* Eq. 4a: sum of V_b v_ab . grad W. */
+SPHFSI_INLINE void fx_continuity(const struct pair *q, struct sums *s)
+{
+    s->rate = vfma(q->slope, q->vx, s->rate);
+}
+
+/* Eq. 4b and 21a, pressure: V_b (P_a + P_b), still to be multiplied by the slope and 1/rho_a. */
+SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
+{
+    return a->p + q->p;
+}
+
+/* 1/((|xi|^2 + eta^2)(1 + (dens_a + dens_b)/2)): the one division that viscosity and diffusion share;
+ * `mean` is its second factor. */
+SPHFSI_INLINE vreal pair_damping(const struct receiver *a, const struct pair *q,
+                                 const struct lane_constants *k, vreal *mean)
+{
+    *mean = vfma(vset((real)0.5), a->dens + q->dens, vset(1));
+    return vset(1) / ((q->r2 + k->eta2) * *mean);
+}
+
+/* Eq. 7: rho_a rho_b Pi_ab, Pa; acts on approaching pairs only. */
+SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q, vreal damping,
+                                 const struct lane_constants *k)
+{
+    const vreal both = (vset(1) + a->dens) * (vset(1) + q->dens);
+    return -(k->viscosity * vmin(q->vx, vset(0))) * (both * damping);
+}
+
+/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With
+ * `hydrostatic` (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
+ * g . x_ba/c0^2, does not diffuse. */
+SPHFSI_INLINE void fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
+                                const struct lane_constants *k, bool hydrostatic, struct sums *s)
+{
+    vreal step = a->dens - q->dens;
+    if (hydrostatic) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    s->rate = vfma(a->diffusion * step, q->slope * (q->r2 * inv), s->rate);
+}
+
+/* Eq. 28b: the pair's rate of approach or parting. */
+SPHFSI_INLINE void fx_approach(const struct pair *q, vreal inv, struct sums *s)
+{
+    const vreal m = q->vx * inv;
+    s->approach = vmax(s->approach, vmax(m, -m));
+}

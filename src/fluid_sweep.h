@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT
+ * The sweeps of the fluid, one text for both precisions: fluid_mixed.c and fluid_double.c define
+ *   real, vreal, LANES, SWEEP(name), the verbs vload vstore vset vfma vmin vmax vsqrt vsum vtop
+ * and include it. Particles of a cell sweep a tile: the candidates of the nine cells around, copied
+ * together so that full vectors can be loaded from it. Gather form: a particle sums its own neighbours
+ * and writes only itself, so that the bits do not depend on the number of threads. */
+
+#include <string.h>
+
+#include "eos.h"
+#include "fluid.h"
+#include "smoothing.h"
+
+#include "fluid_fx.h"
+
+/* Candidates of one kind of particles, padded at the end with particles far away and without volume.
+ * A copy may write up to LANES beyond the last. */
+struct SWEEP(tile) {
+    int n; /* a multiple of LANES */
+    real field[LANE_FIELDS][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
+};
+
+#define TILE_FAR 1000 /* in units of h; the kernel ends at 2 */
+
+static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
+{
+    return (struct SWEEP(tile) *)f->tiles + 2 * thread_index() + which;
+}
+
+/* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h. */
+SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lanes *lanes, int32_t start,
+                              int32_t count, real dx, real dy)
+{
+    const vreal shift_x = vset(dx), shift_y = vset(dy);
+    for (int32_t k = 0; k < count; k += LANES) {
+        vstore(&tile->field[LANE_X][n + k],
+               vload((const real *)lanes->field[LANE_X] + start + k) + shift_x);
+        vstore(&tile->field[LANE_Y][n + k],
+               vload((const real *)lanes->field[LANE_Y] + start + k) + shift_y);
+        for (int m = LANE_U; m < LANE_FIELDS; m++)
+            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
+    }
+    return n + count;
+}
+
+/* Appends the nine cells around `cell` of one kind; returns the number of candidates so far. */
+static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f, const struct cells *c,
+                       enum kind kind, int32_t cell)
+{
+    const struct cell_list *list = &c->kind[kind];
+    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
+    for (int dy = -1; dy <= 1; dy++) {
+        for (int dx = -1; dx <= 1; dx++) {
+            if (cx + dx < 0 || cx + dx >= c->nx || cy + dy < 0 || cy + dy >= c->ny) continue;
+            const int32_t other = (cy + dy) * c->nx + cx + dx;
+            if (list->count[other] == 0) continue;
+            n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
+                            (real)(dx * side_x), (real)(dy * side_y));
+        }
+    }
+    return n;
+}
+
+static void tile_close(struct SWEEP(tile) * tile, int n)
+{
+    const int padded = (n + LANES - 1) / LANES * LANES;
+    for (; n < padded; n++) {
+        for (int m = 0; m < LANE_FIELDS; m++)
+            tile->field[m][n] = 0;
+        tile->field[LANE_X][n] = TILE_FAR;
+    }
+    tile->n = padded;
+}
+
+static void lanes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c, int32_t cell)
+{
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+    const double centre_x = cell_centre_x(c, cell), centre_y = cell_centre_y(c, cell);
+    const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
+    real *const *const out = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
+    for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+        p->p[i] = eos_pressure(p->dens[i], f->k.rho0, f->k.c0);
+        out[LANE_X][i] = (real)((p->x[i] - centre_x) * inv_h);
+        out[LANE_Y][i] = (real)((p->y[i] - centre_y) * inv_h);
+        out[LANE_U][i] = (real)p->vx[i];
+        out[LANE_V][i] = (real)p->vy[i];
+        out[LANE_VOLUME][i] = (real)(volume / (1 + p->dens[i]));
+        out[LANE_P][i] = (real)p->p[i];
+        out[LANE_DENS][i] = (real)p->dens[i];
+    }
+}
+
+static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+#pragma omp parallel for schedule(static)
+    for (int32_t k = 0; k < list->n_active; k++)
+        lanes_of_cell(f, &kinds[KIND_FLUID], c, list->active[k]);
+}
+
+/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of a wall or solid particle at (x, y),
+ * with acceleration (ax, ay), from the fluid in the tile; 0 where no fluid is in reach. */
+static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(tile) * tile, real x, real y,
+                                    double ax, double ay)
+{
+    vreal sum_w = vset(0), sum_p = vset(0), sum_x = vset(0), sum_y = vset(0);
+    for (int j = 0; j < tile->n; j += LANES) {
+        const vreal dx = vset(x) - vload(&tile->field[LANE_X][j]);
+        const vreal dy = vset(y) - vload(&tile->field[LANE_Y][j]);
+        const vreal q = vsqrt(vfma(dy, dy, dx * dx));
+        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1)));
+        const vreal t2 = t * t, w = t2 * t2 * vfma(vset(2), q, vset(1));
+        const vreal mass = w * (vset(1) + vload(&tile->field[LANE_DENS][j]));
+        sum_w = sum_w + w;
+        sum_p = vfma(w, vload(&tile->field[LANE_P][j]), sum_p);
+        sum_x = vfma(mass, dx, sum_x);
+        sum_y = vfma(mass, dy, sum_y);
+    }
+    const double weight = (double)vsum(sum_w);
+    if (!(weight > 1e-12)) return 0;
+    const double lift = (f->k.gravity[0] - ax) * (double)vsum(sum_x) + (f->k.gravity[1] - ay) * (double)vsum(sum_y);
+    return ((double)vsum(sum_p) + f->k.rho0 * f->k.h * lift) / weight;
+}
+
+/* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
+ * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. */
+static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile, const struct receiver *s,
+                        double volume, double force[2])
+{
+    vreal sum_x = vset(0), sum_y = vset(0);
+    for (int j = 0; j < tile->n; j += LANES) {
+        struct pair q = pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
+                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
+                                  &tile->field[LANE_VOLUME][j]);
+        q.p = vload(&tile->field[LANE_P][j]);
+        const vreal g = q.slope * fx_pressure(s, &q);
+        sum_x = vfma(g, q.x, sum_x);
+        sum_y = vfma(g, q.y, sum_y);
+    }
+    const double scale = KERNEL_SLOPE * f->k.h * volume;
+    force[0] = scale * (double)vsum(sum_x);
+    force[1] = scale * (double)vsum(sum_y);
+}
+
+/* One wall or solid particle i at place `place` of the cell order. */
+static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place, int32_t i,
+                         double centre_x, double centre_y, const struct SWEEP(tile) * tile)
+{
+    const double inv_h = 1 / f->k.h;
+    const bool solid = kind == KIND_SOLID;
+    const double *const u = solid ? p->wx : p->vx, *const v = solid ? p->wy : p->vy;
+    real *const *const out = (real *const *)(const void *)f->lanes[kind].field;
+    const real x = (real)((p->x[i] - centre_x) * inv_h), y = (real)((p->y[i] - centre_y) * inv_h);
+    p->p[i] = extrapolated_pressure(f, tile, x, y, p->ax ? p->ax[i] : 0, p->ax ? p->ay[i] : 0);
+    p->dens[i] = eos_dens(p->p[i], f->k.rho0, f->k.c0);
+    out[LANE_X][place] = x;
+    out[LANE_Y][place] = y;
+    out[LANE_U][place] = (real)u[i];
+    out[LANE_V][place] = (real)v[i];
+    out[LANE_VOLUME][place] = (real)(f->k.mass / f->k.rho0 * square(inv_h) / (1 + p->dens[i]));
+    out[LANE_P][place] = (real)p->p[i];
+    out[LANE_DENS][place] = (real)p->dens[i];
+    if (!solid) return;
+    const struct receiver s = {vset(x), vset(y), vset(0), vset(0), vset(out[LANE_P][place]), vset(0), vset(0)};
+    double force[2];
+    fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    p->fx[i] = force[0];
+    p->fy[i] = force[1];
+}
+
+static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                           const struct cells *c, enum kind kind)
+{
+    const struct cell_list *list = &c->kind[kind];
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
+        const int32_t cell = f->near_fluid[kind][k];
+        struct SWEEP(tile) *const tile = thread_tile(f, 0);
+        tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
+        const double centre_x = cell_centre_x(c, cell), centre_y = cell_centre_y(c, cell);
+        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
+            dummy_update(f, &kinds[kind], kind, j, list->order[j], centre_x, centre_y, tile);
+    }
+}
+
+/* Sums over the fluid in the tile; fx is a constant where the kernel is stamped. */
+SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct receiver *a,
+                             const struct lane_constants *k, unsigned fx, struct sums *s)
+{
+    for (int j = 0; j < tile->n; j += LANES) {
+        struct pair q = pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
+                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
+                                  &tile->field[LANE_VOLUME][j]);
+        q.p = vload(&tile->field[LANE_P][j]);
+        fx_continuity(&q, s);
+        vreal stress = fx_pressure(a, &q), inv;
+        if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
+            q.dens = vload(&tile->field[LANE_DENS][j]);
+            vreal mean;
+            const vreal damping = pair_damping(a, &q, k, &mean);
+            inv = damping * mean;
+            if (fx & FX_VISCOSITY) stress = stress + fx_viscosity(a, &q, damping, k);
+            if (fx & FX_DIFFUSION) fx_diffusion(a, &q, inv, k, fx & FX_FOURTAKAS, s);
+        } else {
+            inv = vset(1) / (q.r2 + k->eta2);
+        }
+        fx_approach(&q, inv, s);
+        const vreal g = q.slope * stress;
+        s->ax = vfma(g, q.x, s->ax);
+        s->ay = vfma(g, q.y, s->ay);
+    }
+}
+
+/* Sums over walls and structures: pressure and continuity only, since they are free-slip. */
+SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct receiver *a,
+                               const struct lane_constants *k, struct sums *s)
+{
+    for (int j = 0; j < tile->n; j += LANES) {
+        struct pair q = pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
+                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
+                                  &tile->field[LANE_VOLUME][j]);
+        q.p = vload(&tile->field[LANE_P][j]);
+        fx_continuity(&q, s);
+        fx_approach(&q, vset(1) / (q.r2 + k->eta2), s);
+        const vreal g = q.slope * fx_pressure(a, &q);
+        s->ax = vfma(g, q.x, s->ax);
+        s->ay = vfma(g, q.y, s->ay);
+    }
+}
+
+/* The factors that the sums lack. */
+SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
+                               const struct sums *s, struct fluid_extremes *top)
+{
+    const double dens = p->dens[i], slope = KERNEL_SLOPE / k->h;
+    const double ax = slope / (k->rho0 * (1 + dens)) * (double)vsum(s->ax) + k->gravity[0];
+    const double ay = slope / (k->rho0 * (1 + dens)) * (double)vsum(s->ay) + k->gravity[1];
+    p->ax[i] = ax;
+    p->ay[i] = ay;
+    p->ddens[i] = -slope * (1 + dens) * (double)vsum(s->rate);
+    top->acceleration2 = max2(top->acceleration2, ax * ax + ay * ay);
+    top->approach = max2(top->approach, (double)vtop(s->approach));
+}
+
+SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c, int32_t cell,
+                                 const struct lane_constants *k, unsigned fx, struct fluid_extremes *top)
+{
+    struct SWEEP(tile) *const tile = thread_tile(f, 0), *const dummies = thread_tile(f, 1);
+    tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
+    int n = 0;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (f->n_near_fluid[kind]) n = tile_gather(dummies, n, f, c, (enum kind)kind, cell);
+    tile_close(dummies, n);
+
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+    const real *const *const own = (const real *const *)(const void *)f->lanes[KIND_FLUID].field;
+    for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+        const struct receiver a = {vset(own[LANE_X][i]), vset(own[LANE_Y][i]), vset(own[LANE_U][i]),
+                                   vset(own[LANE_V][i]), vset(own[LANE_P][i]), vset(own[LANE_DENS][i]),
+                                   vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
+        struct sums s = {vset(0), vset(0), vset(0), vset(0)};
+        sum_fluid(tile, &a, k, fx, &s);
+        sum_dummies(dummies, &a, k, &s);
+        rates_store(&f->k, p, i, &s, top);
+    }
+}
+
+SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                              unsigned fx)
+{
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+    const struct fluid_constants *const fk = &f->k;
+    const double per_c2 = fk->h / square(fk->c0);
+    const struct lane_constants k = {
+        vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+        vset((real)(fk->gravity[0] * per_c2)), vset((real)(fk->gravity[1] * per_c2)), vset((real)0.01)};
+    double acceleration2 = 0, approach = 0;
+#pragma omp parallel for schedule(dynamic, 16) reduction(max : acceleration2, approach)
+    for (int32_t m = 0; m < list->n_active; m++) {
+        struct fluid_extremes top = {acceleration2, approach};
+        rates_of_cell(f, &kinds[KIND_FLUID], c, list->active[m], &k, fx, &top);
+        acceleration2 = top.acceleration2;
+        approach = top.approach;
+    }
+    f->extremes = (struct fluid_extremes){acceleration2, approach};
+}
+
+#define VARIANT(variant, set)                                                                         \
+    static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT],          \
+                                       const struct cells *c)                                         \
+    {                                                                                                 \
+        rates_body(f, kinds, c, (set));                                                               \
+    }
+#include "variants.def"
+#undef VARIANT
+
+static void SWEEP(rates_any)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    rates_body(f, kinds, c, f->effects & PAIR_EFFECTS);
+}
+
+#define SWEEPS_ROW(variant, set)                                                                      \
+    {#variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)), SWEEP(lanes),    \
+     SWEEP(dummies), SWEEP(rates_##variant)}
+
+/* The generic kernel stands last. */
+const struct fluid_sweeps SWEEP(fluid_sweeps)[] = {
+#define VARIANT(variant, set) SWEEPS_ROW(variant, set),
+#include "variants.def"
+#undef VARIANT
+    SWEEPS_ROW(any, ANY_EFFECTS),
+};

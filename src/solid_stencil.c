@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT
+ * The solid's reference neighbours, which never change: packs of particles and their slots. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "smoothing.h"
+#include "solid_stencil.h"
+
+/* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
+enum { MAX_NEIGHBOURS = 96, MAX_SLOTS = MAX_NEIGHBOURS * LANES_WIDE };
+
+struct bucket_grid {
+    double lower[2], side;
+    int nx, ny;
+    int32_t *first, *next; /* chains of particles by bucket, -1 ends */
+};
+
+static enum err buckets_create(struct bucket_grid *g, struct arena *a, const struct particles *p,
+                               double reach, struct diag *d)
+{
+    double upper[2] = {-INFINITY, -INFINITY};
+    g->lower[0] = g->lower[1] = INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        g->lower[0] = min2(g->lower[0], p->X[i]);
+        g->lower[1] = min2(g->lower[1], p->Y[i]);
+        upper[0] = max2(upper[0], p->X[i]);
+        upper[1] = max2(upper[1], p->Y[i]);
+    }
+    /* Few bodies far apart must not cost a bucket for every spot between them. */
+    g->side = max2(reach, 1e-4 * max2(upper[0] - g->lower[0], upper[1] - g->lower[1]));
+    g->nx = (int)((upper[0] - g->lower[0]) / g->side) + 1;
+    g->ny = (int)((upper[1] - g->lower[1]) / g->side) + 1;
+    const size_t n_buckets = (size_t)g->nx * (size_t)g->ny;
+    g->first = arena_alloc(a, n_buckets, sizeof *g->first, "buckets of the solid", d);
+    g->next = arena_alloc(a, (size_t)p->n, sizeof *g->next, "buckets of the solid", d);
+    if (!g->first || !g->next) return ERR_MEMORY;
+    for (size_t k = 0; k < n_buckets; k++)
+        g->first[k] = -1;
+    for (int64_t i = p->n - 1; i >= 0; i--) {
+        const int bx = (int)((p->X[i] - g->lower[0]) / g->side);
+        const int by = (int)((p->Y[i] - g->lower[1]) / g->side);
+        g->next[i] = g->first[by * g->nx + bx];
+        g->first[by * g->nx + bx] = (int32_t)i;
+    }
+    return ERR_OK;
+}
+
+/* X_a - X_b, rounded to 2^-30 dp: on a lattice equal surroundings become equal to the bit, so that
+ * packs can share their slots. */
+static double reference_distance(double a, double b, double dp)
+{
+    const double unit = ldexp(dp, -30);
+    return nearbyint((a - b) / unit) * unit;
+}
+
+static int compare_index(const void *a, const void *b)
+{
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Neighbours of i in its own body, ascending: bodies are not bonded to each other. -1: too many. */
+static int neighbours_of(const struct bucket_grid *g, const struct particles *p, double reach, double dp,
+                         int64_t i, int32_t *found)
+{
+    const int bx = (int)((p->X[i] - g->lower[0]) / g->side), by = (int)((p->Y[i] - g->lower[1]) / g->side);
+    int n = 0;
+    for (int y = by > 0 ? by - 1 : 0; y <= by + 1 && y < g->ny; y++) {
+        for (int x = bx > 0 ? bx - 1 : 0; x <= bx + 1 && x < g->nx; x++) {
+            for (int32_t j = g->first[y * g->nx + x]; j >= 0; j = g->next[j]) {
+                if (j == i || p->body[j] != p->body[i]) continue;
+                const double dx = reference_distance(p->X[i], p->X[j], dp);
+                const double dy = reference_distance(p->Y[i], p->Y[j], dp);
+                if (dx * dx + dy * dy >= reach * reach) continue;
+                if (n == MAX_NEIGHBOURS) return -1;
+                found[n++] = j;
+            }
+        }
+    }
+    qsort(found, (size_t)n, sizeof *found, compare_index);
+    return n;
+}
+
+/* The slot of a pack for neighbours at this offset, made if there is none. */
+static struct solid_slot *slot_for(struct solid_slot *slots, int *n, int64_t offset)
+{
+    for (int k = 0; k < *n; k++)
+        if (slots[k].offset == offset) return &slots[k];
+    struct solid_slot *const slot = &slots[(*n)++];
+    memset(slot, 0, sizeof *slot);
+    slot->offset = offset;
+    /* Lanes without this neighbour divide by their distance all the same: it must not vanish. */
+    for (int l = 0; l < LANES_WIDE; l++)
+        slot->X[l] = 1e6;
+    return slot;
+}
+
+/* Fills one lane of a slot with the constants of a pair. */
+static void slot_set(struct solid_slot *slot, int lane, const struct solid_body *b, double h, double dp,
+                     double X, double Y)
+{
+    const double r2 = X * X + Y * Y, r = sqrt(r2), V = dp * dp;
+    const double slope = kernel_slope(r, h);
+    slot->gx[lane] = V * slope * X;
+    slot->gy[lane] = V * slope * Y;
+    slot->X[lane] = X;
+    slot->Y[lane] = Y;
+    slot->hourglass[lane] = b->kappa * b->young * V * kernel_w(r, h) / (r2 * b->density);
+}
+
+static int compare_slot(const void *a, const void *b)
+{
+    const int64_t x = ((const struct solid_slot *)a)->offset, y = ((const struct solid_slot *)b)->offset;
+    return (x > y) - (x < y);
+}
+
+/* The slots of one pack, in ascending order of neighbours; -1: a particle has too many. */
+static int pack_slots(const struct solid *s, const struct bucket_grid *g, const struct particles *p,
+                      const struct solid_pack *pack, struct solid_slot *slots)
+{
+    int32_t found[MAX_NEIGHBOURS];
+    int n = 0;
+    for (int l = 0; l < pack->lanes; l++) {
+        const int64_t i = pack->i + l;
+        const int count = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
+        if (count < 0) return -1;
+        for (int k = 0; k < count; k++)
+            slot_set(slot_for(slots, &n, found[k] - i), l, &s->body[pack->body], s->h, s->dp,
+                     reference_distance(p->X[i], p->X[found[k]], s->dp),
+                     reference_distance(p->Y[i], p->Y[found[k]], s->dp));
+    }
+    qsort(slots, (size_t)n, sizeof *slots, compare_slot);
+    return n;
+}
+
+/* Sets of slots that were stored already, by hash. */
+struct slot_sets {
+    int32_t *pack; /* [size] a pack with this set, -1: free */
+    size_t size;   /* a power of two */
+};
+
+static uint64_t slots_hash(const struct solid_slot *slots, int n)
+{
+    const unsigned char *bytes = (const unsigned char *)slots;
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t k = 0; k < (size_t)n * sizeof *slots; k++)
+        h = (h ^ bytes[k]) * 0x100000001b3u;
+    return h;
+}
+
+/* Finds an equal set or stores this one. */
+static void share_slots(struct solid *s, struct slot_sets *sets, int32_t pack_index,
+                        const struct solid_slot *slots, int n)
+{
+    struct solid_pack *const pack = &s->pack[pack_index];
+    pack->n_slots = n;
+    size_t k = slots_hash(slots, n) & (sets->size - 1);
+    for (; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
+        const struct solid_pack *const other = &s->pack[sets->pack[k]];
+        if (other->body == pack->body && other->n_slots == n &&
+            memcmp(&s->slot[other->first_slot], slots, (size_t)n * sizeof *slots) == 0) {
+            pack->first_slot = other->first_slot;
+            return;
+        }
+    }
+    sets->pack[k] = pack_index;
+    pack->first_slot = (int32_t)s->n_slots;
+    memcpy(&s->slot[s->n_slots], slots, (size_t)n * sizeof *slots);
+    s->n_slots += n;
+}
+
+static void cut_packs(struct solid *s, const struct particles *p)
+{
+    for (int64_t i = 0; i < p->n;) {
+        struct solid_pack *const pack = &s->pack[s->n_packs++];
+        *pack = (struct solid_pack){.i = (int32_t)i, .body = p->body[i]};
+        while (pack->lanes < LANES_WIDE && i < p->n && p->body[i] == pack->body) {
+            pack->lanes++;
+            i++;
+        }
+    }
+}
+
+/* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
+static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
+                            const struct bucket_grid *g, const struct particles *p, struct diag *d)
+{
+    struct slot_sets sets = {.size = 1};
+    while (sets.size < 2 * (size_t)s->n_packs)
+        sets.size *= 2;
+    sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
+    struct solid_slot *const work =
+        arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
+    if (!sets.pack || !work) return ERR_MEMORY;
+    int64_t total = 0;
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const int n = pack_slots(s, g, p, &s->pack[k], work);
+        if (n < 0)
+            return diag_fail(d, ERR_INPUT,
+                             "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
+                             "are bodies sampled twice, or h_over_dp too large?",
+                             p->X[s->pack[k].i], p->Y[s->pack[k].i], MAX_NEIGHBOURS);
+        total += n;
+    }
+    s->slot = arena_alloc(scratch, (size_t)total, sizeof *s->slot, "slots of the solid", d);
+    if (!s->slot) return ERR_MEMORY;
+    memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
+    for (int64_t k = 0; k < s->n_packs; k++)
+        share_slots(s, &sets, (int32_t)k, work, pack_slots(s, g, p, &s->pack[k], work));
+
+    const struct solid_slot *const all = s->slot;
+    s->slot = arena_alloc(a, (size_t)s->n_slots, sizeof *s->slot, "slots of the solid", d);
+    if (!s->slot) return ERR_MEMORY;
+    memcpy(s->slot, all, (size_t)s->n_slots * sizeof *s->slot);
+    return ERR_OK;
+}
+
+/* Eq. 13c and its inverse, from the slots. L is symmetric since the kernel is radial. */
+static enum err invert_correction(const struct solid *s, struct particles *p, struct diag *d)
+{
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        for (int l = 0; l < pack->lanes; l++) {
+            double xx = 0, xy = 0, yy = 0;
+            for (int m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
+                const struct solid_slot *const slot = &s->slot[m];
+                xx -= slot->X[l] * slot->gx[l];
+                xy -= slot->X[l] * slot->gy[l];
+                yy -= slot->Y[l] * slot->gy[l];
+            }
+            const int64_t i = pack->i + l;
+            const double det = xx * yy - xy * xy;
+            if (!(det > 1e-6))
+                return diag_fail(d, ERR_INPUT,
+                                 "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
+                                 "deformation gradient; a body needs at least 2 particles across",
+                                 p->X[i], p->Y[i]);
+            p->Lxx[i] = yy / det;
+            p->Lxy[i] = -xy / det;
+            p->Lyy[i] = xx / det;
+        }
+    }
+    return ERR_OK;
+}
+
+enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles *p, struct diag *d)
+{
+    s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
+    if (!s->pack) return ERR_MEMORY;
+    cut_packs(s, p);
+
+    struct arena scratch = {.limit = a->limit};
+    struct bucket_grid grid;
+    enum err e = buckets_create(&grid, &scratch, p, KERNEL_REACH * s->h, d);
+    if (!e) e = store_slots(s, a, &scratch, &grid, p, d);
+    arena_free(&scratch);
+    return e ? e : invert_correction(s, p, d);
+}

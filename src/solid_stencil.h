@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT
+ * The solid's reference neighbours as packs and slots. */
+#ifndef SPHFSI_SOLID_STENCIL_H
+#define SPHFSI_SOLID_STENCIL_H
+
+#include "solid.h"
+
+/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body, and sets
+ * L^-1 (Eq. 13c). s->body, h and dp are set. */
+enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles *p, struct diag *d)
+    SPHFSI_CHECKED;
+
+#endif
