@@ -20,7 +20,7 @@ const struct section_info section_table[SECTION_COUNT] = {
     .section = SECTION_##section_, .type = PARAM_##type_, .key = #key_, .meaning = meaning_, \
     .offset = offsetof(struct scene_##section_, key_)
 
-const struct param param_table[] = {
+const struct param param_table[PARAM_COUNT] = {
 #define REAL(section, key, def, lo, hi, unit_, meaning)                                       \
     {ROW(section, REAL, key, meaning), .unit = unit_, .number_default = {def}, .low = lo,     \
      .high = hi, .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', .low_open = #lo[0] == 'O', \
@@ -38,4 +38,69 @@ const struct param param_table[] = {
 #define NUMBERS(section, key, unit_, meaning) {ROW(section, NUMBERS, key, meaning), .unit = unit_},
 #include "params.def"
 };
-const int param_count = COUNT_OF(param_table);
+
+int section_count(const struct scene *s, enum section_id id)
+{
+    const struct section_info *info = &section_table[id];
+    if (!info->named) return 1;
+    return *(const int *)(const void *)((const char *)s + info->count_offset);
+}
+
+void *section_at(const struct scene *s, enum section_id id, int index)
+{
+    const struct section_info *info = &section_table[id];
+    char *const place = (char *)(uintptr_t)s + info->offset;
+    if (!info->named) return place;
+    char *array;
+    memcpy(&array, place, sizeof array);
+    return array + (size_t)index * info->size;
+}
+
+const struct param *param_find(enum section_id section, const char *key)
+{
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *p = &param_table[k];
+        if (p->section == section && strcmp(p->key, key) == 0) return p;
+    }
+    return NULL;
+}
+
+void param_choice_name(const struct param *p, int value, char name[SCENE_NAME])
+{
+    const char *start = p->choices;
+    for (int k = 0; k < value; k++)
+        start = strchr(start, '|') + 1;
+    const size_t length = strcspn(start, "|");
+    memcpy(name, start, length);
+    name[length] = '\0';
+}
+
+/* Edit distance: insertions, deletions and replacements that turn one word into the other. */
+static int edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+    int row[SCENE_NAME + 1];
+    for (size_t j = 0; j <= b_length; j++)
+        row[j] = (int)j;
+    for (size_t i = 1; i <= a_length; i++) {
+        int diagonal = row[0];
+        row[0] = (int)i;
+        for (size_t j = 1; j <= b_length; j++) {
+            const int replaced = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            const int shorter = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            row[j] = replaced < shorter ? replaced : shorter;
+        }
+    }
+    return row[b_length];
+}
+
+void nearest_offer(struct nearest *best, const char *word, const char *candidate)
+{
+    const size_t word_length = strlen(word), length = strlen(candidate);
+    if (word_length == 0 || word_length > SCENE_NAME || length > SCENE_NAME) return;
+    const int distance = edit_distance(word, word_length, candidate, length);
+    const int tolerance = word_length < 4 ? 1 : word_length < 8 ? 3 : 4;
+    if (distance > tolerance || (size_t)distance >= length) return;
+    if (best->name && best->distance <= distance) return;
+    *best = (struct nearest){candidate, distance};
+}

@@ -46,8 +46,22 @@ struct param {
     int count;                /* expressions of a FIELD_EXPR */
     size_t offset;            /* in the section's struct */
 };
-extern const struct param param_table[];
-extern const int param_count;
+/* The number of keys in all. */
+enum {
+#define ONE(section, key) PARAM_NUMBER_##section##_##key,
+#define REAL(section, key, def, lo, hi, unit, meaning) ONE(section, key)
+#define INTEGER(section, key, def, lo, hi, meaning) ONE(section, key)
+#define CHOICE(section, key, def, names, meaning) ONE(section, key)
+#define TEXT(section, key, def, meaning) ONE(section, key)
+#define VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
+#define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
+#define SHAPES(section, key, meaning) ONE(section, key)
+#define NUMBERS(section, key, unit, meaning) ONE(section, key)
+#include "params.def"
+#undef ONE
+    PARAM_COUNT
+};
+extern const struct param param_table[PARAM_COUNT];
 
 /* How many sections of a kind the scene has; the index-th struct of them. */
 int section_count(const struct scene *s, enum section_id id);

@@ -79,6 +79,15 @@ struct scene_points {
 struct motion_table {
     int n;
     double *t, *dx, *dy;
+    double *vx, *vy; /* slopes at the rows, so that the velocity is continuous */
+};
+
+/* A named constant, evaluated. plain: it was written without a unit. */
+struct scene_constant {
+    char name[SCENE_NAME];
+    double value;
+    bool plain;
+    double m, kg, s; /* powers of its unit */
 };
 
 /* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
@@ -91,6 +100,8 @@ struct scene {
     int n_##section;
 #define SECTION(section, named) SCENE_MEMBER_##named(section)
 #include "params.def"
+    int n_constants;
+    struct scene_constant *constant;
     struct motion_table *motion_data; /* [n_motion] */
     struct scene_points points[3];    /* by enum kind of particles.h: fluid, wall, solid */
     double h, c0, rho0;               /* smoothing length; speed of sound and density of the fluid (0: no fluid) */

@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT
+ * Inside of the reader of case files: what case.c, case_lines.c, case_values.c and case_check.c
+ * share. Others use scene.h. */
+#ifndef SPHFSI_CASE_H
+#define SPHFSI_CASE_H
+
+#include "expr.h"
+#include "params.h"
+
+enum { SECTION_constants = SECTION_COUNT }; /* free names: no row of params.def */
+enum {
+    CASE_MAX_BYTES = 4 << 20,
+    CASE_MAX_LINES = 20000,
+    CASE_MAX_CONSTANTS = 512,
+    CASE_MAX_POINTS = 4096, /* of a polygon; numbers of a list */
+};
+
+/* One `key = value`. */
+struct entry {
+    int section;     /* index into reader.sections */
+    int line;        /* 0 if it came from --set */
+    const char *set; /* the --set argument, or NULL */
+    const char *key;
+    const char *value;
+};
+
+struct case_section {
+    int id; /* enum section_id or SECTION_constants */
+    const char *name;
+    int line;
+    int index; /* among those of its kind */
+};
+
+struct constant {
+    const struct entry *entry;
+    enum { CONSTANT_TEXT, CONSTANT_BUSY, CONSTANT_DONE } state;
+    struct quantity q;
+};
+
+struct reader {
+    struct scene *scene;
+    struct diag *diag;
+    struct arena temp; /* lives until the scene is read */
+    const char *path;  /* as messages show it */
+    int n_entries, n_sections, n_constants;
+    struct entry *entries;
+    struct case_section *sections; /* the first one is the top of the file */
+    struct constant *constants;    /* constants, and the numbers at the top, which are names too */
+    int depth;                     /* of constants that wait for constants */
+};
+
+/* Room for any path in front of a message. */
+enum { PLACE_TEXT = 300 };
+/* FILE:LINE, the path cut short if it is very long. */
+void scene_place(const struct scene *s, int line, char place[PLACE_TEXT]);
+
+/* Fails with "FILE:LINE: ..." or "--set ...: ...". */
+enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
+enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
+    SPHFSI_PRINTF(3, 4);
+/* Fails with "FILE:LINE: key = value: ...". */
+enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
+    SPHFSI_PRINTF(3, 4);
+
+/* case_lines.c: text to sections and entries; --set arguments on top of them. */
+enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
+enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
+
+/* case_values.c: an entry's text to its value in a section's struct. */
+enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
+enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
+    SPHFSI_CHECKED;
+enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
+
+/* case_shapes.c: one shape more for a list. */
+enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+    SPHFSI_CHECKED;
+/* A number of the dimension `unit` from a piece of an entry's value. */
+enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
+                     double *value) SPHFSI_CHECKED;
+/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
+ * is left. */
+bool slice_next(struct slice *rest, char separator, struct slice *piece);
+int slice_count(struct slice text, char separator);
+
+/* case_check.c: what concerns several values at once. */
+enum err case_check(struct reader *r) SPHFSI_CHECKED;
+
+/* motion.c */
+enum err motion_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* A file name as the case file gives it, seen from the working directory; false: too long. */
+bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
+
+#endif

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ * What a scene must satisfy beyond the range of each value: names that refer to something, values
+ * that go together. */
+#include "case.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void warn(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
+static void warn(struct reader *r, int line, const char *format, ...)
+{
+    char text[600], place[PLACE_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    scene_place(r->scene, line, place);
+    diag_warn(r->diag, "%s: %s", place, text);
+}
+
+/* --- fluid --- */
+
+/* c0 as given, or from Eq. 3. */
+static enum err sound_speed(struct reader *r, const struct scene_fluid *f, double *c0)
+{
+    const double least = 10 * max2(f->max_speed, sqrt(f->max_pressure / f->density));
+    const int line = f->common.line;
+    *c0 = f->sound_speed > 0 ? f->sound_speed : least;
+    if (*c0 == 0)
+        return bad_line(r, line, "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "
+                        "for Eq. 3", f->common.name);
+    if (*c0 > 1e7)
+        return bad_line(r, line, "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above 1e7",
+                        f->common.name, *c0);
+    if (*c0 < least * (1 - 1e-9))
+        warn(r, line, "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3", f->common.name,
+             *c0, least);
+    if (f->pressure.e[0] && !isnan(f->surface))
+        return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; one is to go",
+                        f->common.name);
+    if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
+        warn(r, line, "[fluid %s] has a `surface`, but gravity has no vertical part: its pressure "
+             "starts at zero", f->common.name);
+    return ERR_OK;
+}
+
+static enum err check_fluids(struct reader *r)
+{
+    struct scene *s = r->scene;
+    for (int k = 0; k < s->n_fluid; k++) {
+        const struct scene_fluid *f = &s->fluid[k], *first = &s->fluid[0];
+        double c0;
+        TRY(sound_speed(r, f, &c0));
+        if (k == 0) {
+            s->c0 = c0;
+            s->rho0 = f->density;
+        }
+        const struct {
+            const char *key;
+            double mine, its;
+        } same[] = {
+            {"density", f->density, first->density},
+            {"sound_speed", c0, s->c0},
+            {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
+            {"density_diffusion", f->density_diffusion, first->density_diffusion},
+            {"diffusion_form", f->diffusion_form, first->diffusion_form},
+        };
+        for (size_t j = 0; j < COUNT_OF(same); j++)
+            if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
+                return bad_line(r, f->common.line, "[fluid %s] and [fluid %s] differ in `%s`: %g and "
+                                "%g; all fluid is of one kind", f->common.name, first->common.name,
+                                same[j].key, same[j].mine, same[j].its);
+    }
+    return ERR_OK;
+}
+
+/* --- references between sections --- */
+
+static enum err no_such(struct reader *r, int line, const char *what, const char *given,
+                        enum section_id kind)
+{
+    struct nearest near = {0};
+    for (int k = 0; k < section_count(r->scene, kind); k++) {
+        const struct scene_section_common *c = section_at(r->scene, kind, k);
+        nearest_offer(&near, given, c->name);
+    }
+    const char *word = section_table[kind].word;
+    if (near.name)
+        return bad_line(r, line, "%s = %.60s: no [%s] of that name; did you mean `%s`?", what, given,
+                        word, near.name);
+    return bad_line(r, line, "%s = %.60s: no [%s] of that name", what, given, word);
+}
+
+static enum err check_motions(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_wall; k++)
+        if (*s->wall[k].motion && scene_find_motion(s, s->wall[k].motion) < 0)
+            return no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion, SECTION_motion);
+    for (int k = 0; k < s->n_motion; k++) {
+        const struct scene_motion *m = &s->motion[k];
+        const int line = m->common.line;
+        bool used = false;
+        for (int w = 0; w < s->n_wall; w++)
+            used |= strcmp(s->wall[w].motion, m->common.name) == 0;
+        if (!used) warn(r, line, "[motion %s] moves no wall", m->common.name);
+        if (!(m->start < m->stop))
+            return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
+                            m->common.name, m->start, m->stop);
+        if (m->kind == MOTION_TABLE && !*m->file)
+            return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
+        if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)
+            return bad_line(r, line, "[motion %s] kind = polynomial needs `poly_x` or `poly_y`",
+                            m->common.name);
+    }
+    return ERR_OK;
+}
+
+static enum err check_probes(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_probe; k++) {
+        const struct scene_probe *p = &s->probe[k];
+        const int line = p->common.line;
+        if (p->quantity == PROBE_PRESSURE) {
+            if (*p->body)
+                return bad_line(r, line, "[probe %s] measures pressure at a fixed point; `body` is to "
+                                "go", p->common.name);
+            if (s->n_fluid == 0)
+                return bad_line(r, line, "[probe %s] measures pressure, but there is no fluid",
+                                p->common.name);
+            continue;
+        }
+        if (!*p->body)
+            return bad_line(r, line, "[probe %s] needs `body`, the solid it belongs to",
+                            p->common.name);
+        if (scene_find_solid(s, p->body) < 0) return no_such(r, line, "body", p->body, SECTION_solid);
+    }
+    return ERR_OK;
+}
+
+/* A reference names a column: <probe>_<quantity>_<unit>. */
+static enum err check_references(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_reference; k++) {
+        const struct scene_reference *ref = &s->reference[k];
+        const int line = ref->common.line;
+        if (!*ref->probe || !*ref->file)
+            return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
+                            *ref->probe ? "file" : "probe");
+        bool found = false;
+        for (int p = 0; p < s->n_probe; p++) {
+            const char *name = s->probe[p].common.name;
+            const size_t length = strlen(name);
+            found |= strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_';
+        }
+        if (!found)
+            return bad_line(r, line, "[reference %s] probe = %.80s: no probe has such a column; a "
+                            "column is PROBE_QUANTITY_UNIT, such as M1_dx_m", ref->common.name,
+                            ref->probe);
+        char path[4096 + SCENE_TEXT];
+        FILE *file = scene_file(s, ref->file, path, sizeof path) ? fopen(path, "r") : NULL;
+        if (!file)
+            warn(r, line, "[reference %s] file = %.200s cannot be opened", ref->common.name,
+                 ref->file);
+        else
+            fclose(file);
+    }
+    return ERR_OK;
+}
+
+enum err case_check(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    if (s->n_fluid == 0 && s->n_solid == 0)
+        return bad_line(r, 1, "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
+    TRY(check_fluids(r));
+    TRY(check_motions(r));
+    TRY(check_probes(r));
+    return check_references(r);
+}

@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ * Arithmetic of case files: numbers with units, named constants, functions, and, where a value may
+ * vary in space, the coordinates x and y in metres.
+ *
+ *   sum     = product { (+|-) product }
+ *   product = factor { (*|/) factor }
+ *   factor  = (+|-) factor | primary [ ^ factor ]
+ *   primary = number [ unit ] | unit | name | function ( sum [, sum] ) | ( sum )
+ *   unit    = symbol [ ^ number ] { (*|/) symbol [ ^ number ] } | %
+ *
+ * A unit belongs to the number before it: 1/2 m is 1/(2 m). Symbols: m km cm mm um, s min ms us,
+ * kg g (after a number), N, Pa kPa MPa GPa, Hz kHz, rad deg. Functions: sqrt sin cos tan sinh cosh
+ * tanh exp log abs min max; pi is a name.
+ *
+ * Dimensions are carried along. A plain number, written without a unit, may stand for any dimension
+ * (it is SI); in a product with a number that has a unit it is a pure number. */
+#ifndef SPHFSI_EXPR_H
+#define SPHFSI_EXPR_H
+
+#include "base.h"
+
+enum dim_kind {
+    DIM_PLAIN, /* no unit given: fits everywhere */
+    DIM_KNOWN, /* powers of metre, kilogram, second */
+    DIM_ANY    /* depends on x or y: not tracked, fits everywhere */
+};
+
+struct dim {
+    enum dim_kind kind;
+    double m, kg, s;
+};
+
+struct quantity {
+    double value; /* in SI units */
+    struct dim dim;
+};
+
+/* A piece of the case file's text. */
+struct slice {
+    const char *at;
+    size_t length;
+};
+
+enum { EXPR_WHY = 320, EXPR_NAME = 64 };
+
+/* What names mean: `find` returns true and the quantity, or false; then it has written why, or
+ * nothing if the name is simply unknown. */
+struct expr_names {
+    void *context;
+    bool (*find)(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
+    bool in_space; /* x and y are known */
+};
+
+/* Compiled: evaluated at many points. */
+struct expr;
+
+/* The value of an expression without x and y; false: `why` says what is wrong with it. */
+bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
+                char why[EXPR_WHY]);
+
+/* Compiles for scene_expr_at. ERR_INPUT: `why` says what is wrong; ERR_MEMORY: in d. */
+enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
+                      struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
+    SPHFSI_CHECKED;
+
+/* The text it was compiled from. */
+const char *expr_source(const struct expr *e);
+
+/* Whether a dimension may stand where a unit of params.def is expected ("SI": any). */
+bool dim_fits(const struct dim *dim, const char *unit);
+
+/* Names a dimension: "a pressure (Pa)". */
+enum { DIM_TEXT = 96 };
+void dim_text(const struct dim *dim, char text[DIM_TEXT]);
+void unit_dim_text(const char *unit, char text[DIM_TEXT]);
+
+/* What a name must not be, because it means something else already: NULL or the meaning. */
+const char *expr_reserved(const char *name);
+
+/* --- units.c --- */
+/* Reads a unit ("kg/m^3") from the front of the text and applies it to q; false: no unit there, or
+ * a wrong one, then `why` is written. */
+bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
+bool unit_known(const char *name);
+
+/* The identifier at the front of the text: its length; 0: none. */
+size_t identifier_length(struct slice text);
+
+#endif
