@@ -77,6 +77,9 @@ def draw(run, ledger):
     density.set(ylabel=r"Largest $|\rho/\rho_0 - 1|$ (%)", ylim=(0, None))
     det.plot(time, ledger["det_low"], color=COLOURS[0])
     det.set_ylabel(r"Smallest det $\mathbf{F}$")
+    if not np.isfinite(ledger["det_low"]).any():
+        det.text(0.5, 0.5, "no solid", transform=det.transAxes, ha="center", color="0.4")
+        det.set_yticks([])
     for axes in (energy, momentum):
         axes.axhline(0, color="0.7", linewidth=0.6, zorder=1)
     for axes in (energy, momentum, step, density, det):

@@ -113,12 +113,11 @@ class Run:
                 raise BadFile(f"{path}: not a JSON object")
 
     def failure(self):
-        """How the run ended short of its end, or None. Without a summary it is under way or was
-        killed."""
-        reason = self.summary.get("exit_reason")
+        """How the run ended short of its end, or None."""
+        reason = self.summary.get("exit_reason", "running")
         if reason == "finished":
             return None
-        return f"stopped: {reason}" if reason else "unfinished"
+        return "unfinished" if reason == "running" else f"stopped: {reason}"
 
     def label(self):
         reason = self.failure()
@@ -135,16 +134,11 @@ class Run:
         return read_case(path) if path.exists() else []
 
     def spacing(self):
-        """Particle spacing dp in m, from the summary or else from the case."""
-        places = [self.summary] + [v for v in self.summary.values() if isinstance(v, dict)]
-        for place in places:
-            if isinstance(place.get("dp"), (int, float)):
-                return float(place["dp"])
-        text = next((keys["dp"] for kind, _, keys in self.case() if kind == "top" and "dp" in keys),
-                    "")
-        found = re.fullmatch(r"([\d.eE+-]+)\s*(|m|cm|mm|um)", text)
+        """Particle spacing dp in m."""
+        top = next((keys for kind, _, keys in self.case() if kind == "top"), {})
+        found = re.fullmatch(r"([\d.eE+-]+)\s*(|m|cm|mm|um)", top.get("dp", ""))
         if not found:
-            raise BadFile(f"{self.folder}: neither summary.json nor case.cfg says dp")
+            raise BadFile(f"{self.folder / 'case.cfg'}: missing, or does not say dp")
         return float(found[1]) * {"": 1, "m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}[found[2]]
 
 
