@@ -35,13 +35,13 @@ static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, si
 }
 
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
-                      const struct particles kinds[KIND_COUNT], bool generic, struct diag *d)
+                      const struct particles kinds[KIND_COUNT], struct diag *d)
 {
     memset(f, 0, sizeof *f);
     f->k = constants_of(s);
     f->effects = effects;
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
-                  generic);
+                  s->numerics.kernel == KERNEL_GENERIC);
     f->threads = thread_count();
     f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->sweeps->tile_size, "candidate tiles", d);
     if (!f->tiles) return ERR_MEMORY;

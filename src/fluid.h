@@ -68,10 +68,9 @@ struct fluid {
     struct fluid_extremes extremes;
 };
 
-/* Chooses the kernel and makes room for lanes and tiles. `generic` takes the unstamped kernel. */
+/* Chooses the kernel and makes room for lanes and tiles. */
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
-                      const struct particles kinds[KIND_COUNT], bool generic, struct diag *d)
-    SPHFSI_CHECKED;
+                      const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
 
 /* After sorting: finds the cells of walls and solids that have fluid within reach. */
 void fluid_find_near(struct fluid *f, const struct cells *c);

@@ -161,7 +161,7 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_VOLUME][place] = (real)(f->k.mass / f->k.rho0 * square(inv_h) / (1 + p->dens[i]));
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
-    if (!solid) return;
+    if (!p->fx) return;
     const struct receiver s = {vset(x), vset(y), vset(0), vset(0), vset(out[LANE_P][place]), vset(0), vset(0)};
     double force[2];
     fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);

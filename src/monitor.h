@@ -1,39 +1,21 @@
 /* SPDX-License-Identifier: MIT
- * The bookkeeping of physics: energies, momentum, extremes, and the guards that stop a run whose
- * numbers are no longer sound. */
+ * Guards: limits beyond which a state is not sound. */
 #ifndef SPHFSI_MONITOR_H
 #define SPHFSI_MONITOR_H
 
 #include "base.h"
 
-/* One row of ledger.csv. Energies J/m, momentum N s/m, mass kg/m (per depth). */
-struct ledger {
-    double time, kinetic, potential, internal, elastic, hourglass, dissipated;
-    double momentum_x, momentum_y, mass, dens_extreme, det_low, dt;
-};
-
-/* The columns of struct ledger with their units, in order: LEDGER(name, unit, meaning). */
-#define LEDGER_COLUMNS(LEDGER)                                                                    \
-    LEDGER(time, "s", "simulated time")                                                           \
-    LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                               \
-    LEDGER(potential, "J_per_m", "potential energy in gravity, from the origin")                  \
-    LEDGER(internal, "J_per_m", "compression energy of the fluid")                                \
-    LEDGER(elastic, "J_per_m", "strain energy of the solid")                                      \
-    LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                 \
-    LEDGER(dissipated, "J_per_m", "energy at the start and work of walls, less all that is left") \
-    LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                              \
-    LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                              \
-    LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                           \
-    LEDGER(dens_extreme, "1", "largest |rho/rho0 - 1| of the fluid now")                          \
-    LEDGER(det_low, "1", "smallest det F now")                                                    \
-    LEDGER(dt, "s", "last time step")
-
-/* Limits beyond which a state is not sound. */
 struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
-    double speed_limit; /* m/s, a fraction of c0 above which weak compressibility is lost */
-    double step_limit;  /* s, a step below this has collapsed */
+    double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
+    double step_limit;  /* s: a step below this has collapsed */
     bool warned_speed;
 };
+
+struct simulation;
+
+/* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time, quantity
+ * and likely cause; warns once where trouble is near. */
+enum err monitor_check(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -17,6 +17,7 @@ enum group {
     G_REFERENCE = 1 << 7,   /* solid, moving walls */
     G_SOLID = 1 << 8,       /* solid */
     G_COUPLED = 1 << 9,     /* solid that meets fluid */
+    G_FORCE = 1 << 10,      /* solid that meets fluid, moving walls */
 };
 
 enum keep { KEEP_STATE, KEEP_DERIVED };

@@ -59,6 +59,7 @@ struct scene_section_common {
 enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
+enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
 enum plane { PLANE_STRAIN, PLANE_STRESS };

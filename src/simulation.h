@@ -7,6 +7,7 @@
 #include "cells.h"
 #include "effects.h"
 #include "fluid.h"
+#include "ledger.h"
 #include "monitor.h"
 #include "particles.h"
 #include "scene.h"
@@ -50,6 +51,7 @@ struct simulation {
     double dt_solid;                  /* stable step of the solid times its safety, s */
     int substeps;                     /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
+    double speed2;                    /* of the fastest particle of any kind, squared, (m/s)^2 */
     struct guard guard;
 };
 
@@ -74,8 +76,8 @@ void simulation_refresh(struct simulation *s);
 /* Energy, momentum and extremes now; calls simulation_refresh. */
 struct ledger simulation_ledger(struct simulation *s);
 
-/* Hash of every STATE field and state scalar. */
-uint64_t simulation_hash(const struct simulation *s);
+/* Hash of every STATE field and state scalar; calls simulation_refresh. */
+uint64_t simulation_hash(struct simulation *s);
 
 /* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
 double simulation_pressure_at(const struct simulation *s, double x, double y);

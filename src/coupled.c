@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT
+ * What both integrators share: evaluations with moving walls, solid sub-steps within a fluid step. */
+#include <math.h>
+
+#include "integrators.h"
+
+double phase_add(struct simulation *s, enum phase phase, double since)
+{
+    const double now = wall_clock();
+    s->phase_seconds[phase] += now - since;
+    return now;
+}
+
+static void move_walls(struct simulation *s, double time)
+{
+    const struct scene *const scene = s->scene;
+    struct particles *const p = &s->kind[KIND_WALL];
+    struct motion_state state[SCENE_MAX_SECTIONS];
+    bool moves[SCENE_MAX_SECTIONS];
+    for (int k = 0; k < scene->n_wall; k++) {
+        const int motion = scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
+        moves[k] = motion >= 0;
+        if (moves[k]) state[k] = motion_at(scene, motion, time);
+    }
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        if (!moves[p->body[i]]) continue;
+        const struct motion_state *const m = &state[p->body[i]];
+        p->x[i] = p->X[i] + m->d[0];
+        p->y[i] = p->Y[i] + m->d[1];
+        p->vx[i] = m->v[0];
+        p->vy[i] = m->v[1];
+        p->ax[i] = m->a[0];
+        p->ay[i] = m->a[1];
+    }
+}
+
+void evaluate_fluid(struct simulation *s, double time)
+{
+    if (s->effects & FX_MOTION) move_walls(s, time);
+    double seconds[3] = {0};
+    fluid_evaluate(&s->fluid, s->kind, &s->cells, seconds);
+    s->phase_seconds[PHASE_lanes] += seconds[0];
+    s->phase_seconds[PHASE_wall] += seconds[1];
+    s->phase_seconds[PHASE_fluid] += seconds[2];
+    s->state.evaluations++;
+}
+
+void place_solid(struct particles *p)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] = p->X[i] + p->ux[i];
+        p->y[i] = p->Y[i] + p->uy[i];
+    }
+}
+
+void advance_solid(struct simulation *s, double dt, int n, bool centred)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x0[i] = p->ux[i];
+        p->y0[i] = p->uy[i];
+        p->vx0[i] = p->vx[i];
+        p->vy0[i] = p->vy[i];
+    }
+    solid_advance(&s->solid, p, dt / n, n, centred);
+    s->substeps = n;
+    s->state.solid_substeps += n;
+    s->state.solid_evaluations += n;
+    place_solid(p);
+    const double per_dt = 1 / dt;
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt;
+        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt;
+        p->ax[i] = (p->vx[i] - p->vx0[i]) * per_dt;
+        p->ay[i] = (p->vy[i] - p->vy0[i]) * per_dt;
+    }
+}
+
+/* Steps of a lone solid that are taken between two looks at its state. */
+enum { SOLID_BATCH = 64 };
+
+static void solid_symplectic(struct simulation *s, double dt)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    solid_stress(&s->solid, p);
+    solid_forces(&s->solid, p);
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x0[i] = p->ux[i];
+        p->y0[i] = p->uy[i];
+        p->vx0[i] = p->vx[i];
+        p->vy0[i] = p->vy[i];
+        p->ux[i] += 0.5 * dt * p->vx[i]; /* Eq. 22 */
+        p->uy[i] += 0.5 * dt * p->vy[i];
+        p->vx[i] += 0.5 * dt * p->sx[i];
+        p->vy[i] += 0.5 * dt * p->sy[i];
+    }
+    solid_stress(&s->solid, p);
+    solid_forces(&s->solid, p);
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
+        p->vy[i] = p->vy0[i] + dt * p->sy[i];
+        p->ux[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]);
+        p->uy[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
+    }
+    s->state.solid_evaluations += 2;
+}
+
+void solid_only_step(struct simulation *s, double t_limit)
+{
+    struct state *const st = &s->state;
+    const double start = wall_clock();
+    for (int k = 0; k < BOUND_COUNT; k++)
+        s->dt_bound[k] = (double)INFINITY;
+    const double fixed = s->scene->numerics.fixed_step;
+    s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
+    const double bound = fixed > 0 ? fixed : s->dt_solid;
+    const double left = t_limit - st->time, steps = ceil(left / bound);
+    const bool hits = steps <= SOLID_BATCH;
+    const int n = hits ? (int)max2(1, steps) : SOLID_BATCH;
+    /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
+    const double dt = hits ? left / n : bound;
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
+        for (int k = 0; k < n; k++)
+            solid_symplectic(s, dt);
+    } else {
+        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
+        st->solid_evaluations += n;
+    }
+    place_solid(&s->kind[KIND_SOLID]);
+    phase_add(s, PHASE_solid, start);
+
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->dt = dt;
+    st->time = hits ? t_limit : st->time + n * dt;
+    st->steps += n;
+    st->solid_substeps += n;
+    st->particle_steps += n * s->kind[KIND_SOLID].n;
+    st->bound_steps[dt < bound ? BOUND_output : fixed > 0 ? BOUND_fixed : BOUND_solid] += n;
+    s->substeps = 1;
+}

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ * The time integrators of Sec. 2.4, each one step of fluid, walls and solid. */
+#ifndef SPHFSI_INTEGRATORS_H
+#define SPHFSI_INTEGRATORS_H
+
+#include "simulation.h"
+
+/* Eqs. 22-24: predictor-corrector. */
+void symplectic_step(struct simulation *s, double t_limit);
+/* Eqs. 25-27: Verlet for the fluid, semi-implicit Euler for the solid. */
+void verlet_step(struct simulation *s, double t_limit);
+/* A solid alone: many steps at once. */
+void solid_only_step(struct simulation *s, double t_limit);
+
+/* One evaluation of the fluid's rates and of the fluid's force on the solid, with walls where they are
+ * at `time`. */
+void evaluate_fluid(struct simulation *s, double time);
+
+/* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
+ * solid's mean velocity and acceleration over the step. */
+void advance_solid(struct simulation *s, double dt, int n, bool centred);
+
+/* x = X + u for the solid. */
+void place_solid(struct particles *p);
+
+/* Adds the time since `since` to a phase and returns now. */
+double phase_add(struct simulation *s, enum phase phase, double since);
+
+#endif

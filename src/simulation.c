@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT */
+#include "simulation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "eos.h"
+#include "integrators.h"
+#include "smoothing.h"
+#include "timestep.h"
+
+const char *const phase_names[PHASE_COUNT] = {
+#define PHASE(name, meaning) #name,
+#include "phases.def"
+#undef PHASE
+};
+const char *const bound_names[BOUND_COUNT] = {
+#define BOUND(name, source) #name,
+#include "bounds.def"
+#undef BOUND
+};
+const char *const bound_sources[BOUND_COUNT] = {
+#define BOUND(name, source) source,
+#include "bounds.def"
+#undef BOUND
+};
+
+/* Points into particles at rest. */
+static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id, struct diag *d)
+{
+    const struct scene_points *const points = &s->scene->points[kind];
+    const unsigned groups = effects_groups(s->effects, kind, s->scene->top.integrator);
+    struct particles *const p = &s->kind[kind];
+    memset(p, 0, sizeof *p);
+    if (!groups || points->n == 0) return ERR_OK;
+    TRY(particles_create(p, &s->arena, points->n, groups, kind_names[kind], d));
+    p->n = points->n;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] = points->x[i];
+        p->y[i] = points->y[i];
+        p->id[i] = first_id + i;
+        p->body[i] = points->body[i];
+        if (p->X) p->X[i] = points->x[i];
+        if (p->Y) p->Y[i] = points->y[i];
+        if (p->free) p->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
+    }
+    return ERR_OK;
+}
+
+static double expr_or(const struct expr *e, double x, double y, double otherwise)
+{
+    return e ? scene_expr_at(e, x, y) : otherwise;
+}
+
+static void start_fluid(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_fluid *const f = &s->scene->fluid[p->body[i]];
+        const double x = p->x[i], y = p->y[i];
+        /* Hydrostatic start below the free surface. */
+        const double depth = isnan(f->surface) ? 0 : max2(0, f->surface - y);
+        const double pressure =
+            expr_or(f->pressure.e[0], x, y, -s->scene->rho0 * s->scene->top.gravity[1] * depth);
+        p->dens[i] = eos_dens(pressure, s->scene->rho0, s->scene->c0);
+        p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
+        p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
+        if (!p->vx_old) continue;
+        p->vx_old[i] = p->vx[i];
+        p->vy_old[i] = p->vy[i];
+        p->dens_old[i] = p->dens[i];
+    }
+}
+
+static void start_solid(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_solid *const b = &s->scene->solid[p->body[i]];
+        p->vx[i] = p->free[i] * expr_or(b->velocity.e[0], p->X[i], p->Y[i], 0);
+        p->vy[i] = p->free[i] * expr_or(b->velocity.e[1], p->X[i], p->Y[i], 0);
+        if (!p->wx) continue;
+        p->wx[i] = p->vx[i];
+        p->wy[i] = p->vy[i];
+    }
+}
+
+/* Sub-steps pay where the solid's step is the smaller one. */
+static void choose_rate(struct simulation *s)
+{
+    if (!(s->effects & FX_COUPLING)) return;
+    const int wish = s->scene->numerics.multirate;
+    const bool binds = s->dt_solid < timestep_fluid_limit(s);
+    if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
+}
+
+static void set_guards(struct simulation *s)
+{
+    s->guard = (struct guard){
+        .dens_limit = 0.3,
+        .speed_limit = s->effects & FX_FLUID ? s->scene->c0 : (double)INFINITY,
+        .step_limit = 1e-4 * (s->effects & FX_FLUID ? timestep_fluid_limit(s) : s->dt_solid),
+    };
+}
+
+/* Speed of the fastest particle of one kind, squared. */
+static double fastest(const struct particles *p)
+{
+    double top = 0;
+#pragma omp parallel for schedule(static) reduction(max : top)
+    for (int64_t i = 0; i < p->n; i++)
+        top = max2(top, p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+    return top;
+}
+
+static void find_speed(struct simulation *s)
+{
+    s->speed2 = fastest(&s->kind[KIND_FLUID]);
+    if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
+    if (s->effects & FX_MOTION) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_WALL]));
+}
+
+/* Energy that a fluid particle carries, J/m. */
+static double energy_of(const struct simulation *s, const struct particles *p, int64_t i)
+{
+    const struct fluid_constants *const k = &s->fluid.k;
+    return k->mass * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
+                      k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+}
+
+/* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
+static enum err sort_particles(struct simulation *s, struct diag *d)
+{
+    struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
+    for (int64_t i = fluid->n - lost; i < fluid->n; i++)
+        s->state.lost_energy += energy_of(s, fluid, i);
+    fluid->n -= lost;
+    s->state.lost += lost;
+    if ((s->effects & FX_WALL) && ((s->effects & FX_MOTION) || s->state.sorts == 0))
+        cells_sort(&s->cells, KIND_WALL, &s->kind[KIND_WALL]);
+    if (s->effects & FX_COUPLING) {
+        cells_sort(&s->cells, KIND_SOLID, solid);
+        /* Those that have lost touch with the fluid are not visited any more. */
+        memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
+        memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
+        memset(solid->p, 0, (size_t)solid->n * sizeof *solid->p);
+    }
+    fluid_find_near(&s->fluid, &s->cells);
+    s->state.drift = 0;
+    s->state.sorts++;
+    const int32_t crowd = fluid_crowding(&s->cells);
+    if (crowd > CELL_CAPACITY)
+        return diag_fail(d, ERR_GUARD,
+                         "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some ten "
+                         "belong: the run is unstable; a smaller cfl or another sound_speed may help",
+                         s->state.time, crowd, s->cells.side[0]);
+    return ERR_OK;
+}
+
+static double skin_length(const struct simulation *s)
+{
+    return min2(s->cells.side[0], s->cells.side[1]) - KERNEL_REACH * s->fluid.k.h;
+}
+
+/* Whether the next step might carry a pair out of the cells' reach unseen. */
+static bool sorting_due(const struct simulation *s)
+{
+    const double ahead = timestep_fluid_limit(s) * sqrt(s->speed2) * 1.5;
+    return 2 * (s->state.drift + ahead) > skin_length(s);
+}
+
+static enum err create_fluid(struct simulation *s, struct diag *d)
+{
+    const struct scene *const scene = s->scene;
+    const double reach = (KERNEL_REACH + scene->numerics.skin) * scene->h;
+    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, s->kind, d));
+    TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, d));
+    start_fluid(s);
+    return ERR_OK;
+}
+
+static enum err build(struct simulation *s, struct diag *d)
+{
+    int64_t id = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        TRY(fill_kind(s, (enum kind)kind, id, d));
+        id += s->kind[kind].n;
+    }
+    if (s->effects & FX_FLUID) TRY(create_fluid(s, d));
+    if (s->effects & FX_SOLID) {
+        TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
+        start_solid(s);
+        solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
+        s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step;
+    }
+    choose_rate(s);
+    set_guards(s);
+    find_speed(s);
+    if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
+    const struct ledger start = simulation_ledger(s);
+    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
+    s->state.det_low = 1;
+    return ERR_OK;
+}
+
+enum err simulation_create(struct simulation *s, const struct scene *scene, struct diag *d)
+{
+    memset(s, 0, sizeof *s);
+    s->scene = scene;
+    s->effects = effects_of_scene(scene);
+    const enum err e = build(s, d);
+    if (e) simulation_free(s);
+    return e;
+}
+
+void simulation_free(struct simulation *s)
+{
+    arena_free(&s->arena);
+}
+
+/* Work that moving walls have done on the fluid in the last step. */
+static void add_wall_work(struct simulation *s)
+{
+    const struct particles *const p = &s->kind[KIND_WALL];
+    double power = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        power -= p->fx[i] * p->vx[i] + p->fy[i] * p->vy[i];
+    s->state.wall_work += s->state.dt * power;
+}
+
+/* Size of the impulse that fluid and structure have exchanged in the last step. */
+static void add_exchange(struct simulation *s)
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    double fx = 0, fy = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        fx += p->fx[i];
+        fy += p->fy[i];
+    }
+    s->state.exchanged += s->state.dt * sqrt(fx * fx + fy * fy);
+}
+
+enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
+{
+    if (!(s->effects & FX_FLUID)) {
+        solid_only_step(s, t_limit);
+        find_speed(s);
+        return monitor_check(s, d);
+    }
+    double clock = wall_clock();
+    if (sorting_due(s)) TRY(sort_particles(s, d));
+    phase_add(s, PHASE_sort, clock);
+    const double speed2_before = s->speed2;
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
+        symplectic_step(s, t_limit);
+    else
+        verlet_step(s, t_limit);
+    clock = wall_clock();
+    find_speed(s);
+    s->state.drift += s->state.dt * sqrt(max2(speed2_before, s->speed2));
+    if (s->effects & FX_MOTION) add_wall_work(s);
+    if (s->effects & FX_COUPLING) add_exchange(s);
+    const enum err e = monitor_check(s, d);
+    phase_add(s, PHASE_update, clock);
+    return e;
+}
+
+enum err simulation_resume(struct simulation *s, struct diag *d)
+{
+    if (s->effects & FX_FLUID) {
+        for (int kind = 0; kind < KIND_COUNT; kind++)
+            if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
+                cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
+        fluid_find_near(&s->fluid, &s->cells);
+        if (fluid_crowding(&s->cells) > CELL_CAPACITY)
+            return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
+                             CELL_CAPACITY);
+    }
+    find_speed(s);
+    return ERR_OK;
+}
+
+void simulation_refresh(struct simulation *s)
+{
+    if (s->effects & FX_FLUID) {
+        const double seconds[3] = {s->phase_seconds[PHASE_lanes], s->phase_seconds[PHASE_wall],
+                                   s->phase_seconds[PHASE_fluid]};
+        evaluate_fluid(s, s->state.time);
+        s->state.evaluations--;
+        s->phase_seconds[PHASE_lanes] = seconds[0];
+        s->phase_seconds[PHASE_wall] = seconds[1];
+        s->phase_seconds[PHASE_fluid] = seconds[2];
+    }
+    if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+}
+
+uint64_t simulation_hash(struct simulation *s)
+{
+    simulation_refresh(s);
+    uint64_t h = 0xcbf29ce484222325u;
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        h = particles_hash(&s->kind[kind], h);
+    const unsigned char *const bytes = (const unsigned char *)&s->state;
+    for (size_t k = 0; k < sizeof s->state; k++)
+        h = (h ^ bytes[k]) * 0x100000001b3u;
+    return h;
+}
+
+double simulation_pressure_at(const struct simulation *s, double x, double y)
+{
+    const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double h = s->fluid.k.h;
+    const int cx = (int)floor((x - s->cells.lower[0]) / s->cells.side[0]);
+    const int cy = (int)floor((y - s->cells.lower[1]) / s->cells.side[1]);
+    double sum_w = 0, sum_p = 0;
+    for (int ny = cy - 1; ny <= cy + 1; ny++) {
+        for (int nx = cx - 1; nx <= cx + 1; nx++) {
+            if (nx < 0 || nx >= s->cells.nx || ny < 0 || ny >= s->cells.ny) continue;
+            const int32_t cell = ny * s->cells.nx + nx;
+            for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+                const double w = kernel_w(hypot(p->x[i] - x, p->y[i] - y), h);
+                sum_w += w;
+                sum_p += w * eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
+            }
+        }
+    }
+    /* Below a tenth of a full neighbourhood the point is as good as dry. */
+    return sum_w * square(s->scene->top.dp) > 0.1 ? sum_p / sum_w : 0;
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#include "timestep.h"
+
+#include <math.h>
+
+double timestep_fluid_limit(const struct simulation *s)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    if (fixed > 0) return fixed;
+    return s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+}
+
+/* Eq. 28. */
+static void fluid_bounds(struct simulation *s)
+{
+    const double cfl = s->scene->numerics.cfl, h = s->fluid.k.h;
+    const struct fluid_extremes *top = &s->fluid.extremes;
+    s->dt_bound[BOUND_force] = cfl * sqrt(h / sqrt(max2(top->acceleration2, 1e-300)));
+    s->dt_bound[BOUND_acoustic] = cfl * h / (s->fluid.k.c0 + top->approach);
+}
+
+double timestep_choose(struct simulation *s, double t_limit, bool *hits)
+{
+    for (int k = 0; k < BOUND_COUNT; k++)
+        s->dt_bound[k] = (double)INFINITY;
+    if (s->effects & FX_FLUID) fluid_bounds(s);
+    if ((s->effects & FX_SOLID) && !(s->effects & FX_MULTIRATE)) s->dt_bound[BOUND_solid] = s->dt_solid;
+    const double fixed = s->scene->numerics.fixed_step;
+    if (fixed > 0)
+        for (int k = 0; k < BOUND_COUNT; k++)
+            s->dt_bound[k] = k == BOUND_fixed ? fixed : (double)INFINITY;
+
+    double dt = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        dt = min2(dt, s->dt_bound[k]);
+    /* Two equal steps rather than one full and a sliver. */
+    const double left = t_limit - s->state.time;
+    if (left < 2 * dt) s->dt_bound[BOUND_output] = left <= dt ? left : 0.5 * left;
+    *hits = left <= dt;
+    return min2(dt, s->dt_bound[BOUND_output]);
+}
+
+int timestep_substeps(const struct simulation *s, double dt)
+{
+    if (!(s->effects & FX_MULTIRATE)) return 1;
+    return (int)max2(1, ceil(dt / s->dt_solid));
+}
+
+void timestep_book(struct simulation *s, double dt, double t_limit, bool hits)
+{
+    struct state *const st = &s->state;
+    st->time = hits ? t_limit : st->time + dt;
+    st->dt = dt;
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->steps++;
+    st->particle_steps += s->kind[KIND_FLUID].n + s->kind[KIND_SOLID].n;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (s->dt_bound[k] <= dt) {
+            st->bound_steps[k]++;
+            break;
+        }
+}

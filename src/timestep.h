@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ * The time step and what bounds it (Sec. 2.5 of the paper; bounds.def). */
+#ifndef SPHFSI_TIMESTEP_H
+#define SPHFSI_TIMESTEP_H
+
+#include "simulation.h"
+
+/* Largest step the fluid can ever take, s: Eq. 28b at rest. */
+double timestep_fluid_limit(const struct simulation *s);
+
+/* Chooses the next step from the fluid's last evaluation and the solid's bound, ending no later than
+ * t_limit and exactly there where it comes within two steps of it. Fills s->dt_bound. `*hits` is set
+ * where the step ends at t_limit. */
+double timestep_choose(struct simulation *s, double t_limit, bool *hits);
+
+/* Solid sub-steps of a fluid step: 1 where each takes the same. */
+int timestep_substeps(const struct simulation *s, double dt);
+
+/* Books a step that has been taken: time, counters, statistics. */
+void timestep_book(struct simulation *s, double dt, double t_limit, bool hits);
+
+#endif
