@@ -17,9 +17,9 @@ void scene_place(const struct scene *s, int line, char place[PLACE_TEXT])
         snprintf(place, PLACE_TEXT, "--set");
         return;
     }
-    const size_t length = strlen(s->path), most = PLACE_TEXT - 40;
+    const size_t length = strlen(s->path), most = 270;
     const bool cut = length > most;
-    snprintf(place, PLACE_TEXT, "%s%s:%d", cut ? "..." : "", s->path + (cut ? length - most : 0),
+    snprintf(place, PLACE_TEXT, "%s%.270s:%d", cut ? "..." : "", s->path + (cut ? length - most : 0),
              line);
 }
 

@@ -77,7 +77,7 @@ void unit_dim_text(const char *unit, char text[DIM_TEXT]);
 /* What a name must not be, because it means something else already: NULL or the meaning. */
 const char *expr_reserved(const char *name);
 
-/* --- units.c --- */
+/* --- expr_units.c --- */
 /* Reads a unit ("kg/m^3") from the front of the text and applies it to q; false: no unit there, or
  * a wrong one, then `why` is written. */
 bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);

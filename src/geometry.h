@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Inside of scene_sample: regions (geometry.c), how they meet (overlap.c), what follows from the
- * points as a whole (extent.c). */
+ * Inside of scene_sample: regions (geometry.c), how they meet (geometry_overlap.c), what follows from the
+ * points as a whole (geometry_extent.c). */
 #ifndef SPHFSI_GEOMETRY_H
 #define SPHFSI_GEOMETRY_H
 
 #include "particles.h"
-#include "shape.h"
+#include "geometry_shape.h"
 
 /* What one section covers. Lattice point (i, j) is the centre origin + ((i, j) + 1/2) dp. */
 struct region {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "shape.h"
+#include "geometry_shape.h"
 
 #include "case.h"
 

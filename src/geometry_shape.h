@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Outlines of shapes, and which stretches of a horizontal line they cover. */
-#ifndef SPHFSI_SHAPE_H
-#define SPHFSI_SHAPE_H
+#ifndef SPHFSI_GEOMETRY_SHAPE_H
+#define SPHFSI_GEOMETRY_SHAPE_H
 
 #include "scene.h"
 
