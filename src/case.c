@@ -19,8 +19,8 @@ void scene_place(const struct scene *s, int line, char place[PLACE_TEXT])
     }
     const size_t length = strlen(s->path), most = 270;
     const bool cut = length > most;
-    snprintf(place, PLACE_TEXT, "%s%.270s:%d", cut ? "..." : "", s->path + (cut ? length - most : 0),
-             line);
+    snprintf(place, PLACE_TEXT, "%s%.270s:%d", cut ? "..." : "",
+             s->path + (cut ? length - most : 0), line);
 }
 
 enum err bad_line(struct reader *r, int line, const char *format, ...)
@@ -94,7 +94,8 @@ static enum err allocate_sections(struct reader *r)
     for (int id = 0; id < SECTION_COUNT; id++) {
         const struct section_info *info = &section_table[id];
         if (info->named) {
-            void *array = arena_alloc(&s->arena, (size_t)count[id], info->size, "sections", r->diag);
+            void *array =
+                arena_alloc(&s->arena, (size_t)count[id], info->size, "sections", r->diag);
             if (!array) return ERR_MEMORY;
             memcpy((char *)s + info->offset, &array, sizeof array);
             memcpy((char *)s + info->count_offset, &count[id], sizeof count[id]);
@@ -162,12 +163,17 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 
-/* Inherited pressure gives way to a surface, and the other way round. */
-static void replace_rival(struct scene *s, int id, int index, const char *key)
+/* An inherited pressure gives way to a surface that is given, and the other way round. */
+static void drop_rivals(struct reader *r, int section)
 {
-    if (id != SECTION_fluid) return;
-    if (strcmp(key, "surface") == 0) s->fluid[index].pressure.e[0] = NULL;
-    if (strcmp(key, "pressure") == 0) s->fluid[index].surface = NAN;
+    const struct case_section *cs = &r->sections[section];
+    if (cs->id != SECTION_fluid) return;
+    struct scene_fluid *f = &r->scene->fluid[cs->index];
+    for (int k = 0; k < r->n_entries; k++) {
+        if (r->entries[k].section != section) continue;
+        if (strcmp(r->entries[k].key, "surface") == 0) f->pressure.e[0] = NULL;
+        if (strcmp(r->entries[k].key, "pressure") == 0) f->surface = NAN;
+    }
 }
 
 static enum err read_section(struct reader *r, int section)
@@ -175,6 +181,7 @@ static enum err read_section(struct reader *r, int section)
     const struct case_section *cs = &r->sections[section];
     if (cs->id == SECTION_constants) return ERR_OK;
     TRY(inherit(r, section));
+    drop_rivals(r, section);
     const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
     void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
     const struct entry *given[PARAM_COUNT] = {NULL};
@@ -188,7 +195,6 @@ static enum err read_section(struct reader *r, int section)
             return bad_entry(r, e, "%s is given already, in line %d", e->key, (*before)->line);
         *before = e;
         if (inherited && strcmp(e->key, "like") == 0) continue;
-        replace_rival(r->scene, cs->id, cs->index, e->key);
         TRY(case_value(r, e, p, target));
     }
     return ERR_OK;
@@ -207,11 +213,13 @@ static enum err check_needed(struct reader *r)
             double value;
             memcpy(&value, section + p->offset, sizeof value);
             if (!isnan(value)) continue;
+            char unit[40] = "";
+            if (strcmp(p->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", p->unit);
             if (cs->id == SECTION_top)
-                return bad_line(r, 1, "`%s` is missing at the top of the file: %s (%s)", p->key,
-                                p->meaning, p->unit);
-            return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s (%s)", section_table[cs->id].word,
-                            cs->name, p->key, p->meaning, p->unit);
+                return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", p->key,
+                                p->meaning, unit);
+            return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word,
+                            cs->name, p->key, p->meaning, unit);
         }
     }
     return ERR_OK;
@@ -224,8 +232,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
     TRY(case_all_constants(r));
-    for (int k = 0; k < r->n_sections; k++)
-        TRY(read_section(r, k));
+    for (int k = 0; k < r->n_sections; k++) TRY(read_section(r, k));
     TRY(check_needed(r));
     TRY(case_check(r));
     TRY(motion_load(r->scene, r->diag));
@@ -270,8 +277,7 @@ static enum err read_file(FILE *file, const char *path, char **text, struct diag
     const size_t length = strlen(*text);
     if (length == n) return ERR_OK;
     int line = 1;
-    for (size_t k = 0; k < length; k++)
-        line += (*text)[k] == '\n';
+    for (size_t k = 0; k < length; k++) line += (*text)[k] == '\n';
     return diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; a case file is plain text", path,
                      line);
 }

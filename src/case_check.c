@@ -29,20 +29,24 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
     const int line = f->common.line;
     *c0 = f->sound_speed > 0 ? f->sound_speed : least;
     if (*c0 == 0)
-        return bad_line(r, line, "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "
-                        "for Eq. 3", f->common.name);
+        return bad_line(r, line,
+                        "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "
+                        "for Eq. 3",
+                        f->common.name);
     if (*c0 > 1e7)
         return bad_line(r, line, "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above 1e7",
                         f->common.name, *c0);
     if (*c0 < least * (1 - 1e-9))
-        warn(r, line, "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3", f->common.name,
-             *c0, least);
+        warn(r, line, "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3",
+             f->common.name, *c0, least);
     if (f->pressure.e[0] && !isnan(f->surface))
         return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; one is to go",
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
-        warn(r, line, "[fluid %s] has a `surface`, but gravity has no vertical part: its pressure "
-             "starts at zero", f->common.name);
+        warn(r, line,
+             "[fluid %s] has a `surface`, but gravity has no vertical part: its pressure "
+             "starts at zero",
+             f->common.name);
     return ERR_OK;
 }
 
@@ -69,9 +73,11 @@ static enum err check_fluids(struct reader *r)
         };
         for (size_t j = 0; j < COUNT_OF(same); j++)
             if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
-                return bad_line(r, f->common.line, "[fluid %s] and [fluid %s] differ in `%s`: %g and "
-                                "%g; all fluid is of one kind", f->common.name, first->common.name,
-                                same[j].key, same[j].mine, same[j].its);
+                return bad_line(r, f->common.line,
+                                "[fluid %s] and [fluid %s] differ in `%s`: %g and "
+                                "%g; all fluid is of one kind",
+                                f->common.name, first->common.name, same[j].key, same[j].mine,
+                                same[j].its);
     }
     return ERR_OK;
 }
@@ -88,8 +94,8 @@ static enum err no_such(struct reader *r, int line, const char *what, const char
     }
     const char *word = section_table[kind].word;
     if (near.name)
-        return bad_line(r, line, "%s = %.60s: no [%s] of that name; did you mean `%s`?", what, given,
-                        word, near.name);
+        return bad_line(r, line, "%s = %.60s: no [%s] of that name; did you mean `%s`?", what,
+                        given, word, near.name);
     return bad_line(r, line, "%s = %.60s: no [%s] of that name", what, given, word);
 }
 
@@ -103,8 +109,7 @@ static enum err check_motions(struct reader *r)
         const struct scene_motion *m = &s->motion[k];
         const int line = m->common.line;
         bool used = false;
-        for (int w = 0; w < s->n_wall; w++)
-            used |= strcmp(s->wall[w].motion, m->common.name) == 0;
+        for (int w = 0; w < s->n_wall; w++) used |= strcmp(s->wall[w].motion, m->common.name) == 0;
         if (!used) warn(r, line, "[motion %s] moves no wall", m->common.name);
         if (!(m->start < m->stop))
             return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
@@ -126,8 +131,10 @@ static enum err check_probes(struct reader *r)
         const int line = p->common.line;
         if (p->quantity == PROBE_PRESSURE) {
             if (*p->body)
-                return bad_line(r, line, "[probe %s] measures pressure at a fixed point; `body` is to "
-                                "go", p->common.name);
+                return bad_line(r, line,
+                                "[probe %s] measures pressure at a fixed point; `body` is to "
+                                "go",
+                                p->common.name);
             if (s->n_fluid == 0)
                 return bad_line(r, line, "[probe %s] measures pressure, but there is no fluid",
                                 p->common.name);
@@ -136,7 +143,8 @@ static enum err check_probes(struct reader *r)
         if (!*p->body)
             return bad_line(r, line, "[probe %s] needs `body`, the solid it belongs to",
                             p->common.name);
-        if (scene_find_solid(s, p->body) < 0) return no_such(r, line, "body", p->body, SECTION_solid);
+        if (scene_find_solid(s, p->body) < 0)
+            return no_such(r, line, "body", p->body, SECTION_solid);
     }
     return ERR_OK;
 }
@@ -158,9 +166,10 @@ static enum err check_references(struct reader *r)
             found |= strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_';
         }
         if (!found)
-            return bad_line(r, line, "[reference %s] probe = %.80s: no probe has such a column; a "
-                            "column is PROBE_QUANTITY_UNIT, such as M1_dx_m", ref->common.name,
-                            ref->probe);
+            return bad_line(r, line,
+                            "[reference %s] probe = %.80s: no probe has such a column; a "
+                            "column is PROBE_QUANTITY_UNIT, such as M1_dx_m",
+                            ref->common.name, ref->probe);
         char path[4096 + SCENE_TEXT];
         FILE *file = scene_file(s, ref->file, path, sizeof path) ? fopen(path, "r") : NULL;
         if (!file)
@@ -176,7 +185,8 @@ enum err case_check(struct reader *r)
 {
     const struct scene *s = r->scene;
     if (s->n_fluid == 0 && s->n_solid == 0)
-        return bad_line(r, 1, "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
+        return bad_line(r, 1,
+                        "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
     TRY(check_fluids(r));
     TRY(check_motions(r));
     TRY(check_probes(r));

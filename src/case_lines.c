@@ -6,18 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
-static bool blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
+static bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
 static char *trim(char *text)
 {
-    while (blank(*text))
-        text++;
+    while (blank(*text)) text++;
     char *end = text + strlen(text);
-    while (end > text && blank(end[-1]))
-        *--end = '\0';
+    while (end > text && blank(end[-1])) *--end = '\0';
     return text;
 }
 
@@ -79,16 +74,17 @@ static enum err unknown_section(struct reader *r, int line, const char *word)
         nearest_offer(&near, word, section_table[id].word);
     if (near.name)
         return bad_line(r, line, "unknown section [%.60s]; did you mean [%s]?", word, near.name);
-    return bad_line(r, line, "unknown section [%.60s]; known: constants, numerics, domain, output, "
-                    "fluid, wall, solid, motion, probe, reference", word);
+    return bad_line(r, line,
+                    "unknown section [%.60s]; known: constants, numerics, domain, output, "
+                    "fluid, wall, solid, motion, probe, reference",
+                    word);
 }
 
 static enum err add_section(struct reader *r, int line, int id, const char *name)
 {
     const bool named = id != SECTION_constants && section_table[id].named;
     const char *const word = section_word(id);
-    if (named && !*name)
-        return bad_line(r, line, "[%s] needs a name: [%s NAME]", word, word);
+    if (named && !*name) return bad_line(r, line, "[%s] needs a name: [%s NAME]", word, word);
     if (!named && *name) return bad_line(r, line, "[%s] takes no name", word);
     if (named && (!is_name(name) || strlen(name) >= SCENE_NAME))
         return bad_line(r, line, "[%s %.70s]: a name has up to %d letters, digits, _ and -", word,
@@ -97,8 +93,8 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     for (int k = 0; k < r->n_sections; k++) {
         if (r->sections[k].id != id) continue;
         if (strcmp(r->sections[k].name, name) == 0)
-            return bad_line(r, line, "[%s%s%s] is there already, in line %d", word, named ? " " : "",
-                            name, r->sections[k].line);
+            return bad_line(r, line, "[%s%s%s] is there already, in line %d", word,
+                            named ? " " : "", name, r->sections[k].line);
         index++;
     }
     if (index == SCENE_MAX_SECTIONS)
@@ -115,8 +111,7 @@ static enum err read_header(struct reader *r, int line, char *text)
     if (*rest && *rest != '#') return bad_line(r, line, "text behind the section's `]`");
     *close = '\0';
     char *word = trim(text + 1), *name = word;
-    while (*name && !blank(*name))
-        name++;
+    while (*name && !blank(*name)) name++;
     if (*name) *name++ = '\0';
     const int id = find_section_id(word);
     if (id < 0) return unknown_section(r, line, word);
@@ -154,8 +149,7 @@ static enum err read_line(struct reader *r, int line, char *text)
 enum err case_split(struct reader *r, const char *text)
 {
     int n_lines = 1;
-    for (const char *c = text; *c; c++)
-        n_lines += *c == '\n';
+    for (const char *c = text; *c; c++) n_lines += *c == '\n';
     if (n_lines > CASE_MAX_LINES)
         return bad_line(r, CASE_MAX_LINES, "the case file has more than %d lines", CASE_MAX_LINES);
     const size_t room = (size_t)n_lines + 1;
@@ -206,8 +200,7 @@ static bool means_section(const struct case_section *s, const char *prefix)
     if (strcmp(s->name, prefix) == 0) return true;
     const size_t length = strlen(word);
     if (strncmp(prefix, word, length) || !blank(prefix[length])) return false;
-    while (blank(prefix[length]))
-        prefix++;
+    while (blank(prefix[length])) prefix++;
     return strcmp(prefix + length, s->name) == 0;
 }
 
@@ -236,7 +229,8 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
         meant++;
         if (!takes_key(r, k, e->key, &near)) continue;
         if (*target >= 0)
-            return bad_entry(r, e, "[%s %s] and [%s %s] both have `%s`; write the section's kind too",
+            return bad_entry(r, e,
+                             "[%s %s] and [%s %s] both have `%s`; write the section's kind too",
                              section_word(r->sections[*target].id), r->sections[*target].name,
                              section_word(s->id), s->name, e->key);
         *target = k;
@@ -256,8 +250,7 @@ static void put_entry(struct reader *r, const struct entry *e)
     int kept = 0;
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *old = &r->entries[k];
-        if (old->section != e->section || strcmp(old->key, e->key) != 0)
-            r->entries[kept++] = *old;
+        if (old->section != e->section || strcmp(old->key, e->key) != 0) r->entries[kept++] = *old;
     }
     r->n_entries = kept;
     r->entries[r->n_entries++] = *e;
@@ -270,8 +263,7 @@ static enum err apply_set(struct reader *r, const char *set)
     if (!copy) return ERR_MEMORY;
     strcpy(copy, set);
     for (const char *c = copy; *c; c++)
-        if ((unsigned char)*c < ' ' && *c != '\t')
-            return bad_entry(r, &e, "control byte %d", *c);
+        if ((unsigned char)*c < ' ' && *c != '\t') return bad_entry(r, &e, "control byte %d", *c);
     char *value = strchr(copy, '=');
     if (!value) return bad_entry(r, &e, "write key=value or section.key=value");
     *value++ = '\0';
@@ -298,16 +290,13 @@ enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
     if (n_sets <= 0) return ERR_OK;
     const size_t room = (size_t)r->n_entries + (size_t)n_sets;
     const size_t sections = (size_t)r->n_sections + SECTION_COUNT;
-    struct entry *entries =
-        arena_alloc(&r->temp, room, sizeof *entries, "case file", r->diag);
-    struct case_section *more =
-        arena_alloc(&r->temp, sections, sizeof *more, "case file", r->diag);
+    struct entry *entries = arena_alloc(&r->temp, room, sizeof *entries, "case file", r->diag);
+    struct case_section *more = arena_alloc(&r->temp, sections, sizeof *more, "case file", r->diag);
     if (!entries || !more) return ERR_MEMORY;
     memcpy(entries, r->entries, (size_t)r->n_entries * sizeof *entries);
     memcpy(more, r->sections, (size_t)r->n_sections * sizeof *more);
     r->entries = entries;
     r->sections = more;
-    for (int k = 0; k < n_sets; k++)
-        TRY(apply_set(r, sets[k]));
+    for (int k = 0; k < n_sets; k++) TRY(apply_set(r, sets[k]));
     return ERR_OK;
 }

@@ -32,8 +32,10 @@ static enum err read_box(struct reader *r, const struct entry *e, struct slice t
     double v[4];
     TRY(read_point(r, e, text, 4, v));
     if (!(v[0] < v[2]) || !(v[1] < v[3]))
-        return bad_value(r, e, "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g "
-                         "to %g m", v[0], v[2], v[1], v[3]);
+        return bad_value(r, e,
+                         "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g "
+                         "to %g m",
+                         v[0], v[2], v[1], v[3]);
     shape->pt[0][0] = v[0];
     shape->pt[0][1] = v[1];
     shape->pt[1][0] = v[2];
@@ -114,8 +116,8 @@ static enum err read_thickness(struct reader *r, const struct entry *e, struct s
 static enum err read_shape(struct reader *r, const struct entry *e, struct slice text,
                            struct shape *shape)
 {
-    const int needed[] = {[SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3,
-                          [SHAPE_POLYLINE] = 2};
+    const int needed[] = {
+        [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
     const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
     if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, &shape->size));
     shape->n = listed ? slice_count(text, ';') : needed[shape->kind];
@@ -123,8 +125,7 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
     if (shape->n < needed[shape->kind])
         return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
                          needed[shape->kind], shape->n == 1 ? "is" : "are", shape->n);
-    if (shape->n > CASE_MAX_POINTS)
-        return bad_value(r, e, "more than %d points", CASE_MAX_POINTS);
+    if (shape->n > CASE_MAX_POINTS) return bad_value(r, e, "more than %d points", CASE_MAX_POINTS);
     shape->pt =
         arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
     if (!shape->pt) return ERR_MEMORY;
@@ -136,8 +137,10 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
 
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
 {
-    static const char *const words[] = {[SHAPE_BOX] = "box", [SHAPE_POLYGON] = "polygon",
-                                        [SHAPE_POLYLINE] = "polyline", [SHAPE_CIRCLE] = "circle"};
+    static const char *const words[] = {[SHAPE_BOX] = "box",
+                                        [SHAPE_POLYGON] = "polygon",
+                                        [SHAPE_POLYLINE] = "polyline",
+                                        [SHAPE_CIRCLE] = "circle"};
     const size_t length = strcspn(e->value, " \t");
     int kind = -1;
     for (int k = 0; k < (int)COUNT_OF(words); k++)
@@ -149,8 +152,8 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     const char *start = e->value + length + strspn(e->value + length, " \t");
     TRY(read_shape(r, e, (struct slice){start, strlen(start)}, &shape));
     if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: move to twice the room */
-        struct shape *item = arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item,
-                                         "shapes", r->diag);
+        struct shape *item =
+            arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);
         if (!item) return ERR_MEMORY;
         if (list->n) memcpy(item, list->item, (size_t)list->n * sizeof *item);
         list->item = item;

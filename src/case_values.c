@@ -8,10 +8,7 @@
 
 enum { MAX_CONSTANT_DEPTH = 32 };
 
-static struct slice whole(const char *text)
-{
-    return (struct slice){text, strlen(text)};
-}
+static struct slice whole(const char *text) { return (struct slice){text, strlen(text)}; }
 
 static struct slice trimmed(struct slice s)
 {
@@ -19,8 +16,7 @@ static struct slice trimmed(struct slice s)
         s.at++;
         s.length--;
     }
-    while (s.length && (s.at[s.length - 1] == ' ' || s.at[s.length - 1] == '\t'))
-        s.length--;
+    while (s.length && (s.at[s.length - 1] == ' ' || s.at[s.length - 1] == '\t')) s.length--;
     return s;
 }
 
@@ -46,8 +42,7 @@ int slice_count(struct slice text, char separator)
 {
     struct slice piece;
     int n = 0;
-    while (n <= CASE_MAX_POINTS && slice_next(&text, separator, &piece))
-        n++;
+    while (n <= CASE_MAX_POINTS && slice_next(&text, separator, &piece)) n++;
     return n;
 }
 
@@ -59,7 +54,8 @@ static enum err collect_constant(struct reader *r, const struct entry *e)
     if (meaning)
         return bad_entry(r, e, "a constant cannot be named `%s`: that is %s", e->key, meaning);
     if (param_find(SECTION_top, e->key))
-        return bad_entry(r, e, "a constant cannot be named `%s`: that is a key at the top of the file",
+        return bad_entry(r, e,
+                         "a constant cannot be named `%s`: that is a key at the top of the file",
                          e->key);
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *old = r->constants[k].entry;
@@ -153,8 +149,8 @@ static bool find_name(void *context, const char *name, struct quantity *q, char 
 enum err case_all_constants(struct reader *r)
 {
     struct scene *s = r->scene;
-    s->constant = arena_alloc(&s->arena, (size_t)r->n_constants, sizeof *s->constant, "constants",
-                              r->diag);
+    s->constant =
+        arena_alloc(&s->arena, (size_t)r->n_constants, sizeof *s->constant, "constants", r->diag);
     if (!s->constant) return ERR_MEMORY;
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *e = r->constants[k].entry;
@@ -236,8 +232,7 @@ static enum err read_choice(struct reader *r, const struct entry *e, const struc
         }
         nearest_offer(&near, e->value, names[k]);
     }
-    if (near.name)
-        return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, p->choices);
+    if (near.name) return bad_value(r, e, "did you mean `%s`? Known: %s", near.name, p->choices);
     return bad_value(r, e, "unknown choice; known: %s", p->choices);
 }
 
@@ -248,8 +243,7 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
         text.at++;
         text.length -= 2;
     }
-    if (text.length >= SCENE_TEXT)
-        return bad_value(r, e, "longer than %d bytes", SCENE_TEXT - 1);
+    if (text.length >= SCENE_TEXT) return bad_value(r, e, "longer than %d bytes", SCENE_TEXT - 1);
     memset(value, 0, SCENE_TEXT);
     memcpy(value, text.at, text.length);
     return ERR_OK;
@@ -276,8 +270,7 @@ static enum err read_numbers(struct reader *r, const struct entry *e, const stru
     struct slice rest = whole(e->value), piece = rest;
     const int n = slice_count(rest, ',');
     if (n > CASE_MAX_POINTS) return bad_value(r, e, "more than %d numbers", CASE_MAX_POINTS);
-    list->value =
-        arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
+    list->value = arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
     if (!list->value) return ERR_MEMORY;
     for (list->n = 0; list->n < n && slice_next(&rest, ',', &piece); list->n++)
         TRY(case_number(r, e, piece, p->unit, &list->value[list->n]));
@@ -297,8 +290,8 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         struct dim dim;
-        const enum err err = expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why,
-                                          r->diag);
+        const enum err err =
+            expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
         if (err == ERR_INPUT) return bad_value(r, e, "%s", why);
         if (err) return err;
         TRY(check_dim(r, e, &dim, p->unit));

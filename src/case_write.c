@@ -41,8 +41,8 @@ static void write_reals(FILE *out, int n, const double *value)
 static void write_text(FILE *out, const char *text)
 {
     const size_t length = strlen(text);
-    const bool quoted = !length || strchr(text, '#') || strchr(" \t\"", text[0]) ||
-                        strchr(" \t", text[length - 1]);
+    const bool quoted =
+        !length || strchr(text, '#') || strchr(" \t\"", text[0]) || strchr(" \t", text[length - 1]);
     fprintf(out, quoted ? "\"%s\"" : "%s", text);
 }
 
@@ -108,8 +108,7 @@ static void relocate(const struct scene *s, const char *name, const char *path,
     size_t n = 0;
     seen[0] = '\0';
     for (const char *c = here + common; *c; c++)
-        if (*c == '/' && n < sizeof seen)
-            n += (size_t)snprintf(seen + n, sizeof seen - n, "../");
+        if (*c == '/' && n < sizeof seen) n += (size_t)snprintf(seen + n, sizeof seen - n, "../");
     if (n >= sizeof seen) return;
     const int end =
         snprintf(seen + n, sizeof seen - n, "%s%s", there + common, slash ? slash + 1 : name);
@@ -129,8 +128,7 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
     if (p->type == PARAM_NUMBERS && !list->n) return;
     if (p->type == PARAM_FIELD_EXPR && !field->e[0]) return;
     if (p->type == PARAM_SHAPES) {
-        for (int k = 0; k < shapes->n; k++)
-            write_shape(out, p->key, &shapes->item[k]);
+        for (int k = 0; k < shapes->n; k++) write_shape(out, p->key, &shapes->item[k]);
         return;
     }
     fprintf(out, "%s = ", p->key);

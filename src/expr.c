@@ -12,9 +12,27 @@
 #include <string.h>
 
 enum op_code {
-    OP_NUMBER, OP_X, OP_Y,
-    OP_ADD, OP_SUB, OP_MUL, OP_DIV, OP_POW, OP_MIN, OP_MAX, /* two operands, from OP_ADD on */
-    OP_NEG, OP_SQRT, OP_SIN, OP_COS, OP_TAN, OP_SINH, OP_COSH, OP_TANH, OP_EXP, OP_LOG, OP_ABS
+    OP_NUMBER,
+    OP_X,
+    OP_Y,
+    OP_ADD,
+    OP_SUB,
+    OP_MUL,
+    OP_DIV,
+    OP_POW,
+    OP_MIN,
+    OP_MAX, /* two operands, from OP_ADD on */
+    OP_NEG,
+    OP_SQRT,
+    OP_SIN,
+    OP_COS,
+    OP_TAN,
+    OP_SINH,
+    OP_COSH,
+    OP_TANH,
+    OP_EXP,
+    OP_LOG,
+    OP_ABS
 };
 
 struct op {
@@ -32,9 +50,9 @@ static const struct function {
     const char *name;
     enum op_code code;
 } functions[] = {
-    {"sqrt", OP_SQRT}, {"sin", OP_SIN},   {"cos", OP_COS},   {"tan", OP_TAN}, {"sinh", OP_SINH},
-    {"cosh", OP_COSH}, {"tanh", OP_TANH}, {"exp", OP_EXP},   {"log", OP_LOG}, {"abs", OP_ABS},
-    {"min", OP_MIN},   {"max", OP_MAX},
+    {"sqrt", OP_SQRT}, {"sin", OP_SIN},   {"cos", OP_COS},   {"tan", OP_TAN},
+    {"sinh", OP_SINH}, {"cosh", OP_COSH}, {"tanh", OP_TANH}, {"exp", OP_EXP},
+    {"log", OP_LOG},   {"abs", OP_ABS},   {"min", OP_MIN},   {"max", OP_MAX},
 };
 
 enum { MAX_OPS = 1024, MAX_STACK = 64, MAX_NESTING = 64 };
@@ -77,10 +95,7 @@ static void skip(struct compiler *c, size_t n)
     c->rest.length -= n;
 }
 
-static bool is_binary(enum op_code code)
-{
-    return code >= OP_ADD && code <= OP_MAX;
-}
+static bool is_binary(enum op_code code) { return code >= OP_ADD && code <= OP_MAX; }
 
 static double run_unary(enum op_code code, double a)
 {
@@ -250,7 +265,8 @@ static bool parse_number(struct compiler *c, struct dim *dim)
         if (!unit_read(&c->rest, &q, c->why)) {
             const size_t length = identifier_length(c->rest);
             if (c->why[0]) return false;
-            return say(c, "`%.*s` behind %s is no unit (units: m km cm mm um, s min ms us, kg g, N, "
+            return say(c,
+                       "`%.*s` behind %s is no unit (units: m km cm mm um, s min ms us, kg g, N, "
                        "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
                        (int)(length < 40 ? length : 40), c->rest.at, digits);
         }
@@ -435,10 +451,7 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
     return ERR_OK;
 }
 
-const char *expr_source(const struct expr *e)
-{
-    return e->source;
-}
+const char *expr_source(const struct expr *e) { return e->source; }
 
 double scene_expr_at(const struct expr *e, double x, double y)
 {

@@ -14,25 +14,34 @@ static const struct unit {
     double up, down;
     int m, kg, s;
 } units[] = {
-    {"m", 1, 1, 1, 0, 0},        {"km", 1e3, 1, 1, 0, 0},    {"cm", 1, 1e2, 1, 0, 0},
-    {"mm", 1, 1e3, 1, 0, 0},     {"um", 1, 1e6, 1, 0, 0},    {"s", 1, 1, 0, 0, 1},
-    {"min", 60, 1, 0, 0, 1},     {"ms", 1, 1e3, 0, 0, 1},    {"us", 1, 1e6, 0, 0, 1},
-    {"kg", 1, 1, 0, 1, 0},       {"g", 1, 1e3, 0, 1, 0},     {"N", 1, 1, 1, 1, -2},
-    {"Pa", 1, 1, -1, 1, -2},     {"kPa", 1e3, 1, -1, 1, -2}, {"MPa", 1e6, 1, -1, 1, -2},
-    {"GPa", 1e9, 1, -1, 1, -2},  {"Hz", 1, 1, 0, 0, -1},     {"kHz", 1e3, 1, 0, 0, -1},
-    {"rad", 1, 1, 0, 0, 0},      {"deg", 3.14159265358979323846, 180, 0, 0, 0},
+    {"m", 1, 1, 1, 0, 0},       {"km", 1e3, 1, 1, 0, 0},
+    {"cm", 1, 1e2, 1, 0, 0},    {"mm", 1, 1e3, 1, 0, 0},
+    {"um", 1, 1e6, 1, 0, 0},    {"s", 1, 1, 0, 0, 1},
+    {"min", 60, 1, 0, 0, 1},    {"ms", 1, 1e3, 0, 0, 1},
+    {"us", 1, 1e6, 0, 0, 1},    {"kg", 1, 1, 0, 1, 0},
+    {"g", 1, 1e3, 0, 1, 0},     {"N", 1, 1, 1, 1, -2},
+    {"Pa", 1, 1, -1, 1, -2},    {"kPa", 1e3, 1, -1, 1, -2},
+    {"MPa", 1e6, 1, -1, 1, -2}, {"GPa", 1e9, 1, -1, 1, -2},
+    {"Hz", 1, 1, 0, 0, -1},     {"kHz", 1e3, 1, 0, 0, -1},
+    {"rad", 1, 1, 0, 0, 0},     {"deg", 3.14159265358979323846, 180, 0, 0, 0},
 };
 
 static const struct {
     int m, kg, s;
     const char *text;
 } dimension_names[] = {
-    {0, 0, 0, "a pure number"},          {1, 0, 0, "a length (m)"},
-    {2, 0, 0, "an area (m^2)"},          {0, 0, 1, "a time (s)"},
-    {0, 1, 0, "a mass (kg)"},            {1, 0, -1, "a speed (m/s)"},
-    {1, 0, -2, "an acceleration (m/s^2)"}, {-3, 1, 0, "a density (kg/m^3)"},
-    {-1, 1, -2, "a pressure (Pa)"},      {0, 0, -1, "a frequency (Hz)"},
-    {1, 1, -2, "a force (N)"},           {-1, 0, 0, "an inverse length (1/m)"},
+    {0, 0, 0, "a pure number"},
+    {1, 0, 0, "a length (m)"},
+    {2, 0, 0, "an area (m^2)"},
+    {0, 0, 1, "a time (s)"},
+    {0, 1, 0, "a mass (kg)"},
+    {1, 0, -1, "a speed (m/s)"},
+    {1, 0, -2, "an acceleration (m/s^2)"},
+    {-3, 1, 0, "a density (kg/m^3)"},
+    {-1, 1, -2, "a pressure (Pa)"},
+    {0, 0, -1, "a frequency (Hz)"},
+    {1, 1, -2, "a force (N)"},
+    {-1, 0, 0, "an inverse length (1/m)"},
 };
 
 static const struct unit *find_unit(const char *name, size_t length)
@@ -43,10 +52,7 @@ static const struct unit *find_unit(const char *name, size_t length)
     return NULL;
 }
 
-bool unit_known(const char *name)
-{
-    return find_unit(name, strlen(name)) != NULL;
-}
+bool unit_known(const char *name) { return find_unit(name, strlen(name)) != NULL; }
 
 size_t identifier_length(struct slice text)
 {
@@ -64,8 +70,7 @@ static struct slice behind(struct slice text, size_t n)
 
 static struct slice without_space(struct slice text)
 {
-    while (text.length && (*text.at == ' ' || *text.at == '\t'))
-        text = behind(text, 1);
+    while (text.length && (*text.at == ' ' || *text.at == '\t')) text = behind(text, 1);
     return text;
 }
 
@@ -98,8 +103,7 @@ static void apply(struct quantity *q, const struct unit *u, double power)
 {
     if (power == floor(power)) {
         const double up = power > 0 ? u->up : u->down, down = power > 0 ? u->down : u->up;
-        for (int k = 0; k < (int)fabs(power); k++)
-            q->value = q->value * up / down;
+        for (int k = 0; k < (int)fabs(power); k++) q->value = q->value * up / down;
     } else {
         q->value *= pow(u->up / u->down, power);
     }

@@ -50,9 +50,10 @@ static void choose_lattice(struct sampler *g, struct region *region)
     if (!shifted) return;
     char place[PLACE_TEXT];
     scene_place(s, region->line, place);
-    diag_warn(g->diag, "%s: [solid %s] begins at (%.6g, %.6g), off the common lattice of dp = %.6g m; "
-              "its own lattice begins there", place, region->name, region->low[0], region->low[1],
-              dp);
+    diag_warn(g->diag,
+              "%s: [solid %s] begins at (%.6g, %.6g), off the common lattice of dp = %.6g m; "
+              "its own lattice begins there",
+              place, region->name, region->low[0], region->low[1], dp);
 }
 
 static double piece_area(const struct outline *o)
@@ -88,22 +89,27 @@ static enum err check_size(struct sampler *g)
     const double memory = pages > 0 && page > 0 ? pages * page : 1e18;
     const double bytes = total * bytes_per_particle;
     if (total > 1e9 || bytes > memory)
-        return diag_fail(g->diag, ERR_INPUT, "%s: dp = %g m makes about %.3g particles, %.3g GB; this "
-                         "machine has %.3g GB, and the most is 1e9 particles: a larger dp or smaller "
-                         "shapes are needed", g->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
+        return diag_fail(
+            g->diag, ERR_INPUT,
+            "%s: dp = %g m makes about %.3g particles, %.3g GB; this "
+            "machine has %.3g GB, and the most is 1e9 particles: a larger dp or smaller "
+            "shapes are needed",
+            g->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
     if (cells > max_cells)
-        return diag_fail(g->diag, ERR_INPUT, "%s: the shapes span more than %g cells of dp = %g m; a "
-                         "larger dp or smaller shapes are needed", g->scene->path, max_cells, dp);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: the shapes span more than %g cells of dp = %g m; a "
+                         "larger dp or smaller shapes are needed",
+                         g->scene->path, max_cells, dp);
     return ERR_OK;
 }
 
 static enum err add_region(struct sampler *g, enum kind kind, int body,
-                           const struct scene_section_common *common, const struct shape_list *shape,
-                           const struct shape_list *minus)
+                           const struct scene_section_common *common,
+                           const struct shape_list *shape, const struct shape_list *minus)
 {
     struct region *region = &g->regions[g->n_regions++];
-    *region = (struct region){.kind = kind, .body = body, .name = common->name,
-                              .line = common->line, .list = shape};
+    *region = (struct region){
+        .kind = kind, .body = body, .name = common->name, .line = common->line, .list = shape};
     if (shape->n == 0) {
         char place[PLACE_TEXT];
         scene_place(g->scene, common->line, place);
@@ -179,8 +185,7 @@ static void mark_row(struct sampler *g, const struct region *region, int64_t j, 
         const int64_t marked = mark(g, region, &region->add.item[k], y, 1);
         if (per_shape) per_shape[region->add.shape[k]] += marked;
     }
-    for (int k = 0; k < region->minus.n; k++)
-        mark(g, region, &region->minus.item[k], y, 0);
+    for (int k = 0; k < region->minus.n; k++) mark(g, region, &region->minus.item[k], y, 0);
 }
 
 static enum err prepare_rows(struct sampler *g)
@@ -209,21 +214,21 @@ static enum err prepare_rows(struct sampler *g)
 
 static enum err count_points(struct sampler *g, struct region *region)
 {
-    int64_t *per_shape = arena_alloc(&g->temp, (size_t)region->list->n, sizeof *per_shape,
-                                     "sampling", g->diag);
+    int64_t *per_shape =
+        arena_alloc(&g->temp, (size_t)region->list->n, sizeof *per_shape, "sampling", g->diag);
     if (!per_shape) return ERR_MEMORY;
     for (int64_t j = 0; j < region->count[1]; j++) {
         mark_row(g, region, region->first[1] + j, per_shape);
-        for (int64_t i = 0; i < region->count[0]; i++)
-            region->n += g->mask[i];
+        for (int64_t i = 0; i < region->count[0]; i++) region->n += g->mask[i];
     }
     char place[PLACE_TEXT];
     for (int k = 0; k < region->list->n; k++) {
         if (per_shape[k]) continue;
         scene_place(g->scene, region->list->item[k].line, place);
-        return diag_fail(g->diag, ERR_INPUT, "%s: shape %d of [%s %s] holds no particle: it is "
-                         "narrower than dp = %g m, or lies between the lattice's centres", place,
-                         k + 1, kind_names[region->kind], region->name, g->scene->top.dp);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: shape %d of [%s %s] holds no particle: it is "
+                         "narrower than dp = %g m, or lies between the lattice's centres",
+                         place, k + 1, kind_names[region->kind], region->name, g->scene->top.dp);
     }
     if (region->n) return ERR_OK;
     scene_place(g->scene, region->line, place);
@@ -237,16 +242,14 @@ static enum err append_points(struct sampler *g, const struct region *region, bo
 {
     int64_t *next = NULL;
     if (upright) { /* where each column goes: a counting sort over the rows */
-        next = arena_alloc(&g->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling",
-                           g->diag);
+        next =
+            arena_alloc(&g->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling", g->diag);
         if (!next) return ERR_MEMORY;
         for (int64_t j = 0; j < region->count[1]; j++) {
             mark_row(g, region, region->first[1] + j, NULL);
-            for (int64_t i = 0; i < region->count[0]; i++)
-                next[i + 1] += g->mask[i];
+            for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += g->mask[i];
         }
-        for (int64_t i = 0; i < region->count[0]; i++)
-            next[i + 1] += next[i];
+        for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += next[i];
     }
     int64_t filled = 0;
     for (int64_t j = 0; j < region->count[1]; j++) {
@@ -287,8 +290,10 @@ static enum err clamp_points(struct sampler *g, const struct region *region, int
         if (held[c]) continue;
         char place[PLACE_TEXT];
         scene_place(s, clamps->item[c].line, place);
-        return diag_fail(g->diag, ERR_INPUT, "%s: clamp %d of [solid %s] holds no particle: it must "
-                         "cover a part of the body", place, c + 1, region->name);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: clamp %d of [solid %s] holds no particle: it must "
+                         "cover a part of the body",
+                         place, c + 1, region->name);
     }
     return ERR_OK;
 }
@@ -310,8 +315,7 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
     for (int k = 0; k < g->n_regions; k++) {
         const struct region *region = &g->regions[k];
         const int64_t from = p->n;
-        const bool upright =
-            region->kind == KIND_SOLID && region->count[1] > region->count[0];
+        const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
         TRY(append_points(g, region, upright, p));
         if (region->kind == KIND_SOLID) TRY(clamp_points(g, region, from, p));
     }

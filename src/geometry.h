@@ -16,9 +16,9 @@ struct region {
     const struct shape_list *list;
     struct outlines add, minus;
     double origin[2];
-    double low[2], high[2]; /* bounding box of the shapes */
+    double low[2], high[2];     /* bounding box of the shapes */
     int64_t first[2], count[2]; /* lattice points that the box spans */
-    int64_t n;                /* points inside */
+    int64_t n;                  /* points inside */
 };
 
 struct sampler {

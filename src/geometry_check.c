@@ -36,9 +36,10 @@ static void warn_box(struct sampler *g, const struct region *region, const struc
         if (on_lattice(a) && on_lattice(b)) continue;
         const double n = points_between(g, region, c, low, high);
         const double from = region->origin[c] + ceil(a - 0.5 - 1e-6) * dp;
-        diag_warn(g->diag, "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
-                  "sampled as %.0f %s from %g to %g m; edges at %g and %g m would fit", place,
-                  kind_names[region->kind], region->name, "xy"[c], low, high, b - a,
+        diag_warn(g->diag,
+                  "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
+                  "sampled as %.0f %s from %g to %g m; edges at %g and %g m would fit",
+                  place, kind_names[region->kind], region->name, "xy"[c], low, high, b - a,
                   c ? "high" : "wide", n, c ? "rows" : "columns", from, from + n * dp,
                   region->origin[c] + round(a) * dp, region->origin[c] + round(b) * dp);
     }
@@ -58,9 +59,11 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
             char place[PLACE_TEXT];
             scene_place(g->scene, region->list->item[shape].line, place);
             const double fit = region->origin[c] + round(cells) * g->scene->top.dp;
-            diag_warn(g->diag, "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
-                      "%c = %g m would fit", place, kind_names[region->kind], region->name, "xy"[c],
-                      a[c], g->scene->top.dp, "xy"[c], fit);
+            diag_warn(g->diag,
+                      "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
+                      "%c = %g m would fit",
+                      place, kind_names[region->kind], region->name, "xy"[c], a[c],
+                      g -> scene -> top.dp, "xy"[c], fit);
             return;
         }
     }
@@ -85,8 +88,10 @@ static void warn_thin_wall(struct sampler *g, const struct region *region,
     if (thick >= reach * (1 - 1e-9) || g->scene->n_fluid == 0) return;
     char place[PLACE_TEXT];
     scene_place(g->scene, shape->line, place);
-    diag_warn(g->diag, "%s: [wall %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid "
-              "feels what lies behind it", place, region->name, thick, reach);
+    diag_warn(g->diag,
+              "%s: [wall %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid "
+              "feels what lies behind it",
+              place, region->name, thick, reach);
 }
 
 static enum err check_solid(struct sampler *g, const struct region *region)
@@ -100,12 +105,15 @@ static enum err check_solid(struct sampler *g, const struct region *region)
     char place[PLACE_TEXT];
     scene_place(g->scene, region->line, place);
     if (across < 2)
-        return diag_fail(g->diag, ERR_INPUT, "%s: [solid %s] is %.0f particle thick at dp = %g m; "
-                         "bending needs at least 2, better 4", place, region->name, across,
-                         g->scene->top.dp);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: [solid %s] is %.0f particle thick at dp = %g m; "
+                         "bending needs at least 2, better 4",
+                         place, region->name, across, g->scene->top.dp);
     if (across < 4)
-        diag_warn(g->diag, "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
-                  "will be inaccurate", place, region->name, across, g->scene->top.dp);
+        diag_warn(g->diag,
+                  "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
+                  "will be inaccurate",
+                  place, region->name, across, g->scene->top.dp);
     return ERR_OK;
 }
 
@@ -117,14 +125,15 @@ static void warn_slit(struct sampler *g, const struct region *a, const struct sh
     const double dp = g->scene->top.dp;
     for (int c = 0; c < 2; c++) {
         const double slit = max2(q->pt[0][c] - p->pt[1][c], p->pt[0][c] - q->pt[1][c]);
-        const double shared = min2(p->pt[1][1 - c], q->pt[1][1 - c]) -
-                              max2(p->pt[0][1 - c], q->pt[0][1 - c]);
+        const double shared =
+            min2(p->pt[1][1 - c], q->pt[1][1 - c]) - max2(p->pt[0][1 - c], q->pt[0][1 - c]);
         if (slit <= 1e-6 * dp || slit >= dp * (1 - 1e-6) || shared <= 1e-6 * dp) continue;
         char place[PLACE_TEXT];
         scene_place(g->scene, q->line, place);
-        diag_warn(g->diag, "%s: between [%s %s] and [%s %s] is a slit of %g m, narrower than dp = %g m: "
-                  "no fluid passes there", place, kind_names[a->kind], a->name, kind_names[b->kind],
-                  b->name, slit, dp);
+        diag_warn(g->diag,
+                  "%s: between [%s %s] and [%s %s] is a slit of %g m, narrower than dp = %g m: "
+                  "no fluid passes there",
+                  place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit, dp);
         return;
     }
 }

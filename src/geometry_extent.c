@@ -18,8 +18,7 @@ static void include(double low[2], double high[2], const double point[2])
 static void include_points(const struct scene *s, int kind, double low[2], double high[2])
 {
     const struct scene_points *p = &s->points[kind];
-    for (int64_t k = 0; k < p->n; k++)
-        include(low, high, (const double[]){p->x[k], p->y[k]});
+    for (int64_t k = 0; k < p->n; k++) include(low, high, (const double[]){p->x[k], p->y[k]});
 }
 
 static void include_motion(const struct scene *s, int wall, double low[2], double high[2])
@@ -45,11 +44,9 @@ static void default_domain(struct scene *s)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     double solid_low[2] = {INFINITY, INFINITY}, solid_high[2] = {-INFINITY, -INFINITY};
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        include_points(s, kind, low, high);
+    for (int kind = 0; kind < KIND_COUNT; kind++) include_points(s, kind, low, high);
     include_points(s, KIND_SOLID, solid_low, solid_high);
-    for (int k = 0; k < s->n_wall; k++)
-        include_motion(s, k, low, high);
+    for (int k = 0; k < s->n_wall; k++) include_motion(s, k, low, high);
     double margin = 2 * s->h + s->top.dp;
     for (int c = 0; c < 2 && s->points[KIND_SOLID].n; c++)
         margin = max2(margin, solid_high[c] - solid_low[c]);
@@ -68,9 +65,10 @@ static enum err given_domain(struct scene *s, struct diag *d)
         s->domain_lower[c] = s->domain.lower[c];
         s->domain_upper[c] = s->domain.upper[c];
         if (!(s->domain.lower[c] < s->domain.upper[c]))
-            return diag_fail(d, ERR_INPUT, "%s: [domain] lower must lie below and left of upper; here "
-                             "%c is %g and %g m", place, "xy"[c], s->domain.lower[c],
-                             s->domain.upper[c]);
+            return diag_fail(d, ERR_INPUT,
+                             "%s: [domain] lower must lie below and left of upper; here "
+                             "%c is %g and %g m",
+                             place, "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct scene_points *p = &s->points[kind];
@@ -78,8 +76,8 @@ static enum err given_domain(struct scene *s, struct diag *d)
             if (p->x[k] >= s->domain_lower[0] && p->x[k] <= s->domain_upper[0] &&
                 p->y[k] >= s->domain_lower[1] && p->y[k] <= s->domain_upper[1])
                 continue;
-            return diag_fail(d, ERR_INPUT, "%s: [domain] leaves out a %s particle at (%g, %g) m", place,
-                             kind_names[kind], p->x[k], p->y[k]);
+            return diag_fail(d, ERR_INPUT, "%s: [domain] leaves out a %s particle at (%g, %g) m",
+                             place, kind_names[kind], p->x[k], p->y[k]);
         }
     }
     return ERR_OK;
@@ -101,9 +99,11 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     if (outside <= 0.5 * dp) return ERR_OK;
     char place[PLACE_TEXT];
     scene_place(s, probe->common.line, place);
-    return diag_fail(g->diag, ERR_INPUT, "%s: [probe %s] point (%g, %g) lies about %.3g m outside of "
-                     "[solid %s]", place, probe->common.name, probe->point[0], probe->point[1],
-                     outside, probe->body);
+    return diag_fail(g->diag, ERR_INPUT,
+                     "%s: [probe %s] point (%g, %g) lies about %.3g m outside of "
+                     "[solid %s]",
+                     place, probe->common.name, probe->point[0], probe->point[1], outside,
+                     probe->body);
 }
 
 static enum err check_probes(const struct sampler *g)
@@ -117,14 +117,17 @@ static enum err check_probes(const struct sampler *g)
         }
         bool inside = true;
         for (int c = 0; c < 2; c++)
-            inside &= probe->point[c] >= s->domain_lower[c] && probe->point[c] <= s->domain_upper[c];
+            inside &=
+                probe->point[c] >= s->domain_lower[c] && probe->point[c] <= s->domain_upper[c];
         if (inside) continue;
         char place[PLACE_TEXT];
         scene_place(s, probe->common.line, place);
-        return diag_fail(g->diag, ERR_INPUT, "%s: [probe %s] point (%g, %g) lies outside of the domain, "
-                         "(%g, %g) to (%g, %g) m", place, probe->common.name, probe->point[0],
-                         probe->point[1], s->domain_lower[0], s->domain_lower[1],
-                         s->domain_upper[0], s->domain_upper[1]);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: [probe %s] point (%g, %g) lies outside of the domain, "
+                         "(%g, %g) to (%g, %g) m",
+                         place, probe->common.name, probe->point[0], probe->point[1],
+                         s->domain_lower[0], s->domain_lower[1], s->domain_upper[0],
+                         s->domain_upper[1]);
     }
     return ERR_OK;
 }

@@ -29,16 +29,12 @@ static uint64_t slot_of(const struct near_table *t, int64_t i, int64_t j)
     return (key >> 32) & t->mask;
 }
 
-static int64_t cell_of(const struct near_table *t, double x)
-{
-    return (int64_t)floor(x / t->side);
-}
+static int64_t cell_of(const struct near_table *t, double x) { return (int64_t)floor(x / t->side); }
 
 static enum err table_create(struct near_table *t, struct sampler *g, const struct samples *p)
 {
     uint64_t size = 64;
-    while (size < (uint64_t)p->n)
-        size *= 2;
+    while (size < (uint64_t)p->n) size *= 2;
     *t = (struct near_table){.side = g->scene->top.dp, .mask = size - 1, .x = p->x, .y = p->y};
     t->head = arena_alloc(&g->temp, size, sizeof *t->head, "overlaps", g->diag);
     t->next = arena_alloc(&g->temp, (size_t)p->n, sizeof *t->next, "overlaps", g->diag);
@@ -90,9 +86,11 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
         mend = "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
         mend = "walls that move differently must not overlap";
-    return diag_fail(g->diag, ERR_INPUT, "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
-                     "(%.6g, %.6g) m: %s", place, (long long)count, kind_names[mine->kind],
-                     mine->name, kind_names[its->kind], its->name, x, y, mend);
+    return diag_fail(g->diag, ERR_INPUT,
+                     "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
+                     "(%.6g, %.6g) m: %s",
+                     place, (long long)count, kind_names[mine->kind], mine->name,
+                     kind_names[its->kind], its->name, x, y, mend);
 }
 
 /* Sets `kept`; fails where a region overlaps another one and may not. */
@@ -125,8 +123,7 @@ static enum err store(struct sampler *g, const struct samples *p, const uint8_t 
     struct scene *s = g->scene;
     struct scene_points *to = &s->points[kind];
     size_t n = 0;
-    for (int64_t k = 0; k < p->n; k++)
-        n += kept[k] && g->regions[p->region[k]].kind == kind;
+    for (int64_t k = 0; k < p->n; k++) n += kept[k] && g->regions[p->region[k]].kind == kind;
     *to = (struct scene_points){0};
     to->x = arena_alloc(&s->arena, n, sizeof *to->x, "particles", g->diag);
     to->y = arena_alloc(&s->arena, n, sizeof *to->y, "particles", g->diag);
@@ -155,7 +152,6 @@ enum err geometry_merge(struct sampler *g, const struct samples *p)
     if (!kept) return ERR_MEMORY;
     TRY(table_create(&t, g, p));
     TRY(find_overlaps(g, p, &t, kept));
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        TRY(store(g, p, kept, (enum kind)kind));
+    for (int kind = 0; kind < KIND_COUNT; kind++) TRY(store(g, p, kept, (enum kind)kind));
     return ERR_OK;
 }

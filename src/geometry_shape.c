@@ -66,15 +66,18 @@ static enum err cut_polyline(const struct scene *s, const struct shape *p, struc
     if (!far || !corners) return ERR_MEMORY;
     for (int k = 0; k < p->n; k++)
         if (!mitre(p, k, far[k]))
-            return diag_fail(d, ERR_INPUT, "%s: the polyline turns too sharply at its point %d "
-                             "(%g, %g)", place, k + 1, p->pt[k][0], p->pt[k][1]);
+            return diag_fail(d, ERR_INPUT,
+                             "%s: the polyline turns too sharply at its point %d "
+                             "(%g, %g)",
+                             place, k + 1, p->pt[k][0], p->pt[k][1]);
     for (int k = 0; k + 1 < p->n; k++) {
         const double along = (p->pt[k + 1][0] - p->pt[k][0]) * (far[k + 1][0] - far[k][0]) +
                              (p->pt[k + 1][1] - p->pt[k][1]) * (far[k + 1][1] - far[k][1]);
         if (along <= 0)
-            return diag_fail(d, ERR_INPUT, "%s: segment %d of the polyline is too short for a "
-                             "thickness of %g m: the joints at its ends cross", place, k + 1,
-                             fabs(p->size));
+            return diag_fail(d, ERR_INPUT,
+                             "%s: segment %d of the polyline is too short for a "
+                             "thickness of %g m: the joints at its ends cross",
+                             place, k + 1, fabs(p->size));
         pieces[k].n = 4;
         pieces[k].pt = corners + 4 * k;
         memcpy(pieces[k].pt[0], p->pt[k], sizeof *far);
@@ -101,8 +104,10 @@ static enum err cut_shape(const struct scene *s, const struct shape *shape, stru
     case SHAPE_BOX: break;
     }
     const double *low = shape->pt[0], *high = shape->pt[1];
-    const double corners[4][2] = {
-        {low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}};
+    const double corners[4][2] = {{low[0], low[1]},
+                                  {high[0], low[1]},
+                                  {high[0], high[1]},
+                                  {low[0], high[1]}};
     piece->n = 4;
     piece->pt = arena_alloc(a, 4, sizeof *piece->pt, "box", d);
     if (!piece->pt) return ERR_MEMORY;
@@ -135,8 +140,7 @@ enum err outlines_of(struct outlines *o, const struct scene *s, const struct sha
 int outlines_room(const struct outlines *o)
 {
     int room = 2;
-    for (int k = 0; k < o->n; k++)
-        room = o->item[k].n > room ? o->item[k].n : room;
+    for (int k = 0; k < o->n; k++) room = o->item[k].n > room ? o->item[k].n : room;
     return room;
 }
 
@@ -178,7 +182,6 @@ bool outline_contains(const struct outline *o, double x, double y, double *scrat
     if (x < o->low[0] || x > o->high[0] || y < o->low[1] || y > o->high[1]) return false;
     const int n = outline_crossings(o, y, scratch);
     int left = 0;
-    while (left < n && scratch[left] <= x)
-        left++;
+    while (left < n && scratch[left] <= x) left++;
     return left & 1;
 }

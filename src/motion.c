@@ -28,7 +28,8 @@ static int read_row(struct table_file *t, double row[3])
         t->line++;
         const size_t length = strlen(text);
         const char *at = text + strspn(text, " \t\r\n");
-        const bool head = t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
+        const bool head =
+            t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
         if (length == sizeof text - 1 && text[length - 1] != '\n') {
             diag_fail(t->diag, ERR_INPUT, "%s:%d: a line of more than %zu characters", t->path,
                       t->line, sizeof text - 2);
@@ -48,8 +49,10 @@ static int read_row(struct table_file *t, double row[3])
             if (*at == ',' || *at == ';') at += 1 + strspn(at + 1, " \t\r\n");
         }
         if (!*at) return 1;
-        diag_fail(t->diag, ERR_INPUT, "%s:%d: more than three columns; time (s), dx (m), dy (m) are "
-                  "expected", t->path, t->line);
+        diag_fail(t->diag, ERR_INPUT,
+                  "%s:%d: more than three columns; time (s), dx (m), dy (m) are "
+                  "expected",
+                  t->path, t->line);
         return -1;
     }
     if (!ferror(t->file)) return 0;
@@ -79,11 +82,13 @@ static enum err fill_table(struct motion_table *table, struct table_file *t, int
         if (read_row(t, row) != 1)
             return diag_fail(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
         if (k > 0 && row[0] <= table->t[k - 1])
-            return diag_fail(t->diag, ERR_INPUT, "%s:%d: time %g s does not come after %g s", t->path,
-                             t->line, row[0], table->t[k - 1]);
+            return diag_fail(t->diag, ERR_INPUT, "%s:%d: time %g s does not come after %g s",
+                             t->path, t->line, row[0], table->t[k - 1]);
         if (k == 0 && (row[0] < 0 || row[1] != 0 || row[2] != 0))
-            return diag_fail(t->diag, ERR_INPUT, "%s:%d: the first row must be a time of 0 or more "
-                             "and no displacement, `0, 0, 0` as a rule", t->path, t->line);
+            return diag_fail(t->diag, ERR_INPUT,
+                             "%s:%d: the first row must be a time of 0 or more "
+                             "and no displacement, `0, 0, 0` as a rule",
+                             t->path, t->line);
         table->t[k] = row[0];
         table->dx[k] = row[1];
         table->dy[k] = row[2];

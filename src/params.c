@@ -8,7 +8,8 @@
 #define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
 
 const struct section_info section_table[SECTION_COUNT] = {
-#define SECTION(section, named) {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
+#define SECTION(section, named) \
+    {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
 #include "params.def"
 };
 
@@ -16,14 +17,19 @@ const struct section_info section_table[SECTION_COUNT] = {
 #define NEEDED NAN
 #define OVER(v) (v)
 #define UNDER(v) (v)
-#define ROW(section_, type_, key_, meaning_)                                              \
+#define ROW(section_, type_, key_, meaning_)                                                 \
     .section = SECTION_##section_, .type = PARAM_##type_, .key = #key_, .meaning = meaning_, \
     .offset = offsetof(struct scene_##section_, key_)
 
 const struct param param_table[PARAM_COUNT] = {
-#define REAL(section, key, def, lo, hi, unit_, meaning)                                       \
-    {ROW(section, REAL, key, meaning), .unit = unit_, .number_default = {def}, .low = lo,     \
-     .high = hi, .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', .low_open = #lo[0] == 'O', \
+#define REAL(section, key, def, lo, hi, unit_, meaning)          \
+    {ROW(section, REAL, key, meaning),                           \
+     .unit = unit_,                                              \
+     .number_default = {def},                                    \
+     .low = lo,                                                  \
+     .high = hi,                                                 \
+     .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', \
+     .low_open = #lo[0] == 'O',                                  \
      .high_open = #hi[0] == 'U'},
 #define INTEGER(section, key, def, lo, hi, meaning) \
     {ROW(section, INTEGER, key, meaning), .number_default = {def}, .low = lo, .high = hi},
@@ -68,8 +74,7 @@ const struct param *param_find(enum section_id section, const char *key)
 void param_choice_name(const struct param *p, int value, char name[SCENE_NAME])
 {
     const char *start = p->choices;
-    for (int k = 0; k < value; k++)
-        start = strchr(start, '|') + 1;
+    for (int k = 0; k < value; k++) start = strchr(start, '|') + 1;
     const size_t length = strcspn(start, "|");
     memcpy(name, start, length);
     name[length] = '\0';
@@ -79,8 +84,7 @@ void param_choice_name(const struct param *p, int value, char name[SCENE_NAME])
 static int edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
 {
     int row[SCENE_NAME + 1];
-    for (size_t j = 0; j <= b_length; j++)
-        row[j] = (int)j;
+    for (size_t j = 0; j <= b_length; j++) row[j] = (int)j;
     for (size_t i = 1; i <= a_length; i++) {
         int diagonal = row[0];
         row[0] = (int)i;
@@ -99,7 +103,7 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
     const size_t word_length = strlen(word), length = strlen(candidate);
     if (word_length == 0 || word_length > SCENE_NAME || length > SCENE_NAME) return;
     const int distance = edit_distance(word, word_length, candidate, length);
-    const int tolerance = word_length < 4 ? 1 : word_length < 8 ? 3 : 4;
+    const int tolerance = word_length < 3 ? 1 : word_length < 5 ? 2 : word_length < 8 ? 3 : 4;
     if (distance > tolerance || (size_t)distance >= length) return;
     if (best->name && best->distance <= distance) return;
     *best = (struct nearest){candidate, distance};

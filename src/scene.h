@@ -12,9 +12,9 @@ enum shape_kind { SHAPE_BOX, SHAPE_POLYGON, SHAPE_POLYLINE, SHAPE_CIRCLE };
 
 struct shape {
     enum shape_kind kind;
-    int n;            /* points: box 2 (lower left, upper right), circle 1, else >= 2 */
+    int n; /* points: box 2 (lower left, upper right), circle 1, else >= 2 */
     double (*pt)[2];
-    double size;      /* radius of a circle; thickness of a polyline, to the left of its direction if
+    double size; /* radius of a circle; thickness of a polyline, to the left of its direction if
                          positive, to the right if negative; else 0 */
     int line;
 };
@@ -40,9 +40,10 @@ struct scene_expr {
 struct scene_section_common {
     char name[SCENE_NAME];
     int line;
-#define SECTION(section, named)             \
-    };                                      \
-    struct scene_##section {                \
+#define SECTION(section, named) \
+    }                           \
+    ;                           \
+    struct scene_##section {    \
         struct scene_section_common common;
 #define REAL(section, key, def, lo, hi, unit, meaning) double key;
 #define INTEGER(section, key, def, lo, hi, meaning) int key;
@@ -93,8 +94,8 @@ struct scene_constant {
 
 /* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
 struct scene {
-    char path[4096];         /* of the case file */
-    struct arena arena;      /* owns everything below */
+    char path[4096];    /* of the case file */
+    struct arena arena; /* owns everything below */
 #define SCENE_MEMBER_0(section) struct scene_##section section;
 #define SCENE_MEMBER_1(section)      \
     struct scene_##section *section; \
@@ -105,7 +106,8 @@ struct scene {
     struct scene_constant *constant;
     struct motion_table *motion_data; /* [n_motion] */
     struct scene_points points[3];    /* by enum kind of particles.h: fluid, wall, solid */
-    double h, c0, rho0;               /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
+    double h, c0,
+        rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
     double domain_lower[2], domain_upper[2]; /* in effect */
 };
 
