@@ -20,8 +20,8 @@ FLOORS = [
     "params effects case expr units geometry motion scene",
     "fluid variants wall solid material interface monitor ledger",
     "timestep symplectic verlet multirate simulation bounds phases state",
-    "folder probes snapshot checkpoint report series",
-    "sphfsi api main",
+    "folder json probes snapshot checkpoint report series",
+    "sphfsi session explain run api main",
 ]
 FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
 

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ * sphfsi: two-dimensional fluid-structure interaction by smoothed particle hydrodynamics.
+ *
+ *     struct sphfsi_simulation *s;
+ *     const struct sphfsi_options options = {.case_path = "cases/gate.cfg"};
+ *     if (sphfsi_create(&s, &options)) return puts(sphfsi_error()), 1;
+ *     while (sphfsi_time(s) < 0.1 && !sphfsi_step(s, 0.1)) {}
+ *     struct sphfsi_view x;
+ *     if (!sphfsi_field(s, SPHFSI_FLUID, "x", &x)) printf("%g m\n", ((const double *)x.data)[0]);
+ *     sphfsi_free(s);
+ *
+ * All units are SI; extensive quantities are per metre of depth. Functions that can fail return 0 or
+ * an enum sphfsi_status, and leave one sentence in sphfsi_error(). The library does not print, does
+ * not exit and installs no signal handlers; what it has to say goes to the callbacks. Different
+ * simulations may be used from different threads; one simulation by one thread at a time. */
+#ifndef SPHFSI_H
+#define SPHFSI_H
+
+#include <signal.h>
+#include <stdint.h>
+
+#ifndef SPHFSI_API
+#define SPHFSI_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** Result of a function. sphfsi_exit_status() turns it into the exit status of a program. */
+enum sphfsi_status {
+    SPHFSI_OK = 0,
+    SPHFSI_INPUT,    /**< the case, a file it names, or an option is wrong; nothing was started */
+    SPHFSI_MEMORY,   /**< not enough memory */
+    SPHFSI_IO,       /**< a file could not be written or read */
+    SPHFSI_GUARD,    /**< the numerical state is no longer sound */
+    SPHFSI_INTERRUPT /**< stopped by sphfsi_requests.stop */
+};
+
+/** Kinds of particles. */
+enum sphfsi_kind { SPHFSI_FLUID, SPHFSI_WALL, SPHFSI_SOLID };
+
+/** Types of a field's items. */
+enum sphfsi_type { SPHFSI_DOUBLE, SPHFSI_INT64, SPHFSI_INT32 };
+
+/** What a message is. */
+enum sphfsi_message { SPHFSI_NOTE, SPHFSI_WARNING };
+
+/** How a run is going; valid during the callback. */
+struct sphfsi_progress {
+    double time, end_time;         /**< s, simulated */
+    double start_time;             /**< s, simulated, at which this process began */
+    double dt;                     /**< s, last time step */
+    const char *bound;             /**< what limited it */
+    double particle_steps_per_second;
+    double wall_seconds;           /**< s, wall time since this process began to step */
+    double seconds_left;           /**< s, wall time, estimated; negative: not known yet */
+    int64_t steps;
+    int finished;                  /**< 1 at the last call */
+};
+
+/** Wishes to a running sphfsi_run; may be set from a signal handler. */
+struct sphfsi_requests {
+    volatile sig_atomic_t stop;       /**< not 0: write a checkpoint and stop */
+    volatile sig_atomic_t checkpoint; /**< not 0: write a checkpoint and go on; reset when done */
+};
+
+/** What to simulate and how. Zero-initialise, then set what is needed; nothing is kept of it after
+ * the call, except by sphfsi_create the message callback and its context. */
+struct sphfsi_options {
+    const char *case_path;   /**< case file; with case_text: the name for messages and the anchor of
+                                  relative file names, may be NULL */
+    const char *case_text;   /**< the case itself, instead of a file */
+    const char *const *sets; /**< "key=value" or "section.key=value", in effect over the case */
+    int n_sets;
+    int threads;             /**< 0: as many as OpenMP offers */
+    double until;            /**< s; simulated time to end at instead of the case's end_time; 0: that */
+
+    /* Of sphfsi_run only. */
+    const char *out;          /**< folder of the run; NULL: runs/<name of the case> */
+    int restart;              /**< 1: continue the run in that folder */
+    const char *restart_file; /**< checkpoint to continue from; NULL: the newest valid one */
+    struct sphfsi_requests *requests;                                         /**< may be NULL */
+    void (*progress)(void *context, const struct sphfsi_progress *p);         /**< may be NULL */
+    double progress_interval; /**< s, least wall time between calls; 0: 0.25 */
+
+    void (*message)(void *context, enum sphfsi_message kind, const char *text); /**< may be NULL */
+    void *context;            /**< handed to the callbacks */
+};
+
+/** A view of a field: no copy, owned by the simulation, read only. Valid until the next step,
+ * advance or free; the order of fluid particles changes between steps, their `id` stays. */
+struct sphfsi_view {
+    const void *data;      /**< [count] items of the type */
+    int64_t count;
+    enum sphfsi_type type;
+    const char *unit;      /**< such as "m/s" */
+    const char *meaning;
+};
+
+struct sphfsi_simulation;
+
+/** Version of the library, such as "0.1.0". */
+SPHFSI_API const char *sphfsi_version(void);
+
+/** Sentence of the last failure in this thread; "" before the first. Valid until the next one. */
+SPHFSI_API const char *sphfsi_error(void);
+
+/** Exit status that stands for a result: 0; 1 wrong input; 2 everything else, but INTERRUPT, which
+ * is 128 and the number of the signal. */
+SPHFSI_API int sphfsi_exit_status(enum sphfsi_status status, int signal_number);
+
+/** The candidate nearest to a misspelt word, for messages; NULL if none is near. */
+SPHFSI_API const char *sphfsi_nearest(const char *word, const char *const *names, int n);
+
+/** Builds a simulation in memory at time zero; no file is written. On success the caller frees
+ * *result with sphfsi_free; on failure *result is NULL. */
+SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,
+                                            const struct sphfsi_options *options);
+/** Frees a simulation; NULL is allowed. */
+SPHFSI_API void sphfsi_free(struct sphfsi_simulation *s);
+
+/** Takes one time step, which ends at `limit` (s) if it would reach further. SPHFSI_INPUT: `limit`
+ * is not later than the time. SPHFSI_GUARD: the state is not sound; the simulation can be looked at
+ * and freed, not stepped. */
+SPHFSI_API enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit);
+
+/** Steps until the simulated time is exactly `time` (s). Errors as sphfsi_step. */
+SPHFSI_API enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time);
+
+/** Simulated time, time at which the case ends, last time step, s. */
+SPHFSI_API double sphfsi_time(const struct sphfsi_simulation *s);
+SPHFSI_API double sphfsi_end_time(const struct sphfsi_simulation *s);
+SPHFSI_API double sphfsi_time_step(const struct sphfsi_simulation *s);
+
+/** Number of steps taken, and of particles of a kind. */
+SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
+SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
+
+/** Looks at a field by its name: x, y (m), vx, vy (m/s), id, body, and where the kind has them dens
+ * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m), and further ones. p is brought up to date with the
+ * positions. SPHFSI_INPUT: no such field of this kind in this scene. */
+SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+                                           const char *name, struct sphfsi_view *view);
+
+/** Hash of the whole state; equal for equal bits. */
+SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
+
+/** Runs a case to its end and writes probes.csv, ledger.csv, fields.vtkhdf, summary.json, case.cfg
+ * and checkpoints to its folder. */
+SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
+
+/** Says, line by line through the message callback, what would be simulated and what it would cost.
+ * Writes nothing. */
+SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

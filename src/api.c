@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: MIT
+ * The library's face: the public header in terms of the floors below. */
+#include "explain.h"
+#include "params.h"
+#include "run.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert((int)SPHFSI_INTERRUPT == (int)ERR_INTERRUPT && (int)SPHFSI_INPUT == (int)ERR_INPUT &&
+                   (int)SPHFSI_MEMORY == (int)ERR_MEMORY && (int)SPHFSI_IO == (int)ERR_IO &&
+                   (int)SPHFSI_GUARD == (int)ERR_GUARD,
+               "the public results are the rows of errors.def");
+_Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)KIND_WALL &&
+                   (int)SPHFSI_SOLID == (int)KIND_SOLID,
+               "the public kinds are those of particles.h");
+
+struct sphfsi_simulation {
+    struct session session;
+    bool unsound; /* a guard has stopped it */
+};
+
+static _Thread_local char last_error[sizeof ((struct diag *)0)->text];
+
+static enum sphfsi_status result(const struct diag *d, enum err e)
+{
+    if (e) snprintf(last_error, sizeof last_error, "%s", d->text);
+    return (enum sphfsi_status)e;
+}
+
+const char *sphfsi_version(void)
+{
+    return SPHFSI_VERSION;
+}
+
+const char *sphfsi_error(void)
+{
+    return last_error;
+}
+
+int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
+{
+    if (status == SPHFSI_INTERRUPT && signal_number > 0) return 128 + signal_number;
+    return err_status((enum err)status);
+}
+
+const char *sphfsi_nearest(const char *word, const char *const *names, int n)
+{
+    struct nearest best = {0};
+    for (int k = 0; k < n; k++) nearest_offer(&best, word, names[k]);
+    return best.name;
+}
+
+enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result_,
+                                 const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    *result_ = NULL;
+    struct sphfsi_simulation *s = calloc(1, sizeof *s);
+    if (!s)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "simulation: no memory for %zu bytes",
+                                    sizeof *s));
+    const enum err e = session_open(&s->session, options, &d);
+    if (e)
+        free(s);
+    else
+        *result_ = s;
+    return result(&d, e);
+}
+
+void sphfsi_free(struct sphfsi_simulation *s)
+{
+    if (!s) return;
+    session_close(&s->session);
+    free(s);
+}
+
+enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
+{
+    struct diag d = {.code = ERR_OK};
+    struct simulation *const sim = &s->session.simulation;
+    if (s->unsound)
+        return result(&d, diag_fail(&d, ERR_GUARD, "step: a guard has stopped this simulation"));
+    if (!(limit > sim->state.time))
+        return result(&d, diag_fail(&d, ERR_INPUT, "step: the limit %.17g s is not later than the "
+                                    "simulated time %.17g s", limit, sim->state.time));
+    const enum err e = simulation_step(sim, limit, &d);
+    s->unsound = e == ERR_GUARD;
+    return result(&d, e);
+}
+
+enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time)
+{
+    do {
+        const enum sphfsi_status status = sphfsi_step(s, time);
+        if (status) return status;
+    } while (sphfsi_time(s) < time);
+    return SPHFSI_OK;
+}
+
+double sphfsi_time(const struct sphfsi_simulation *s)
+{
+    return s->session.simulation.state.time;
+}
+
+double sphfsi_end_time(const struct sphfsi_simulation *s)
+{
+    return s->session.scene.top.end_time;
+}
+
+double sphfsi_time_step(const struct sphfsi_simulation *s)
+{
+    return s->session.simulation.state.dt;
+}
+
+int64_t sphfsi_steps(const struct sphfsi_simulation *s)
+{
+    return s->session.simulation.state.steps;
+}
+
+int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind)
+{
+    return (unsigned)kind < KIND_COUNT ? s->session.simulation.kind[kind].n : 0;
+}
+
+uint64_t sphfsi_hash(struct sphfsi_simulation *s)
+{
+    return simulation_hash(&s->session.simulation);
+}
+
+static enum sphfsi_type type_of(const struct field_info *f)
+{
+    if (strcmp(f->type, "double") == 0) return SPHFSI_DOUBLE;
+    return f->size == 8 ? SPHFSI_INT64 : SPHFSI_INT32;
+}
+
+enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+                                const char *name, struct sphfsi_view *view)
+{
+    struct diag d = {.code = ERR_OK};
+    struct simulation *const sim = &s->session.simulation;
+    const struct particles *p = (unsigned)kind < KIND_COUNT ? &sim->kind[kind] : NULL;
+    if (p && strcmp(name, "p") == 0) simulation_refresh(sim);
+    for (int k = 0; p && k < field_count; k++) {
+        const struct field_info *f = &field_table[k];
+        const void *data = strcmp(f->name, name) == 0 ? field_array(p, f) : NULL;
+        if (!data) continue;
+        *view = (struct sphfsi_view){data, p->n, type_of(f), f->unit, f->meaning};
+        return SPHFSI_OK;
+    }
+    struct nearest best = {0};
+    for (int k = 0; p && k < field_count; k++)
+        if (field_array(p, &field_table[k])) nearest_offer(&best, name, field_table[k].name);
+    return result(&d, diag_fail(&d, ERR_INPUT, "field: %s particles have no field '%.60s' in this "
+                                "scene%s%s", p ? kind_names[kind] : "these", name,
+                                best.name ? "; the nearest name is " : "",
+                                best.name ? best.name : ""));
+}
+
+enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    return result(&d, run_case(options, &d));
+}
+
+enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    struct session *x = calloc(1, sizeof *x);
+    if (!x)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "explain: no memory for %zu bytes", sizeof *x));
+    enum err e = session_open(x, options, &d);
+    if (!e) {
+        e = explain_session(x, options, &d);
+        session_close(x);
+    }
+    free(x);
+    return result(&d, e);
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ * Checkpoints: the whole state of a run in one file, from which it goes on without a changed bit.
+ * docs/formats.md describes the file byte by byte. */
+#ifndef SPHFSI_CHECKPOINT_H
+#define SPHFSI_CHECKPOINT_H
+
+#include "folder.h"
+#include "simulation.h"
+
+/* A checkpoint in memory. A zeroed struct is an empty one. */
+struct image {
+    unsigned char *bytes;
+    size_t size, capacity;
+};
+
+enum { CHECKPOINT_VERSION_TEXT = 48 };
+
+/* What a valid image says of itself. */
+struct image_info {
+    double time;
+    int64_t steps, count[KIND_COUNT];
+    char version[CHECKPOINT_VERSION_TEXT]; /* of the program that wrote it */
+    const char *case_text;                 /* effective case; lies in the image */
+};
+
+/* Copies the state into the image, replacing what it held. */
+enum err checkpoint_capture(struct image *m, const struct simulation *s, const char *case_text,
+                            const char *version, struct diag *d) SPHFSI_CHECKED;
+
+/* Writes it to the folder under a name made of its steps, and removes all but the last two. `path`
+ * receives where. */
+enum err checkpoint_store(struct image *m, const char *folder, char path[FOLDER_PATH],
+                          struct diag *d) SPHFSI_CHECKED;
+
+/* Reads a file and checks every length and sum in it; ERR_IO says what is wrong. */
+enum err checkpoint_read(struct image *m, const char *path, struct diag *d) SPHFSI_CHECKED;
+
+/* Reads the newest valid one of a folder; a warning for each damaged one it passes over. */
+enum err checkpoint_newest(struct image *m, const char *folder, char path[FOLDER_PATH],
+                           struct diag *d) SPHFSI_CHECKED;
+
+struct image_info checkpoint_info(const struct image *m);
+
+/* Loads a valid image into a simulation that simulation_create made from the same case, and brings
+ * the rest up to date by simulation_resume. */
+enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Removes checkpoints of more steps than these: they belong to a future that is run anew. */
+enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d) SPHFSI_CHECKED;
+
+void checkpoint_free(struct image *m);
+
+#endif

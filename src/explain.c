@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+#include "explain.h"
+
+#include "params.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Cost is measured over this many steps, or fewer if they take long. */
+enum { TRIAL_STEPS = 20 };
+static const double trial_seconds = 3.0;
+
+static const char *const phase_meanings[PHASE_COUNT] = {
+#define PHASE(name, meaning) meaning,
+#include "phases.def"
+#undef PHASE
+};
+
+static void say_scene(const struct session *x, const struct sphfsi_options *o)
+{
+    const struct scene *c = &x->scene;
+    session_say(o, "%s: %s", c->path, c->top.title);
+    session_say(o, "  dp %g m, h %g m, %g s to simulate", c->top.dp, c->h, c->top.end_time);
+    if (c->c0 > 0) session_say(o, "  speed of sound %g m/s, density %g kg/m^3", c->c0, c->rho0);
+    for (int k = 0; k < KIND_COUNT; k++)
+        session_say(o, "  %-6s %10lld particles", kind_names[k],
+                    (long long)x->simulation.kind[k].n);
+}
+
+static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
+{
+    session_say(o, "effects that are on, and what called for them");
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        if (s->effects & (1u << k))
+            session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, effect_table[k].key,
+                        effect_table[k].meaning, effect_table[k].equation[0] ? "; " : "",
+                        effect_table[k].equation);
+    session_say(o, "effects that are off, and what would call for them");
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        if (!(s->effects & (1u << k)))
+            session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
+                        effect_table[k].meaning);
+}
+
+static void say_fields(const struct simulation *s, const struct sphfsi_options *o)
+{
+    session_say(o, "fields");
+    for (int k = 0; k < KIND_COUNT; k++) {
+        const struct particles *p = &s->kind[k];
+        if (p->capacity == 0) continue;
+        char names[1024] = "";
+        size_t at = 0;
+        for (int f = 0; f < field_count; f++)
+            if (field_array(p, &field_table[f]) && at < sizeof names - 32)
+                at += (size_t)snprintf(names + at, sizeof names - at, " %s", field_table[f].name);
+        const size_t bytes = particles_bytes(p);
+        session_say(o, "  %-6s %.3g MB, %zu bytes a particle:%s", kind_names[k],
+                    1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
+    }
+    session_say(o, "  in all %.3g MB with cells, lanes and stencils; %.3g MB for the scene",
+                1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
+}
+
+static void say_bounds(const struct simulation *s, const struct sphfsi_options *o)
+{
+    int binding = -1;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (isfinite(s->dt_bound[k]) && s->dt_bound[k] > 0 && k != BOUND_output &&
+            (binding < 0 || s->dt_bound[k] < s->dt_bound[binding]))
+            binding = k;
+    session_say(o, "bounds of the time step");
+    for (int k = 0; k < BOUND_COUNT; k++) {
+        const bool known = isfinite(s->dt_bound[k]) && s->dt_bound[k] > 0;
+        char value[32] = "-";
+        if (known) snprintf(value, sizeof value, "%.4g s", s->dt_bound[k]);
+        session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
+                    k == binding ? "  <- binds" : "");
+    }
+    if (s->kind[KIND_SOLID].n > 0)
+        session_say(o, "  the solid is stable up to %.4g s: %d steps of it in one of the fluid",
+                    s->dt_solid, s->substeps);
+}
+
+static void text_of_seconds(double seconds, char text[32])
+{
+    if (seconds < 120)
+        snprintf(text, 32, "%.0f s", seconds);
+    else if (seconds < 7200)
+        snprintf(text, 32, "%.0f min", seconds / 60);
+    else
+        snprintf(text, 32, "%.1f h", seconds / 3600);
+}
+
+static void say_cost(const struct simulation *s, int steps, double seconds,
+                     const double phase_before[PHASE_COUNT], const struct sphfsi_options *o)
+{
+    session_say(o, "cost, from %d steps with %d threads", steps, thread_count());
+    const double particles = (double)(s->kind[KIND_FLUID].n + s->kind[KIND_SOLID].n);
+    const double per_step = seconds / steps;
+    for (int k = 0; k < PHASE_COUNT; k++)
+        if (k != PHASE_output)
+            session_say(o, "  %-7s %6.1f ns a particle and step  %s", phase_names[k],
+                        1e9 * (s->phase_seconds[k] - phase_before[k]) / steps / particles,
+                        phase_meanings[k]);
+    const double n = (s->scene->top.end_time - s->state.time) / s->state.dt + steps;
+    char time[32];
+    text_of_seconds(n * per_step, time);
+    session_say(o, "  about %.3g steps of %.3g s, %.3g million particle steps a second, %s in all; "
+                "a scene that gets faster takes more", n, s->state.dt,
+                1e-6 * particles / per_step, time);
+}
+
+static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
+{
+    const double end = s->scene->top.end_time;
+    /* The first step pays for first touch and first sort. */
+    TRY(simulation_step(s, end, d));
+    double phase_before[PHASE_COUNT];
+    memcpy(phase_before, s->phase_seconds, sizeof phase_before);
+    const double begin = wall_clock();
+    int steps = 0;
+    while (steps < TRIAL_STEPS && s->state.time < end && wall_clock() - begin < trial_seconds) {
+        TRY(simulation_step(s, end, d));
+        steps++;
+    }
+    const double seconds = wall_clock() - begin;
+    say_bounds(s, o);
+    if (steps > 0) say_cost(s, steps, seconds, phase_before, o);
+    return ERR_OK;
+}
+
+enum err explain_session(struct session *x, const struct sphfsi_options *o, struct diag *d)
+{
+    struct simulation *s = &x->simulation;
+    say_scene(x, o);
+    say_effects(s, o);
+    say_fields(s, o);
+    char precision[SCENE_NAME], integrator[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
+    param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
+    session_say(o, "integrator %s, precision %s, kernel of the fluid: %s", integrator, precision,
+                s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none");
+    return say_trial(s, o, d);
+}

@@ -1,0 +1,470 @@
+/* SPDX-License-Identifier: MIT */
+#include "run.h"
+
+#include "checkpoint.h"
+#include "probes.h"
+#include "report.h"
+#include "series.h"
+#include "snapshot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum output { OUT_PROBES, OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
+
+/* An output on the grid k * interval of simulated time. */
+struct due {
+    double interval; /* s; 0: never */
+    int64_t k;       /* next one */
+    double written;  /* time of the last one; -1: none */
+};
+
+struct run {
+    const struct sphfsi_options *options;
+    struct diag *diag;
+    struct session session;
+    struct simulation *s; /* the session's */
+    struct folder folder;
+    struct arena arena;
+    struct probes probes;
+    struct series probe_rows, ledger_rows;
+    struct snapshots snapshots;
+    struct image image; /* state that was sound, for the guard */
+    char *case_text;    /* effective case */
+    char restarted_from[FOLDER_PATH], checkpoint[FOLDER_PATH];
+    struct due due[OUT_COUNT];
+    struct record record;
+    double wall_start, wall_progress, wall_checkpoint, wall_image;
+};
+
+/* Seconds between copies of a sound state in memory: a copy takes milliseconds. */
+static const double image_seconds = 1.0;
+static const double progress_seconds = 0.25;
+
+static const char ledger_header[] =
+#define LEDGER(name, unit, meaning) "," #name "_" unit
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    ;
+
+/* --- when --- */
+
+static double due_time(const struct due *u)
+{
+    return u->interval > 0 ? session_time((double)u->k * u->interval) : (double)INFINITY;
+}
+
+static void pass(struct due *u, double time)
+{
+    u->written = time;
+    while (due_time(u) <= time) u->k++;
+}
+
+static void set_intervals(struct run *r, double time)
+{
+    const struct scene_output *out = &r->session.scene.output;
+    const double interval[OUT_COUNT] = {
+        [OUT_PROBES] = r->probes.n > 0 ? out->probe_interval : 0,
+        [OUT_LEDGER] = out->ledger_interval,
+        [OUT_SNAPSHOT] = out->snapshot_interval,
+        [OUT_CHECKPOINT] = out->checkpoint_interval,
+    };
+    for (int k = 0; k < OUT_COUNT; k++) {
+        struct due *u = &r->due[k];
+        u->interval = interval[k];
+        u->k = u->interval > 0 ? (int64_t)(time / u->interval) : 0;
+        while (time > 0 && due_time(u) <= time) u->k++;
+    }
+    /* The state at time zero is the case itself. */
+    if (time == 0) r->due[OUT_CHECKPOINT].k = 1;
+}
+
+static double next_time(const struct run *r)
+{
+    double next = r->session.scene.top.end_time;
+    for (int k = 0; k < OUT_COUNT; k++) next = min2(next, due_time(&r->due[k]));
+    return next;
+}
+
+/* --- what --- */
+
+static enum err write_probes(struct run *r)
+{
+    double row[SERIES_MAX_COLUMNS];
+    if (r->probes.n == 0) return ERR_OK;
+    probes_sample(&r->probes, r->s, row);
+    return series_row(&r->probe_rows, row, r->diag);
+}
+
+static enum err write_ledger(struct run *r)
+{
+    r->record.last = simulation_ledger(r->s);
+    const double row[] = {
+#define LEDGER(name, unit, meaning) r->record.last.name,
+        LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    };
+    return series_row(&r->ledger_rows, row, r->diag);
+}
+
+static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
+                              struct diag *d)
+{
+    r->record.exit_reason = exit_reason;
+    r->record.message = message;
+    r->record.wall_seconds = wall_clock() - r->wall_start;
+    r->record.last = simulation_ledger(r->s);
+    return report_summary(r->folder.path, r->s, &r->record, d);
+}
+
+static enum err capture(struct run *r, struct diag *d)
+{
+    r->wall_image = wall_clock();
+    return checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d);
+}
+
+static enum err write_checkpoint(struct run *r)
+{
+    r->wall_checkpoint = wall_clock();
+    TRY(capture(r, r->diag));
+    TRY(checkpoint_store(&r->image, r->folder.path, r->checkpoint, r->diag));
+    return write_summary(r, "running", "", r->diag);
+}
+
+static enum err write_output(struct run *r, enum output what)
+{
+    switch (what) {
+    case OUT_PROBES: return write_probes(r);
+    case OUT_LEDGER: return write_ledger(r);
+    case OUT_SNAPSHOT: return snapshots_write(&r->snapshots, r->s, r->diag);
+    case OUT_CHECKPOINT: return write_checkpoint(r);
+    case OUT_COUNT: break;
+    }
+    return ERR_OK;
+}
+
+/* Writes what is due now; at the end of the run everything that was not just written. */
+static enum err write_due(struct run *r, bool at_end)
+{
+    const double begin = wall_clock(), time = r->s->state.time;
+    for (int k = 0; k < OUT_COUNT; k++) {
+        struct due *u = &r->due[k];
+        if (due_time(u) > time && !(at_end && u->written < time)) continue;
+        TRY(write_output(r, (enum output)k));
+        pass(u, time);
+    }
+    if (!at_end && wall_clock() - r->wall_image > image_seconds) TRY(capture(r, r->diag));
+    r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
+    return ERR_OK;
+}
+
+/* --- the way --- */
+
+static void show_progress(struct run *r, bool finished)
+{
+    const struct sphfsi_options *o = r->options;
+    const double now = wall_clock();
+    const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
+    if (!o->progress || (!finished && now - r->wall_progress < interval)) return;
+    r->wall_progress = now;
+    r->record.wall_seconds = now - r->wall_start;
+    const struct state *st = &r->s->state;
+    int binding = 0;
+    for (int k = 1; k < BOUND_COUNT; k++)
+        if (k != BOUND_output && r->s->dt_bound[k] < r->s->dt_bound[binding]) binding = k;
+    const double done = st->time - r->record.start_time;
+    const double end = r->session.scene.top.end_time;
+    const struct sphfsi_progress p = {
+        .time = st->time,
+        .end_time = end,
+        .start_time = r->record.start_time,
+        .dt = st->dt,
+        .bound = bound_names[binding],
+        .particle_steps_per_second = report_rate(r->s, &r->record),
+        .wall_seconds = r->record.wall_seconds,
+        .seconds_left = done > 0 ? r->record.wall_seconds * (end - st->time) / done : -1,
+        .steps = st->steps,
+        .finished = finished,
+    };
+    o->progress(o->context, &p);
+}
+
+/* Wishes from outside and the cadence by wall time; neither changes a step. */
+static enum err between_steps(struct run *r)
+{
+    struct sphfsi_requests *wish = r->options->requests;
+    const double minutes = r->session.scene.output.checkpoint_minutes;
+    const bool by_clock = minutes > 0 && wall_clock() - r->wall_checkpoint > 60 * minutes;
+    if (by_clock || (wish && wish->checkpoint)) {
+        if (wish) wish->checkpoint = 0;
+        const double begin = wall_clock();
+        TRY(write_checkpoint(r));
+        r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
+    }
+    show_progress(r, false);
+    if (!wish || !wish->stop) return ERR_OK;
+    TRY(write_checkpoint(r));
+    return diag_fail(r->diag, ERR_INTERRUPT, "stopped by signal %d at %.6g s; --restart goes on from %s",
+                     (int)wish->stop, r->s->state.time, r->checkpoint);
+}
+
+static enum err advance(struct run *r)
+{
+    const double end = r->session.scene.top.end_time;
+    TRY(write_due(r, false));
+    while (r->s->state.time < end) {
+        const double next = next_time(r);
+        while (r->s->state.time < next) {
+            TRY(simulation_step(r->s, next, r->diag));
+            TRY(between_steps(r));
+        }
+        TRY(write_due(r, false));
+    }
+    return write_due(r, true);
+}
+
+/* After a failure: what can still be left behind. The failure itself stays the message. */
+static void leave_state(struct run *r, enum err why)
+{
+    struct diag second = session_diag(r->options);
+    if (why == ERR_GUARD && r->image.size > 0 &&
+        checkpoint_store(&r->image, r->folder.path, r->checkpoint, &second))
+        diag_warn(&second, "the last sound state could not be kept: %s", second.text);
+    second.code = ERR_OK;
+    if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->s, &second))
+        diag_warn(&second, "the state at the stop could not be kept: %s", second.text);
+    second.code = ERR_OK;
+    const char *reason = why == ERR_GUARD       ? "guard"
+                         : why == ERR_INTERRUPT ? "interrupted"
+                         : why == ERR_MEMORY    ? "memory"
+                                                : "input_output";
+    if (write_summary(r, reason, r->diag->text, &second))
+        diag_warn(&second, "summary.json could not be written: %s", second.text);
+    if (why == ERR_GUARD && r->checkpoint[0])
+        session_say(r->options, "the last sound state is in %s, the state at the stop in %s",
+                    r->checkpoint, r->snapshots.path);
+}
+
+/* --- the beginning --- */
+
+static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_PATH],
+                               struct diag *d)
+{
+    if (o->out) {
+        if (o->out[0] && strlen(o->out) < FOLDER_PATH - 300) {
+            strcpy(path, o->out);
+            for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
+            return ERR_OK;
+        }
+        return diag_fail(d, ERR_INPUT, "out: the path has %zu characters, from 1 to %d are possible",
+                         strlen(o->out), FOLDER_PATH - 301);
+    }
+    const char *name = o->case_path ? o->case_path : "case";
+    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
+    const size_t length = strlen(name);
+    const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
+    snprintf(path, FOLDER_PATH, "runs/%.*s", (int)(cfg ? length - 4 : length), name);
+    return ERR_OK;
+}
+
+/* Writes case.cfg beside the one that may be there; its text stays in r->case_text. */
+static enum err write_case(struct run *r, char part[FOLDER_PATH])
+{
+    TRY(folder_join(part, r->folder.path, "case.cfg.part", r->diag));
+    TRY(scene_write(&r->session.scene, part, r->diag));
+    size_t size;
+    const enum err e = file_read(part, &r->case_text, &size, r->diag);
+    if (e) unlink(part);
+    return e;
+}
+
+static enum err put_case(struct run *r, const char *part)
+{
+    char path[FOLDER_PATH];
+    TRY(folder_join(path, r->folder.path, "case.cfg", r->diag));
+    if (rename(part, path) != 0)
+        return diag_fail(r->diag, ERR_IO, "%s: cannot be put in place", path);
+    return folder_sync(r->folder.path, r->diag);
+}
+
+static enum err start_fresh(struct run *r, const char *header)
+{
+    TRY(snapshots_create(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
+                         r->diag));
+    TRY(series_create(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, r->diag));
+    if (r->probes.n > 0)
+        TRY(series_create(&r->probe_rows, r->folder.path, "probes.csv", header, r->diag));
+    for (int k = 0; k < OUT_COUNT; k++) r->due[k].written = -1;
+    r->record.first = simulation_ledger(r->s);
+    return ERR_OK;
+}
+
+static enum err start_again(struct run *r, const char *header)
+{
+    const double time = r->s->state.time;
+    double row[SERIES_MAX_COLUMNS];
+    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, time,
+                         &r->due[OUT_SNAPSHOT].written, r->diag));
+    TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, time, row,
+                      &r->due[OUT_LEDGER].written, r->diag));
+    if (r->probes.n > 0)
+        TRY(series_resume(&r->probe_rows, r->folder.path, "probes.csv", header, time, NULL,
+                          &r->due[OUT_PROBES].written, r->diag));
+    TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
+    r->due[OUT_CHECKPOINT].written = time;
+    int k = 0;
+#define LEDGER(name, unit, meaning) r->record.first.name = row[k++];
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    return ERR_OK;
+}
+
+/* The end of a run and how often it writes may change at a restart; all else is another case. */
+static bool may_change(const char *section, const char *line)
+{
+    return strcmp(section, "[output]") == 0 || (!section[0] && strncmp(line, "end_time", 8) == 0);
+}
+
+/* Copies the next line that matters to `line`, following the sections; false: none is left. */
+static bool next_line(const char **at, char section[SCENE_NAME + 32], char line[512])
+{
+    while (**at) {
+        const int length = (int)strcspn(*at, "\n");
+        snprintf(line, 512, "%.*s", length, *at);
+        *at += length + ((*at)[length] == '\n');
+        if (line[0] == '[') snprintf(section, SCENE_NAME + 32, "%.*s", SCENE_NAME + 31, line);
+        if (line[0] && line[0] != '#' && !may_change(section, line)) return true;
+    }
+    line[0] = '\0';
+    return false;
+}
+
+static enum err compare_cases(const char *then, const char *now, struct diag *d)
+{
+    char section_then[SCENE_NAME + 32] = "", section_now[SCENE_NAME + 32] = "";
+    char line_then[512], line_now[512];
+    for (;;) {
+        const bool a = next_line(&then, section_then, line_then);
+        const bool b = next_line(&now, section_now, line_now);
+        if (!a && !b) return ERR_OK;
+        if (strcmp(line_then, line_now) != 0)
+            return diag_fail(d, ERR_INPUT,
+                             "restart: the case has changed since the checkpoint: %s '%s' is now "
+                             "'%s'; only end_time, [output] and the threads may change",
+                             section_then[0] ? section_then : "at the top", line_then, line_now);
+    }
+}
+
+static enum err find_checkpoint(struct run *r)
+{
+    const char *file = r->options->restart_file;
+    if (!file) return checkpoint_newest(&r->image, r->folder.path, r->restarted_from, r->diag);
+    snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
+    return checkpoint_read(&r->image, file, r->diag);
+}
+
+static enum err load_checkpoint(struct run *r)
+{
+    if (find_checkpoint(r)) {
+        /* One that is not there or not sound is wrong input: nothing was started. */
+        r->diag->code = ERR_INPUT;
+        return ERR_INPUT;
+    }
+    const struct image_info info = checkpoint_info(&r->image);
+    TRY(compare_cases(info.case_text, r->case_text, r->diag));
+    if (strcmp(info.version, SPHFSI_VERSION) != 0)
+        diag_warn(r->diag, "%s was written by version %s, this is %s: the bits may differ",
+                  r->restarted_from, info.version, SPHFSI_VERSION);
+    TRY(checkpoint_apply(&r->image, r->s, r->diag));
+    if (r->s->state.time > r->session.scene.top.end_time)
+        return diag_fail(r->diag, ERR_INPUT, "restart: %s is at %.6g s, beyond the end at %.6g s",
+                         r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
+    session_say(r->options, "restart from %s at %.6g s, step %lld", r->restarted_from,
+                r->s->state.time, (long long)r->s->state.steps);
+    return ERR_OK;
+}
+
+/* A restart touches the files of the run only after its checkpoint has been found sound. */
+static enum err begin(struct run *r, const char *header)
+{
+    char part[FOLDER_PATH];
+    TRY(write_case(r, part));
+    const enum err e = r->options->restart ? load_checkpoint(r) : ERR_OK;
+    if (e) {
+        unlink(part);
+        return e;
+    }
+    TRY(put_case(r, part));
+    TRY(r->options->restart ? start_again(r, header) : start_fresh(r, header));
+    const double time = r->s->state.time;
+    set_intervals(r, time);
+    r->record.version = SPHFSI_VERSION;
+    r->record.restarted_from = r->restarted_from;
+    r->record.threads = thread_count();
+    r->record.start_time = time;
+    r->record.start_particle_steps = r->s->state.particle_steps;
+    r->wall_start = r->wall_checkpoint = wall_clock();
+    return ERR_OK;
+}
+
+static enum err carry_out(struct run *r)
+{
+    const enum err failed = advance(r);
+    if (failed) {
+        leave_state(r, failed);
+        return failed;
+    }
+    TRY(write_summary(r, "finished", "", r->diag));
+    show_progress(r, true);
+    session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
+                r->folder.path, r->s->state.time, (long long)r->s->state.steps,
+                r->record.wall_seconds);
+    if (r->session.scene.n_probe > 0)
+        session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
+    return ERR_OK;
+}
+
+static void end(struct run *r)
+{
+    series_close(&r->probe_rows);
+    series_close(&r->ledger_rows);
+    snapshots_close(&r->snapshots);
+    checkpoint_free(&r->image);
+    arena_free(&r->arena);
+    free(r->case_text);
+    folder_close(&r->folder);
+}
+
+static enum err run_session(struct run *r, const char *path, enum folder_use use)
+{
+    TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
+    const char *header = probes_header(&r->session.scene, &r->arena, r->diag);
+    if (!header) return ERR_MEMORY;
+    TRY(folder_open(&r->folder, path, use, r->diag));
+    TRY(begin(r, header));
+    return carry_out(r);
+}
+
+enum err run_case(const struct sphfsi_options *o, struct diag *d)
+{
+    char path[FOLDER_PATH];
+    const enum folder_use use = o->restart ? FOLDER_CONTINUE : FOLDER_FRESH;
+    TRY(default_folder(o, path, d));
+    TRY(folder_check(path, use, d)); /* before the work of building the simulation */
+    struct run *r = calloc(1, sizeof *r);
+    if (!r) return diag_fail(d, ERR_MEMORY, "run: no memory for %zu bytes", sizeof *r);
+    r->options = o;
+    r->diag = d;
+    r->s = &r->session.simulation;
+    r->folder.lock = r->probe_rows.fd = r->ledger_rows.fd = -1;
+    enum err e = session_open(&r->session, o, d);
+    if (!e) {
+        e = run_session(r, path, use);
+        end(r);
+        session_close(&r->session);
+    }
+    free(r);
+    return e;
+}

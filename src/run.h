@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT
+ * A run from its case to its files: which output is due when, wishes from outside, the way out. */
+#ifndef SPHFSI_RUN_H
+#define SPHFSI_RUN_H
+
+#include "session.h"
+
+/* What the public sphfsi_run does. */
+enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
+
+#endif

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ * fields.vtkhdf: snapshots of all particles in the VTKHDF layout, which ParaView and h5py open. */
+#ifndef SPHFSI_SNAPSHOT_H
+#define SPHFSI_SNAPSHOT_H
+
+#include "folder.h"
+#include "simulation.h"
+
+/* A snapshot is appended to a spare copy, which then takes the name; so the file with the name is
+ * whole at any moment, and the other one lags a snapshot behind and is caught up first. */
+struct snapshots {
+    char folder[FOLDER_PATH], path[FOLDER_PATH], spare[FOLDER_PATH];
+    const struct scene *scene;
+    const char *version; /* of the program */
+};
+
+/* Begins with no snapshot, or goes on with those up to `time`; `last` is the time of the last one,
+ * -1 if there is none. */
+enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
+                          const char *version, struct diag *d) SPHFSI_CHECKED;
+enum err snapshots_resume(struct snapshots *w, const char *folder, const struct scene *scene,
+                          const char *version, double time, double *last, struct diag *d)
+    SPHFSI_CHECKED;
+
+enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Removes the spare. */
+void snapshots_close(struct snapshots *w);
+
+#endif
