@@ -128,6 +128,14 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
                       k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
 }
 
+/* Particles of the structure that have lost touch with the fluid are not visited any more. */
+static void forget_touch(struct particles *solid)
+{
+    memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
+    memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
+    memset(solid->p, 0, (size_t)solid->n * sizeof *solid->p);
+}
+
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
 static enum err sort_particles(struct simulation *s, struct diag *d)
 {
@@ -141,10 +149,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
         cells_sort(&s->cells, KIND_WALL, &s->kind[KIND_WALL]);
     if (s->effects & FX_COUPLING) {
         cells_sort(&s->cells, KIND_SOLID, solid);
-        /* Those that have lost touch with the fluid are not visited any more. */
-        memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
-        memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
-        memset(solid->p, 0, (size_t)solid->n * sizeof *solid->p);
+        forget_touch(solid);
     }
     fluid_find_near(&s->fluid, &s->cells);
     s->state.drift = 0;
@@ -273,6 +278,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
+        if (s->effects & FX_COUPLING) forget_touch(&s->kind[KIND_SOLID]);
         if (fluid_crowding(&s->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
