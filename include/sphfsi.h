@@ -48,15 +48,15 @@ enum sphfsi_message { SPHFSI_NOTE, SPHFSI_WARNING };
 
 /** How a run is going; valid during the callback. */
 struct sphfsi_progress {
-    double time, end_time;         /**< s, simulated */
-    double start_time;             /**< s, simulated, at which this process began */
-    double dt;                     /**< s, last time step */
-    const char *bound;             /**< what limited it */
+    double time, end_time; /**< s, simulated */
+    double start_time;     /**< s, simulated, at which this process began */
+    double dt;             /**< s, last time step */
+    const char *bound;     /**< what limited it */
     double particle_steps_per_second;
-    double wall_seconds;           /**< s, wall time since this process began to step */
-    double seconds_left;           /**< s, wall time, estimated; negative: not known yet */
+    double wall_seconds; /**< s, wall time since this process began to step */
+    double seconds_left; /**< s, wall time, estimated; negative: not known yet */
     int64_t steps;
-    int finished;                  /**< 1 at the last call */
+    int finished; /**< 1 at the last call */
 };
 
 /** Wishes to a running sphfsi_run; may be set from a signal handler. */
@@ -73,28 +73,28 @@ struct sphfsi_options {
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", in effect over the case */
     int n_sets;
-    int threads;             /**< 0: as many as OpenMP offers */
-    double until;            /**< s; simulated time to end at instead of the case's end_time; 0: that */
+    int threads;  /**< 0: as many as OpenMP offers */
+    double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 
     /* Of sphfsi_run only. */
     const char *out;          /**< folder of the run; NULL: runs/<name of the case> */
     int restart;              /**< 1: continue the run in that folder */
     const char *restart_file; /**< checkpoint to continue from; NULL: the newest valid one */
-    struct sphfsi_requests *requests;                                         /**< may be NULL */
-    void (*progress)(void *context, const struct sphfsi_progress *p);         /**< may be NULL */
+    struct sphfsi_requests *requests;                                 /**< may be NULL */
+    void (*progress)(void *context, const struct sphfsi_progress *p); /**< may be NULL */
     double progress_interval; /**< s, least wall time between calls; 0: 0.25 */
 
     void (*message)(void *context, enum sphfsi_message kind, const char *text); /**< may be NULL */
-    void *context;            /**< handed to the callbacks */
+    void *context; /**< handed to the callbacks */
 };
 
 /** A view of a field: no copy, owned by the simulation, read only. Valid until the next step,
  * advance or free; the order of fluid particles changes between steps, their `id` stays. */
 struct sphfsi_view {
-    const void *data;      /**< [count] items of the type */
+    const void *data; /**< [count] items of the type */
     int64_t count;
     enum sphfsi_type type;
-    const char *unit;      /**< such as "m/s" */
+    const char *unit; /**< such as "m/s" */
     const char *meaning;
 };
 

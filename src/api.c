@@ -21,7 +21,7 @@ struct sphfsi_simulation {
     bool unsound; /* a guard has stopped it */
 };
 
-static _Thread_local char last_error[sizeof ((struct diag *)0)->text];
+static _Thread_local char last_error[sizeof((struct diag *)0)->text];
 
 static enum sphfsi_status result(const struct diag *d, enum err e)
 {
@@ -29,15 +29,9 @@ static enum sphfsi_status result(const struct diag *d, enum err e)
     return (enum sphfsi_status)e;
 }
 
-const char *sphfsi_version(void)
-{
-    return SPHFSI_VERSION;
-}
+const char *sphfsi_version(void) { return SPHFSI_VERSION; }
 
-const char *sphfsi_error(void)
-{
-    return last_error;
-}
+const char *sphfsi_error(void) { return last_error; }
 
 int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
 {
@@ -59,8 +53,8 @@ enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result_,
     *result_ = NULL;
     struct sphfsi_simulation *s = calloc(1, sizeof *s);
     if (!s)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "simulation: no memory for %zu bytes",
-                                    sizeof *s));
+        return result(&d,
+                      diag_fail(&d, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *s));
     const enum err e = session_open(&s->session, options, &d);
     if (e)
         free(s);
@@ -83,8 +77,10 @@ enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
     if (s->unsound)
         return result(&d, diag_fail(&d, ERR_GUARD, "step: a guard has stopped this simulation"));
     if (!(limit > sim->state.time))
-        return result(&d, diag_fail(&d, ERR_INPUT, "step: the limit %.17g s is not later than the "
-                                    "simulated time %.17g s", limit, sim->state.time));
+        return result(&d, diag_fail(&d, ERR_INPUT,
+                                    "step: the limit %.17g s is not later than the "
+                                    "simulated time %.17g s",
+                                    limit, sim->state.time));
     const enum err e = simulation_step(sim, limit, &d);
     s->unsound = e == ERR_GUARD;
     return result(&d, e);
@@ -99,15 +95,9 @@ enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time)
     return SPHFSI_OK;
 }
 
-double sphfsi_time(const struct sphfsi_simulation *s)
-{
-    return s->session.simulation.state.time;
-}
+double sphfsi_time(const struct sphfsi_simulation *s) { return s->session.simulation.state.time; }
 
-double sphfsi_end_time(const struct sphfsi_simulation *s)
-{
-    return s->session.scene.top.end_time;
-}
+double sphfsi_end_time(const struct sphfsi_simulation *s) { return s->session.scene.top.end_time; }
 
 double sphfsi_time_step(const struct sphfsi_simulation *s)
 {
@@ -152,10 +142,12 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
     struct nearest best = {0};
     for (int k = 0; p && k < field_count; k++)
         if (field_array(p, &field_table[k])) nearest_offer(&best, name, field_table[k].name);
-    return result(&d, diag_fail(&d, ERR_INPUT, "field: %s particles have no field '%.60s' in this "
-                                "scene%s%s", p ? kind_names[kind] : "these", name,
-                                best.name ? "; the nearest name is " : "",
-                                best.name ? best.name : ""));
+    return result(&d,
+                  diag_fail(&d, ERR_INPUT,
+                            "field: %s particles have no field '%.60s' in this "
+                            "scene%s%s",
+                            p ? kind_names[kind] : "these", name,
+                            best.name ? "; the nearest name is " : "", best.name ? best.name : ""));
 }
 
 enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)

@@ -60,10 +60,7 @@ static uint64_t fnv(const void *bytes, size_t n)
     return h;
 }
 
-static size_t padded(size_t n)
-{
-    return (n + 7) / 8 * 8;
-}
+static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
 
 /* --- capture --- */
 
@@ -106,14 +103,15 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
     bytes += sizeof(struct block_header) + sizeof s->state.bound_steps;
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
-            bytes += sizeof(struct block_header) + padded((size_t)s->kind[k].n * field_table[f].size);
+            bytes +=
+                sizeof(struct block_header) + padded((size_t)s->kind[k].n * field_table[f].size);
     return bytes;
 }
 
 static uint32_t put_state(struct image *m, const struct state *st)
 {
     uint32_t blocks = 1;
-#define STATE(type, name, unit, meaning)                                \
+#define STATE(type, name, unit, meaning)                            \
     put_block(m, #name, OWNER_STATE, item_of(#type), &st->name, 1); \
     blocks++;
 #include "state.def"
@@ -402,11 +400,14 @@ static enum err take(const struct image *m, const char *name, unsigned owner, en
 {
     struct block b;
     if (!find_block(m, name, owner, &b))
-        return diag_fail(d, ERR_INPUT, "checkpoint: it has no block %s, which this case needs", name);
+        return diag_fail(d, ERR_INPUT, "checkpoint: it has no block %s, which this case needs",
+                         name);
     if (b.head.item != item || b.head.count != count)
         return diag_fail(d, ERR_INPUT,
-                         "checkpoint: block %s holds %" PRIu64 " items of type %u, wanted are %zu of "
-                         "type %u", name, b.head.count, b.head.item, count, item);
+                         "checkpoint: block %s holds %" PRIu64
+                         " items of type %u, wanted are %zu of "
+                         "type %u",
+                         name, b.head.count, b.head.item, count, item);
     if (count) memcpy(to, m->bytes + b.payload, count * item_size[item]);
     return ERR_OK;
 }
@@ -415,8 +416,9 @@ static enum err take_particles(const struct image *m, struct particles *p, enum 
                                int64_t n, struct diag *d)
 {
     if (n < 0 || n > p->capacity)
-        return diag_fail(d, ERR_INPUT, "checkpoint: it has %" PRId64 " %s particles, the case has %"
-                         PRId64, n, kind_names[kind], p->capacity);
+        return diag_fail(d, ERR_INPUT,
+                         "checkpoint: it has %" PRId64 " %s particles, the case has %" PRId64, n,
+                         kind_names[kind], p->capacity);
     p->n = n;
     for (int f = 0; f < field_count; f++) {
         const struct field_info *info = &field_table[f];

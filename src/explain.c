@@ -106,9 +106,10 @@ static void say_cost(const struct simulation *s, int steps, double seconds,
     const double n = (s->scene->top.end_time - s->state.time) / s->state.dt + steps;
     char time[32];
     text_of_seconds(n * per_step, time);
-    session_say(o, "  about %.3g steps of %.3g s, %.3g million particle steps a second, %s in all; "
-                "a scene that gets faster takes more", n, s->state.dt,
-                1e-6 * particles / per_step, time);
+    session_say(o,
+                "  about %.3g steps of %.3g s, %.3g million particle steps a second, %s in all; "
+                "a scene that gets faster takes more",
+                n, s->state.dt, 1e-6 * particles / per_step, time);
 }
 
 static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)

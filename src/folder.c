@@ -16,8 +16,9 @@ enum err folder_join(char path[FOLDER_PATH], const char *folder, const char *nam
 {
     const int length = snprintf(path, FOLDER_PATH, "%s/%s", folder, name);
     if (length >= 0 && length < FOLDER_PATH) return ERR_OK;
-    return diag_fail(d, ERR_INPUT, "%.80s.../%s: the path has %d characters, at most %d are possible",
-                     folder, name, length, FOLDER_PATH - 1);
+    return diag_fail(d, ERR_INPUT,
+                     "%.80s.../%s: the path has %d characters, at most %d are possible", folder,
+                     name, length, FOLDER_PATH - 1);
 }
 
 static bool ends_with(const char *text, const char *end)
@@ -89,8 +90,10 @@ static enum err lock_busy(const struct folder *f, int fd, struct diag *d)
     char owner[32] = "";
     const ssize_t got = read(fd, owner, sizeof owner - 1);
     owner[got > 0 ? strcspn(owner, "\n") : 0] = '\0';
-    return diag_fail(d, ERR_INPUT, "%s: another run (process %s) is writing there; wait for it, or "
-                     "choose another folder with --out", f->path, owner[0] ? owner : "unknown");
+    return diag_fail(d, ERR_INPUT,
+                     "%s: another run (process %s) is writing there; wait for it, or "
+                     "choose another folder with --out",
+                     f->path, owner[0] ? owner : "unknown");
 }
 
 /* Locks the file that has the name now: one that its owner unlinked after we opened it, while it
@@ -128,8 +131,10 @@ enum err folder_open(struct folder *f, const char *path, enum folder_use use, st
     f->lock = -1;
     const size_t length = strlen(path);
     if (length == 0 || length >= sizeof f->path - 64)
-        return diag_fail(d, ERR_INPUT, "folder of the run: the path has %zu characters, from 1 to "
-                         "%zu are possible", length, sizeof f->path - 65);
+        return diag_fail(d, ERR_INPUT,
+                         "folder of the run: the path has %zu characters, from 1 to "
+                         "%zu are possible",
+                         length, sizeof f->path - 65);
     memcpy(f->path, path, length + 1);
     if (use == FOLDER_FRESH) TRY(make_folders(path, d));
     TRY(folder_check(path, use, d));
@@ -152,7 +157,8 @@ void folder_close(struct folder *f)
 enum err folder_sync(const char *path, struct diag *d)
 {
     const int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd < 0) return diag_fail(d, ERR_IO, "%s: cannot open the folder: %s", path, strerror(errno));
+    if (fd < 0)
+        return diag_fail(d, ERR_IO, "%s: cannot open the folder: %s", path, strerror(errno));
     /* Some file systems do not sync folders and say EINVAL; there is nothing better to do there. */
     const bool failed = fsync(fd) != 0 && errno != EINVAL;
     const int why = errno;

@@ -21,8 +21,8 @@ struct folder {
 };
 
 /* Writes "folder/name" to `path`. ERR_INPUT if that is longer than a path may be. */
-enum err folder_join(char path[FOLDER_PATH], const char *folder, const char *name,
-                     struct diag *d) SPHFSI_CHECKED;
+enum err folder_join(char path[FOLDER_PATH], const char *folder, const char *name, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Whether the folder may be used so; looks only, changes nothing. */
 enum err folder_check(const char *path, enum folder_use use, struct diag *d) SPHFSI_CHECKED;

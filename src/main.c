@@ -13,7 +13,8 @@ static const char usage[] =
     "  --out DIR         folder of the results (runs/<case name>)\n"
     "  --threads N       threads to use (all)\n"
     "  --until TIME      simulated time in s to end at (end_time of the case)\n"
-    "  --set KEY=VALUE   value in effect over the case: dp=1mm, \"solid gate.young=12MPa\"; repeatable\n"
+    "  --set KEY=VALUE   value in effect over the case: dp=1mm, \"solid gate.young=12MPa\"; "
+    "repeatable\n"
     "  --restart [FILE]  go on from the newest valid checkpoint of the run, or from FILE\n"
     "  --explain         say what would be simulated and what it would cost; run nothing\n"
     "  --quiet           no progress, warnings only\n"
@@ -21,8 +22,9 @@ static const char usage[] =
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
-static const char *const option_names[] = {"--out",     "--threads", "--until",   "--set", "--restart",
-                                           "--explain", "--quiet",   "--version", "--help"};
+static const char *const option_names[] = {"--out",   "--threads", "--until",
+                                           "--set",   "--restart", "--explain",
+                                           "--quiet", "--version", "--help"};
 enum { OPTION_COUNT = sizeof option_names / sizeof option_names[0] };
 
 struct command {
@@ -202,7 +204,8 @@ static int parse(struct command *c, int argc, char **argv)
         if (!option) return unknown_option(argv[k]);
         const char *next = k + 1 < argc ? argv[k + 1] : NULL;
         const int takes = operands(option);
-        if (takes == 0 && operand) return complain("%s takes no operand, not '%s'", option, operand);
+        if (takes == 0 && operand)
+            return complain("%s takes no operand, not '%s'", option, operand);
         if (takes == 1 && !operand && !next)
             return complain("%s: its operand is missing%s", option, "");
         /* A word behind --restart is the checkpoint, unless it can only be the case. */

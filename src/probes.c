@@ -12,17 +12,13 @@ struct moment {
 
 /* Weight over the squared distance in units of the reach; 0 at the reach. Any positive weight
  * reproduces linear fields; this one is smooth. */
-static double nearness(double q2)
-{
-    return q2 < 1 ? square(square(1 - q2)) : 0;
-}
+static double nearness(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
 
 static enum err no_body(const struct scene_probe *sp, const struct scene *scene, struct diag *d)
 {
     const char *one = scene->n_solid > 0 ? scene->solid[0].common.name : "";
-    return diag_fail(d, ERR_INPUT,
-                     "line %d: probe %s: body = '%s' names no solid section%s%s%s", sp->common.line,
-                     sp->common.name, sp->body, one[0] ? "; there is '" : "", one,
+    return diag_fail(d, ERR_INPUT, "line %d: probe %s: body = '%s' names no solid section%s%s%s",
+                     sp->common.line, sp->common.name, sp->body, one[0] ? "; there is '" : "", one,
                      one[0] ? "'" : "");
 }
 
@@ -91,11 +87,11 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     const double h = s->scene->h, reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
     if (!(distance < h))
-        return diag_fail(d, ERR_INPUT,
-                         "line %d: probe %s: point = %g, %g lies %.3g m off the nearest particle of "
-                         "solid '%s'; at most h = %.3g m is possible",
-                         sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance,
-                         sp->body, h);
+        return diag_fail(
+            d, ERR_INPUT,
+            "line %d: probe %s: point = %g, %g lies %.3g m off the nearest particle of "
+            "solid '%s'; at most h = %.3g m is possible",
+            sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance, sp->body, h);
     pr->n = find_near(p, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);
@@ -105,10 +101,7 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     return ERR_OK;
 }
 
-static int quantity_columns(int quantity)
-{
-    return quantity == PROBE_PRESSURE ? 1 : 2;
-}
+static int quantity_columns(int quantity) { return quantity == PROBE_PRESSURE ? 1 : 2; }
 
 enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
                        struct diag *d)

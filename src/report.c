@@ -39,28 +39,16 @@ static void write_value(struct json *j, const struct param *p, const void *value
 {
     char name[SCENE_NAME];
     switch (p->type) {
-    case PARAM_REAL:
-        json_number(j, p->key, *(const double *)value);
-        break;
-    case PARAM_INTEGER:
-        json_integer(j, p->key, *(const int *)value);
-        break;
+    case PARAM_REAL: json_number(j, p->key, *(const double *)value); break;
+    case PARAM_INTEGER: json_integer(j, p->key, *(const int *)value); break;
     case PARAM_CHOICE:
         param_choice_name(p, *(const int *)value, name);
         json_text(j, p->key, name);
         break;
-    case PARAM_TEXT:
-        json_text(j, p->key, value);
-        break;
-    case PARAM_VECTOR:
-        json_numbers(j, p->key, value, 2);
-        break;
-    case PARAM_FIELD_EXPR:
-        write_expressions(j, p, value);
-        break;
-    case PARAM_SHAPES:
-        write_shapes(j, p->key, value);
-        break;
+    case PARAM_TEXT: json_text(j, p->key, value); break;
+    case PARAM_VECTOR: json_numbers(j, p->key, value, 2); break;
+    case PARAM_FIELD_EXPR: write_expressions(j, p, value); break;
+    case PARAM_SHAPES: write_shapes(j, p->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;
         json_numbers(j, p->key, list->value, list->n);

@@ -7,15 +7,15 @@
 
 /* What a summary says besides the simulation itself. */
 struct record {
-    const char *exit_reason;     /* "finished", "running", "guard", "input_output", "interrupted" */
-    const char *message;         /* the sentence of a failure, or "" */
+    const char *exit_reason; /* "finished", "running", "guard", "input_output", "interrupted" */
+    const char *message;     /* the sentence of a failure, or "" */
     const char *version;
-    const char *restarted_from;  /* checkpoint, or "" */
+    const char *restarted_from; /* checkpoint, or "" */
     int threads;
-    double wall_seconds;         /* of this process, from the first step on */
-    double start_time;           /* s, simulated, at which this process began */
+    double wall_seconds; /* of this process, from the first step on */
+    double start_time;   /* s, simulated, at which this process began */
     int64_t start_particle_steps;
-    struct ledger first, last;   /* at time zero and now */
+    struct ledger first, last; /* at time zero and now */
 };
 
 /* Writes summary.json to the folder of the run: complete or not at all. */

@@ -206,8 +206,9 @@ static enum err between_steps(struct run *r)
     show_progress(r, false);
     if (!wish || !wish->stop) return ERR_OK;
     TRY(write_checkpoint(r));
-    return diag_fail(r->diag, ERR_INTERRUPT, "stopped by signal %d at %.6g s; --restart goes on from %s",
-                     (int)wish->stop, r->s->state.time, r->checkpoint);
+    return diag_fail(r->diag, ERR_INTERRUPT,
+                     "stopped by signal %d at %.6g s; --restart goes on from %s", (int)wish->stop,
+                     r->s->state.time, r->checkpoint);
 }
 
 static enum err advance(struct run *r)
@@ -258,7 +259,8 @@ static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_
             for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
             return ERR_OK;
         }
-        return diag_fail(d, ERR_INPUT, "out: the path has %zu characters, from 1 to %d are possible",
+        return diag_fail(d, ERR_INPUT,
+                         "out: the path has %zu characters, from 1 to %d are possible",
                          strlen(o->out), FOLDER_PATH - 301);
     }
     const char *name = o->case_path ? o->case_path : "case";

@@ -91,8 +91,8 @@ static enum err cut(struct series *s, const char *bytes, const char *header, dou
 {
     const size_t length = strlen(header);
     if (strncmp(bytes, header, length) != 0 || bytes[length] != '\n')
-        return diag_fail(d, ERR_IO, "%s: has the columns '%.*s', but this case writes '%s'", s->path,
-                         (int)strcspn(bytes, "\n"), bytes, header);
+        return diag_fail(d, ERR_IO, "%s: has the columns '%.*s', but this case writes '%s'",
+                         s->path, (int)strcspn(bytes, "\n"), bytes, header);
     const char *row = NULL;
     *last = -1;
     const size_t keep = length + 1 + rows_until(bytes + length + 1, time, &row, last);

@@ -58,8 +58,10 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
                                out->checkpoint_interval};
     for (size_t k = 0; k < COUNT_OF(interval); k++)
         if (interval[k] > 0 && interval[k] < least)
-            return diag_fail(d, ERR_INPUT, "%s: [output] an interval of %g s is less than %g s, a "
-                             "billionth of end_time", scene->path, interval[k], least);
+            return diag_fail(d, ERR_INPUT,
+                             "%s: [output] an interval of %g s is less than %g s, a "
+                             "billionth of end_time",
+                             scene->path, interval[k], least);
     return ERR_OK;
 }
 
@@ -68,8 +70,10 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
     if (!o->case_path && !o->case_text)
         return diag_fail(d, ERR_INPUT, "options: neither a case file nor its text is given");
     if (o->threads < 0 || o->threads > 4096)
-        return diag_fail(d, ERR_INPUT, "threads = %d: from 1 to 4096 are possible, 0 leaves it to "
-                         "OpenMP", o->threads);
+        return diag_fail(d, ERR_INPUT,
+                         "threads = %d: from 1 to 4096 are possible, 0 leaves it to "
+                         "OpenMP",
+                         o->threads);
     if (!(o->until >= 0 && o->until <= 1e9))
         return diag_fail(d, ERR_INPUT, "until = %g: more than 0 and up to 1e9 seconds are possible",
                          o->until);

@@ -13,9 +13,29 @@
 enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
 enum data {
-    D_POINTS_COUNT, D_CELLS_COUNT, D_IDS_COUNT, D_TIME, D_PARTS_BEFORE, D_PARTS, D_POINTS_BEFORE,
-    D_CELLS_BEFORE, D_IDS_BEFORE, D_POINTS, D_CONNECTIVITY, D_OFFSETS, D_TYPES, D_VELOCITY,
-    D_DENSITY, D_PRESSURE, D_KIND, D_ID, D_BODY, D_STRESS, D_VON_MISES, D_DISPLACEMENT, D_DET_F,
+    D_POINTS_COUNT,
+    D_CELLS_COUNT,
+    D_IDS_COUNT,
+    D_TIME,
+    D_PARTS_BEFORE,
+    D_PARTS,
+    D_POINTS_BEFORE,
+    D_CELLS_BEFORE,
+    D_IDS_BEFORE,
+    D_POINTS,
+    D_CONNECTIVITY,
+    D_OFFSETS,
+    D_TYPES,
+    D_VELOCITY,
+    D_DENSITY,
+    D_PRESSURE,
+    D_KIND,
+    D_ID,
+    D_BODY,
+    D_STRESS,
+    D_VON_MISES,
+    D_DISPLACEMENT,
+    D_DET_F,
     D_COUNT
 };
 
@@ -54,7 +74,13 @@ static const struct column {
     [D_DET_F] = {"PointData/det_F", BY_POINT, F32, 1},
 };
 
-enum { MAX_WIDTH = 6, VTK_VERTEX = 1, COPY_ROWS = 1 << 16, STEP_CHUNK = 128, POINT_CHUNK = 1 << 14 };
+enum {
+    MAX_WIDTH = 6,
+    VTK_VERTEX = 1,
+    COPY_ROWS = 1 << 16,
+    STEP_CHUNK = 128,
+    POINT_CHUNK = 1 << 14
+};
 static const unsigned deflate_level = 2;
 
 static hid_t file_type(enum item item)
@@ -88,9 +114,9 @@ static bool create_dataset(hid_t root, const struct column *c)
     bool ok = space >= 0 && how >= 0 && H5Pset_chunk(how, rank, chunk) >= 0;
     if (ok && c->growth != BY_STEP && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0)
         ok = H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, deflate_level) >= 0;
-    const hid_t set = ok ? H5Dcreate2(root, c->name, file_type(c->item), space, H5P_DEFAULT, how,
-                                      H5P_DEFAULT)
-                         : -1;
+    const hid_t set =
+        ok ? H5Dcreate2(root, c->name, file_type(c->item), space, H5P_DEFAULT, how, H5P_DEFAULT)
+           : -1;
     ok = set >= 0 && H5Dclose(set) >= 0;
     H5Pclose(how);
     H5Sclose(space);
@@ -158,8 +184,8 @@ static bool put_numbers(hid_t at, const char *name, enum item item, const void *
     const hsize_t size = (hsize_t)n;
     const hid_t space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR);
     const hid_t a = H5Acreate2(at, name, file_type(item), space, H5P_DEFAULT, H5P_DEFAULT);
-    const bool ok = a >= 0 &&
-                    H5Awrite(a, item == F64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, values) >= 0;
+    const bool ok =
+        a >= 0 && H5Awrite(a, item == F64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, values) >= 0;
     H5Aclose(a);
     H5Sclose(space);
     return ok;
@@ -209,8 +235,8 @@ static bool move_steps(hid_t file, int64_t *n, bool write)
 {
     const hid_t group = H5Gopen2(file, "VTKHDF/Steps", H5P_DEFAULT);
     const hid_t a = group >= 0 ? H5Aopen(group, "NSteps", H5P_DEFAULT) : -1;
-    const bool ok = a >= 0 && (write ? H5Awrite(a, H5T_NATIVE_INT64, n)
-                                     : H5Aread(a, H5T_NATIVE_INT64, n)) >= 0;
+    const bool ok =
+        a >= 0 && (write ? H5Awrite(a, H5T_NATIVE_INT64, n) : H5Aread(a, H5T_NATIVE_INT64, n)) >= 0;
     if (a >= 0) H5Aclose(a);
     if (group >= 0) H5Gclose(group);
     return ok;
@@ -222,10 +248,7 @@ static int64_t read_steps(hid_t file)
     return move_steps(file, &n, false) ? n : -1;
 }
 
-static bool write_steps(hid_t file, int64_t n)
-{
-    return move_steps(file, &n, true);
-}
+static bool write_steps(hid_t file, int64_t n) { return move_steps(file, &n, true); }
 
 /* Reads the first n rows of a dataset of one column. */
 static bool read_first(hid_t file, enum data what, int64_t n, void *values)
@@ -233,8 +256,8 @@ static bool read_first(hid_t file, enum data what, int64_t n, void *values)
     char name[96];
     snprintf(name, sizeof name, "VTKHDF/%s", columns[what].name);
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-    const bool ok = set >= 0 && count_rows(set) >= n &&
-                    move_rows(set, &columns[what], 0, n, values, false);
+    const bool ok =
+        set >= 0 && count_rows(set) >= n && move_rows(set, &columns[what], 0, n, values, false);
     H5Dclose(set);
     return ok;
 }
@@ -250,8 +273,9 @@ static bool count_until(hid_t file, int64_t steps, int64_t rows[D_COUNT])
     for (int64_t k = 0; ok && k < steps; k++) points += n[k];
     free(n);
     for (int k = 0; k < D_COUNT; k++)
-        rows[k] = columns[k].growth == BY_STEP ? steps
-                  : points + (columns[k].growth == BY_POINT_AND_ONE ? steps : 0);
+        rows[k] = columns[k].growth == BY_STEP
+                      ? steps
+                      : points + (columns[k].growth == BY_POINT_AND_ONE ? steps : 0);
     return ok;
 }
 
@@ -259,7 +283,8 @@ static bool copy_rows(hid_t from, hid_t to, const struct column *c, int64_t unti
 {
     char name[96];
     snprintf(name, sizeof name, "VTKHDF/%s", c->name);
-    const hid_t source = H5Dopen2(from, name, H5P_DEFAULT), target = H5Dopen2(to, name, H5P_DEFAULT);
+    const hid_t source = H5Dopen2(from, name, H5P_DEFAULT),
+                target = H5Dopen2(to, name, H5P_DEFAULT);
     bool ok = source >= 0 && target >= 0 && count_rows(source) >= until;
     int64_t at = ok ? count_rows(target) : until;
     for (int64_t n; ok && at < until; at += n) {
@@ -455,10 +480,7 @@ static struct quiet quiet_begin(void)
     return q;
 }
 
-static void quiet_end(struct quiet q)
-{
-    H5Eset_auto2(H5E_DEFAULT, q.report, q.context);
-}
+static void quiet_end(struct quiet q) { H5Eset_auto2(H5E_DEFAULT, q.report, q.context); }
 
 static enum err update(const struct snapshots *w, int64_t steps, struct simulation *s,
                        struct diag *d)
@@ -470,8 +492,9 @@ static enum err update(const struct snapshots *w, int64_t steps, struct simulati
     quiet_end(q);
     if (!filled) {
         unlink(w->spare);
-        return diag_fail(d, ERR_IO, "%s: a snapshot cannot be written: %s; those before it are kept",
-                         w->path, why ? strerror(why) : "HDF5 reports a failure");
+        return diag_fail(d, ERR_IO,
+                         "%s: a snapshot cannot be written: %s; those before it are kept", w->path,
+                         why ? strerror(why) : "HDF5 reports a failure");
     }
     if (!sync_file(w->spare) || !swap(w))
         return diag_fail(d, ERR_IO, "%s: cannot be put in place: %s", w->path, strerror(errno));
@@ -518,8 +541,10 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     const bool counted = count_snapshots(w, time, &all, &keep, last);
     quiet_end(q);
     if (!counted)
-        return diag_fail(d, ERR_INPUT, "%s: cannot be read as snapshots; move it away to go on "
-                         "without it", w->path);
+        return diag_fail(d, ERR_INPUT,
+                         "%s: cannot be read as snapshots; move it away to go on "
+                         "without it",
+                         w->path);
     if (keep == all) return ERR_OK;
     TRY(update(w, keep, NULL, d));
     unlink(w->spare);
