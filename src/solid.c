@@ -314,8 +314,9 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
     *det = J;
 }
 
-/* Eqs. 15-17: energy of the hourglass force of a pack, J/m: a quarter of the sum over neighbours, since
- * each pair is met twice. */
+/* Energy of the hourglass force of a pack, J/m: half of force (Eq. 17) times the stretch of the pair, and
+ * half of that since each pair is met twice. The force has no potential of its own, since it leaves out
+ * how e_ab depends on F; for small strains this is the work it takes. */
 static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pack, const struct particles *p)
 {
     const struct solid_receiver a = receiver_of(p, pack->i);
@@ -326,8 +327,9 @@ static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pa
         q.U_b = load_gradient(p, q.j);
         vwide ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
-        const vwide along = ex * q.x + ey * q.y;
-        sum = sum + vload_wide(slot->hourglass) * along * along / (q.x * q.x + q.y * q.y);
+        const vwide x2 = q.x * q.x + q.y * q.y, x = vsqrt_wide(x2), X = vsqrt_wide(q.X * q.X + q.Y * q.Y);
+        const vwide stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
+        sum = sum - vload_wide(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;
     }
     return sum * (0.25 * s->body[pack->body].mass);
 }
