@@ -156,15 +156,24 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
     return true;
 }
 
+/* Of a unit as params.def spells it: "m/s^2", "1/s", or "1". */
+static struct dim dim_of(const char *unit)
+{
+    const bool inverse = strncmp(unit, "1/", 2) == 0;
+    struct quantity q = {1, {DIM_KNOWN, 0, 0, 0}};
+    struct slice text = {unit + (inverse ? 2 : 0), strlen(unit) - (inverse ? 2 : 0)};
+    char why[EXPR_WHY];
+    unit_read(&text, &q, why);
+    const double sign = inverse ? -1 : 1;
+    return (struct dim){DIM_KNOWN, sign * q.dim.m, sign * q.dim.kg, sign * q.dim.s};
+}
+
 bool dim_fits(const struct dim *dim, const char *unit)
 {
     if (dim->kind != DIM_KNOWN || strcmp(unit, "SI") == 0) return true;
-    struct quantity q = {1, {DIM_KNOWN, 0, 0, 0}};
-    struct slice text = {unit, strlen(unit)};
-    char why[EXPR_WHY];
-    unit_read(&text, &q, why); /* "1" has no symbol: a pure number */
-    return fabs(q.dim.m - dim->m) < 1e-9 && fabs(q.dim.kg - dim->kg) < 1e-9 &&
-           fabs(q.dim.s - dim->s) < 1e-9;
+    const struct dim want = dim_of(unit);
+    return fabs(want.m - dim->m) < 1e-9 && fabs(want.kg - dim->kg) < 1e-9 &&
+           fabs(want.s - dim->s) < 1e-9;
 }
 
 void dim_text(const struct dim *dim, char text[DIM_TEXT])
@@ -191,9 +200,6 @@ void dim_text(const struct dim *dim, char text[DIM_TEXT])
 
 void unit_dim_text(const char *unit, char text[DIM_TEXT])
 {
-    struct quantity q = {1, {DIM_KNOWN, 0, 0, 0}};
-    struct slice slice = {unit, strlen(unit)};
-    char why[EXPR_WHY];
-    unit_read(&slice, &q, why);
-    dim_text(&q.dim, text);
+    const struct dim dim = dim_of(unit);
+    dim_text(&dim, text);
 }

@@ -1,0 +1,139 @@
+/* SPDX-License-Identifier: MIT
+ * Prescribed motion: at rest before and after, velocity and acceleration the derivatives of the
+ * displacement in between. */
+#include "scene.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define HEAD                                                                                       \
+    "dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n"     \
+    "[wall bed]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = move\n[motion move]\n"
+
+static struct scene scene;
+static struct diag diag;
+
+static enum err read(const char *motion)
+{
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", HEAD, motion);
+    diag = (struct diag){0};
+    return scene_parse(&scene, text, "motion.cfg", 0, NULL, &diag);
+}
+
+static void must_read(const char *motion)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, read(motion), diag.text);
+}
+
+static void expect(double time, double dx, double vx, double ax)
+{
+    const struct motion_state m = motion_at(&scene, 0, time);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, dx, m.d[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, vx, m.v[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, ax, m.a[0]);
+}
+
+static void write_table(const char *text)
+{
+    FILE *file = fopen("test_motion.tmp", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+void setUp(void)
+{
+}
+
+void tearDown(void)
+{
+    scene_free(&scene);
+    remove("test_motion.tmp");
+}
+
+static void test_velocity_between_start_and_stop(void)
+{
+    must_read("velocity = 2, 0\nstart = 0.25\nstop = 0.75\n");
+    expect(0, 0, 0, 0);
+    expect(0.25, 0, 2, 0);
+    expect(0.5, 0.5, 2, 0);
+    expect(0.75, 1, 0, 0);
+    expect(9, 1, 0, 0);
+}
+
+static void test_polynomial(void)
+{
+    must_read("kind = polynomial\npoly_x = 1, 2, 3\npoly_y = 0, 1\nstart = 1\nstop = 3\n");
+    expect(0.5, 0, 0, 0);
+    expect(2, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
+    expect(4, 2 + 8 + 24, 0, 0);
+    TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 2).d[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(4, motion_at(&scene, 0, 9).d[1]);
+}
+
+static void test_table_is_smooth_and_does_not_overshoot(void)
+{
+    write_table("time,dx,dy\n# a comment\n0, 0, 0\n0.1 0.01 0\n0.2; 0.04; 0\n0.3, 0.04, 0\n"
+                "0.5, 0, -0.1\n");
+    must_read("kind = table\nfile = test_motion.tmp\n");
+    TEST_ASSERT_EQUAL_INT(5, scene.motion_data[0].n);
+    expect(0, 0, 0, 0);
+    expect(0.3, 0.04, 0, motion_at(&scene, 0, 0.3).a[0]);
+    expect(0.7, 0, 0, 0);
+    struct motion_state before = motion_at(&scene, 0, -0.01);
+    const double step = 1e-4;
+    for (int k = -100; k < 7000; k++) {
+        const struct motion_state m = motion_at(&scene, 0, k * step);
+        for (int c = 0; c < 2; c++) {
+            TEST_ASSERT_TRUE(isfinite(m.a[c]) && m.d[c] <= 0.04 + 1e-15);
+            TEST_ASSERT_DOUBLE_WITHIN(0.02, before.v[c], m.v[c]);
+            TEST_ASSERT_DOUBLE_WITHIN(5e-6, before.d[c] + 0.5 * step * (before.v[c] + m.v[c]),
+                                      m.d[c]);
+        }
+        before = m;
+    }
+}
+
+static void bad_table(const char *table, const char *message)
+{
+    write_table(table);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("kind = table\nfile = test_motion.tmp\n"));
+    TEST_ASSERT_EQUAL_STRING(message, diag.text);
+}
+
+static void test_bad_tables(void)
+{
+    bad_table("0, 0, 0\n", "test_motion.tmp: a motion needs two rows or more; there is 1");
+    bad_table("0, 0, 0\n0.2, 1, 0\n0.1, 1, 0\n",
+              "test_motion.tmp:3: time 0.1 s does not come after 0.2 s");
+    bad_table("0, 0, 0\n0.2, 1\n",
+              "test_motion.tmp:2: three numbers are expected: time (s), dx (m), dy (m)");
+    bad_table("0, 0, 0\n0.2, 1, nan\n",
+              "test_motion.tmp:2: three numbers are expected: time (s), dx (m), dy (m)");
+    bad_table("0, 0, 0\n0.2, 1, 2, 3\n",
+              "test_motion.tmp:2: more than three columns; time (s), dx (m), dy (m) are expected");
+    bad_table("0, 1, 0\n0.2, 1, 2\n",
+              "test_motion.tmp:1: the first row must be a time of 0 or more and no displacement, "
+              "`0, 0, 0` as a rule");
+}
+
+static void test_no_motion_is_rest(void)
+{
+    must_read("velocity = 1, 1\n");
+    const struct motion_state m = motion_at(&scene, -1, 0.5);
+    TEST_ASSERT_EQUAL_DOUBLE(0, m.d[0] + m.v[0] + m.a[0] + m.d[1] + m.v[1] + m.a[1]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_velocity_between_start_and_stop);
+    RUN_TEST(test_polynomial);
+    RUN_TEST(test_table_is_smooth_and_does_not_overshoot);
+    RUN_TEST(test_bad_tables);
+    RUN_TEST(test_no_motion_is_rest);
+    return UNITY_END();
+}
