@@ -10,8 +10,12 @@
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
 
-/* Digits of the radix sort. */
-enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 64 };
+enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 64 };
+
+static int sort_threads(void)
+{
+    return thread_count() < MAX_SORT_THREADS ? thread_count() : MAX_SORT_THREADS;
+}
 
 static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
                             const struct particles *p, bool keep_order, struct diag *d)
@@ -55,7 +59,10 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2], c
     c->pair_b = arena_alloc(a, (size_t)most, sizeof *c->pair_b, "sorting", d);
     c->permutation = arena_alloc(a, (size_t)most, sizeof *c->permutation, "sorting", d);
     c->scratch = arena_alloc(a, (size_t)most, 8, "sorting", d);
-    return c->pair_a && c->pair_b && c->permutation && c->scratch ? ERR_OK : ERR_MEMORY;
+    c->sort_threads = sort_threads();
+    c->histogram = arena_alloc(a, (size_t)c->sort_threads, sizeof *c->histogram, "sorting", d);
+    return c->pair_a && c->pair_b && c->permutation && c->scratch && c->histogram ? ERR_OK
+                                                                                   : ERR_MEMORY;
 }
 
 static int32_t cell_of(const struct cells *c, double x, double y)
@@ -94,10 +101,9 @@ static void digit_starts(int64_t (*histogram)[DIGITS], int threads)
 }
 
 /* One stable counting pass over a digit of the keys, which lie in the upper half of each word. */
-static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift)
+static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
+                       int64_t (*histogram)[DIGITS], int threads)
 {
-    static int64_t histogram[MAX_SORT_THREADS][DIGITS];
-    const int threads = thread_count() < MAX_SORT_THREADS ? thread_count() : MAX_SORT_THREADS;
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++) {
         memset(histogram[t], 0, sizeof histogram[t]);
@@ -122,6 +128,21 @@ static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
             pair[j] = pair[j - 1];
         pair[j] = moved;
     }
+}
+
+/* Sorts c->pair_a by key, then id; returns where the result lies. Bits do not depend on threads. */
+static const uint64_t *sort_pairs(struct cells *c, int64_t n, const int64_t *id)
+{
+    const int threads = c->sort_threads < sort_threads() ? c->sort_threads : sort_threads();
+    uint64_t *from = c->pair_a, *to = c->pair_b;
+    for (int shift = 32; shift < 32 + key_bits(c); shift += DIGIT_BITS) {
+        radix_pass(from, to, n, shift, c->histogram, threads);
+        uint64_t *const swap = from;
+        from = to;
+        to = swap;
+    }
+    order_by_id(from, n, id);
+    return from;
 }
 
 static void list_clear(struct cell_list *list)
@@ -157,19 +178,11 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
         c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
         outside += p->cell[k] == OUTSIDE;
     }
-    uint64_t *from = c->pair_a, *to = c->pair_b;
-    for (int shift = 32; shift < 32 + key_bits(c); shift += DIGIT_BITS) {
-        radix_pass(from, to, n, shift);
-        uint64_t *const swap = from;
-        from = to;
-        to = swap;
-    }
-    order_by_id(from, n, p->id);
-
+    const uint64_t *const sorted = sort_pairs(c, n, p->id);
     int32_t *const order = list->order ? list->order : c->permutation;
 #pragma omp parallel for schedule(static)
     for (int64_t k = 0; k < n; k++)
-        order[k] = (int32_t)(uint32_t)from[k];
+        order[k] = (int32_t)(uint32_t)sorted[k];
     if (!list->order) particles_permute(p, order, n, c->scratch);
     list_fill(list, p->cell, n);
     return outside;
@@ -181,16 +194,9 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p)
     if (list->order) {
         for (int64_t k = 0; k < p->n; k++)
             c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
-        uint64_t *from = c->pair_a, *to = c->pair_b;
-        for (int shift = 32; shift < 64; shift += DIGIT_BITS) {
-            radix_pass(from, to, p->n, shift);
-            uint64_t *const swap = from;
-            from = to;
-            to = swap;
-        }
-        order_by_id(from, p->n, p->id);
+        const uint64_t *const sorted = sort_pairs(c, p->n, p->id);
         for (int64_t k = 0; k < p->n; k++)
-            list->order[k] = (int32_t)(uint32_t)from[k];
+            list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
     list_fill(list, p->cell, p->n);
 }

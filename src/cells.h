@@ -14,12 +14,17 @@ struct cell_list {
                                memory, so that there place = particle and order is NULL */
 };
 
+/* Bits of a digit of the radix sort. */
+enum { CELLS_SORT_DIGIT_BITS = 11 };
+
 /* A grid of cells no smaller than the reach of the interaction plus a skin. */
 struct cells {
     double lower[2], side[2]; /* m */
     int nx, ny;
     struct cell_list kind[KIND_COUNT];
     uint64_t *pair_a, *pair_b; /* sorting scratch, (Morton key, particle) in one word */
+    int64_t (*histogram)[1 << CELLS_SORT_DIGIT_BITS]; /* [sort_threads] */
+    int sort_threads;
     int32_t *permutation;
     void *scratch;             /* 8 bytes for each particle of the largest kind */
 };

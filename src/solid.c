@@ -25,6 +25,7 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
         .law = c->law,
         .plane = c->plane,
+        .gradient = c->gradient,
         .symmetric = c->viscosity_form == VISCOSITY_SYMMETRIC,
     };
 }
@@ -58,20 +59,13 @@ SPHFSI_INLINE void store_lanes(double *to, vwide value, int lanes)
         to[l] = value[l];
 }
 
-/* L^-1 of the particles of a pack. */
-SPHFSI_INLINE struct vtensor2 correction(const struct particles *p, int64_t i)
-{
-    const vwide xy = vload_wide(&p->Lxy[i]);
-    return (struct vtensor2){vload_wide(&p->Lxx[i]), xy, xy, vload_wide(&p->Lyy[i])};
-}
-
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i)
 {
     return (struct vtensor2){vload_wide(&p->Uxx[i]), vload_wide(&p->Uxy[i]), vload_wide(&p->Uyx[i]),
                              vload_wide(&p->Uyy[i])};
 }
 
-/* Eq. 13b in displacements: U = F - I = sum of V_b (u_b - u_a) (L^-1 grad_0 W)^T. */
+/* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
 SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s, const struct solid_pack *pack,
                                                     const struct particles *p)
 {
@@ -80,58 +74,56 @@ SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s, const
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
         const int64_t j = pack->i + slot->offset;
-        const vwide gx = vload_wide(slot->gx), gy = vload_wide(slot->gy);
+        const vwide Gx = vload_wide(slot->Gx), Gy = vload_wide(slot->Gy);
         const vwide dx = vload_wide(&p->ux[j]) - ux, dy = vload_wide(&p->uy[j]) - uy;
-        sum.xx = vfma_wide(dx, gx, sum.xx);
-        sum.xy = vfma_wide(dx, gy, sum.xy);
-        sum.yx = vfma_wide(dy, gx, sum.yx);
-        sum.yy = vfma_wide(dy, gy, sum.yy);
+        sum.xx = vfma_wide(dx, Gx, sum.xx);
+        sum.xy = vfma_wide(dx, Gy, sum.xy);
+        sum.yx = vfma_wide(dy, Gx, sum.yx);
+        sum.yy = vfma_wide(dy, Gy, sum.yy);
     }
-    return vtensor2_mul(sum, correction(p, pack->i));
+    return sum;
 }
 
 static void stress_of_pack(const struct solid *s, const struct solid_pack *pack, struct particles *p)
 {
     const int64_t i = pack->i;
     const struct vtensor2 U = displacement_gradient(s, pack, p);
-    const struct vtensor2 A = vtensor2_mul(material_pk1(&s->body[pack->body], U), correction(p, i));
+    const struct vtensor2 P = material_pk1(&s->body[pack->body], U);
     store_lanes(&p->Uxx[i], U.xx, pack->lanes);
     store_lanes(&p->Uxy[i], U.xy, pack->lanes);
     store_lanes(&p->Uyx[i], U.yx, pack->lanes);
     store_lanes(&p->Uyy[i], U.yy, pack->lanes);
-    store_lanes(&p->Axx[i], A.xx, pack->lanes);
-    store_lanes(&p->Axy[i], A.xy, pack->lanes);
-    store_lanes(&p->Ayx[i], A.yx, pack->lanes);
-    store_lanes(&p->Ayy[i], A.yy, pack->lanes);
+    store_lanes(&p->Pxx[i], P.xx, pack->lanes);
+    store_lanes(&p->Pxy[i], P.xy, pack->lanes);
+    store_lanes(&p->Pyx[i], P.yx, pack->lanes);
+    store_lanes(&p->Pyy[i], P.yy, pack->lanes);
 }
 
 /* Particles a of a pack, as the pair laws see them. */
 struct solid_receiver {
     vwide ux, uy, vx, vy;
-    struct vtensor2 U, A; /* displacement gradient; P L^-1 */
-    struct vtensor2 B;    /* J F^-T L^-1 of Eq. 14a */
+    struct vtensor2 U;
 };
 
-/* J F^-T L^-1, the tensor of the viscous force (Eqs. 14a, 13a). */
-SPHFSI_INLINE struct vtensor2 viscous_tensor(const struct particles *p, int64_t i, struct vtensor2 U)
+SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64_t i)
 {
-    return vtensor2_mul(vtensor2_cof(deformation(U)), correction(p, i));
+    return (struct solid_receiver){vload_wide(&p->ux[i]), vload_wide(&p->uy[i]), vload_wide(&p->vx[i]),
+                                   vload_wide(&p->vy[i]), load_gradient(p, i)};
 }
 
 /* One slot's pairs: neighbours b and geometry. */
 struct solid_pair {
+    const struct solid_slot *slot;
     int64_t j;
-    vwide gx, gy, X, Y, x, y; /* x_ab = X_ab + u_ab */
-    vwide ux, uy;             /* u_ab */
+    vwide X, Y, x, y; /* x_ab = X_ab + u_ab */
+    vwide ux, uy;     /* u_ab */
     struct vtensor2 U_b;
 };
 
 SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const struct particles *p, int64_t i,
                                         const struct solid_receiver *a)
 {
-    struct solid_pair q = {.j = i + slot->offset};
-    q.gx = vload_wide(slot->gx);
-    q.gy = vload_wide(slot->gy);
+    struct solid_pair q = {.slot = slot, .j = i + slot->offset};
     q.X = vload_wide(slot->X);
     q.Y = vload_wide(slot->Y);
     q.ux = a->ux - vload_wide(&p->ux[q.j]);
@@ -141,33 +133,46 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const str
     return q;
 }
 
-/* Eq. 13a: (P_a L_a^-1 + P_b L_b^-1) V_b grad_0 W. */
-SPHFSI_INLINE void stress_force(const struct solid_pair *q, const struct particles *p,
-                                const struct solid_receiver *a, vwide *fx, vwide *fy)
+/* What a pack sums over its slots. */
+struct solid_sums {
+    vwide stress_x, stress_y;   /* Pa/m */
+    vwide viscous_x, viscous_y; /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
+    vwide ax, ay;               /* m/s^2 */
+};
+
+/* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
+SPHFSI_INLINE void stress_force(const struct solid_slot *slot, const struct particles *p, int64_t j,
+                                struct solid_sums *s)
 {
-    const vwide xx = a->A.xx + vload_wide(&p->Axx[q->j]), xy = a->A.xy + vload_wide(&p->Axy[q->j]);
-    const vwide yx = a->A.yx + vload_wide(&p->Ayx[q->j]), yy = a->A.yy + vload_wide(&p->Ayy[q->j]);
-    *fx = vfma_wide(xx, q->gx, vfma_wide(xy, q->gy, *fx));
-    *fy = vfma_wide(yx, q->gx, vfma_wide(yy, q->gy, *fy));
+    const vwide Hx = vload_wide(slot->Hx), Hy = vload_wide(slot->Hy);
+    s->stress_x = vfma_wide(vload_wide(&p->Pxx[j]), Hx, s->stress_x);
+    s->stress_x = vfma_wide(vload_wide(&p->Pxy[j]), Hy, s->stress_x);
+    s->stress_y = vfma_wide(vload_wide(&p->Pyx[j]), Hx, s->stress_y);
+    s->stress_y = vfma_wide(vload_wide(&p->Pyy[j]), Hy, s->stress_y);
 }
 
-/* Eq. 14, over rho0: Pi_ab (J F^-T)_a L_a^-1 V_b grad_0 W for approaching pairs; in the symmetric form
- * with the mean of both particles' tensors, which makes it antisymmetric. */
-SPHFSI_INLINE void viscous_force(const struct solid_pair *q, const struct particles *p,
-                                 const struct solid_receiver *a, const struct solid_body *body, vwide eta2,
-                                 vwide *fx, vwide *fy)
+/* Eq. 14b over rho0, for approaching pairs: alpha_s c_s h v.x/(x^2 + 0.01 h^2), m^2/s^2. */
+SPHFSI_INLINE vwide viscous_pressure(const struct solid_pair *q, const struct particles *p,
+                                     const struct solid_receiver *a, double viscosity, vwide eta2)
 {
-    const vwide vx = (a->vx - vload_wide(&p->vx[q->j])) * q->x + (a->vy - vload_wide(&p->vy[q->j])) * q->y;
-    const vwide r2 = q->x * q->x + q->y * q->y;
-    const vwide Pi = vmin_wide(vx, vset_wide(0)) * body->viscosity / (r2 + eta2);
-    struct vtensor2 B = a->B;
-    if (body->symmetric) {
-        const struct vtensor2 B_b = viscous_tensor(p, q->j, q->U_b);
-        B = (struct vtensor2){(B.xx + B_b.xx) * 0.5, (B.xy + B_b.xy) * 0.5, (B.yx + B_b.yx) * 0.5,
-                              (B.yy + B_b.yy) * 0.5};
+    const vwide vx = a->vx - vload_wide(&p->vx[q->j]), vy = a->vy - vload_wide(&p->vy[q->j]);
+    const vwide approach = vmin_wide(vfma_wide(vx, q->x, vy * q->y), vset_wide(0));
+    return approach * viscosity / vfma_wide(q->x, q->x, vfma_wide(q->y, q->y, eta2));
+}
+
+/* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. In the symmetric form the mean of both particles'
+ * tensors, each with its own gradient, makes it antisymmetric. */
+SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vwide Pi, bool symmetric, struct solid_sums *s)
+{
+    if (symmetric) {
+        const struct vtensor2 cof = vtensor2_cof(deformation(q->U_b));
+        const vwide Hx = vload_wide(q->slot->Hx), Hy = vload_wide(q->slot->Hy);
+        Pi = Pi * 0.5;
+        s->ax = vfma_wide(Pi, vfma_wide(cof.xx, Hx, cof.xy * Hy), s->ax);
+        s->ay = vfma_wide(Pi, vfma_wide(cof.yx, Hx, cof.yy * Hy), s->ay);
     }
-    *fx = vfma_wide(Pi, vfma_wide(B.xx, q->gx, B.xy * q->gy), *fx);
-    *fy = vfma_wide(Pi, vfma_wide(B.yx, q->gx, B.yy * q->gy), *fy);
+    s->viscous_x = vfma_wide(Pi, vload_wide(q->slot->Gx), s->viscous_x);
+    s->viscous_y = vfma_wide(Pi, vload_wide(q->slot->Gy), s->viscous_y);
 }
 
 /* Eqs. 15-16: e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
@@ -179,63 +184,64 @@ SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct soli
 }
 
 /* Eq. 17, over the mass of a: a force along x_ab. */
-SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a, vwide stiffness,
-                                   vwide *fx, vwide *fy)
+SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
+                                   struct solid_sums *s)
 {
     vwide ex, ey;
     hourglass_error(q, a, &ex, &ey);
-    const vwide along = stiffness * vfma_wide(ex, q->x, ey * q->y) / vfma_wide(q->x, q->x, q->y * q->y);
-    *fx = vfma_wide(along, q->x, *fx);
-    *fy = vfma_wide(along, q->y, *fy);
+    const vwide along = vload_wide(q->slot->hourglass) * vfma_wide(ex, q->x, ey * q->y) /
+                        vfma_wide(q->x, q->x, q->y * q->y);
+    s->ax = vfma_wide(along, q->x, s->ax);
+    s->ay = vfma_wide(along, q->y, s->ay);
 }
 
-SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64_t i)
+/* Sums of a pack; `viscous`, `symmetric` and `hourglass` are constants where it is inlined. */
+SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
+                                          const struct particles *p, const struct solid_receiver *a,
+                                          bool viscous, bool symmetric, bool hourglass)
 {
-    const struct vtensor2 U = load_gradient(p, i);
-    return (struct solid_receiver){
-        .ux = vload_wide(&p->ux[i]),
-        .uy = vload_wide(&p->uy[i]),
-        .vx = vload_wide(&p->vx[i]),
-        .vy = vload_wide(&p->vy[i]),
-        .U = U,
-        .A = {vload_wide(&p->Axx[i]), vload_wide(&p->Axy[i]), vload_wide(&p->Ayx[i]),
-              vload_wide(&p->Ayy[i])},
-        .B = viscous_tensor(p, i, U),
-    };
-}
-
-/* Sums of a pack; `viscous` and `hourglass` are constants where it is inlined. */
-SPHFSI_INLINE void forces_of_slots(const struct solid *s, const struct solid_pack *pack,
-                                   const struct particles *p, bool viscous, bool hourglass, vwide acc[2])
-{
-    const struct solid_body *const body = &s->body[pack->body];
-    const struct solid_receiver a = receiver_of(p, pack->i);
-    const vwide eta2 = vset_wide(0.01 * s->h * s->h);
-    vwide sx = vset_wide(0), sy = vset_wide(0); /* stress, Pa/m */
-    vwide ex = vset_wide(0), ey = vset_wide(0); /* viscous and hourglass, m/s^2 */
+    const double viscosity = s->body[pack->body].viscosity;
+    const vwide eta2 = vset_wide(0.01 * s->h * s->h), zero = vset_wide(0);
+    struct solid_sums sums = {zero, zero, zero, zero, zero, zero};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
-        struct solid_pair q = pair_of(slot, p, pack->i, &a);
-        stress_force(&q, p, &a, &sx, &sy);
-        if (hourglass || body->symmetric) q.U_b = load_gradient(p, q.j);
-        if (viscous) viscous_force(&q, p, &a, body, eta2, &ex, &ey);
-        if (hourglass) hourglass_force(&q, &a, vload_wide(slot->hourglass), &ex, &ey);
+        stress_force(slot, p, pack->i + slot->offset, &sums);
+        if (!viscous && !hourglass) continue;
+        struct solid_pair q = pair_of(slot, p, pack->i, a);
+        if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
+        if (viscous) viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
+        if (hourglass) hourglass_force(&q, a, &sums);
     }
+    return sums;
+}
+
+/* Eq. 13a: own part of the stress, P_a times the sum of G_ab, which vanishes inside a lattice; and the
+ * viscous force turned by J F^-T. */
+SPHFSI_INLINE void finish_sums(const struct solid_body *body, const struct particles *p, int64_t i,
+                               const struct solid_receiver *a, const struct solid_sums *s, vwide acc[2])
+{
+    const struct vtensor2 cof = vtensor2_cof(deformation(a->U));
+    const vwide Gx = vload_wide(&p->Gx[i]), Gy = vload_wide(&p->Gy[i]);
+    const vwide own_x = vfma_wide(vload_wide(&p->Pxx[i]), Gx, vload_wide(&p->Pxy[i]) * Gy);
+    const vwide own_y = vfma_wide(vload_wide(&p->Pyx[i]), Gx, vload_wide(&p->Pyy[i]) * Gy);
     const double inv_density = 1 / body->density;
-    acc[0] = sx * inv_density + ex;
-    acc[1] = sy * inv_density + ey;
+    acc[0] = (s->stress_x + own_x) * inv_density + s->ax + (cof.xx * s->viscous_x + cof.xy * s->viscous_y);
+    acc[1] = (s->stress_y + own_y) * inv_density + s->ay + (cof.yx * s->viscous_x + cof.yy * s->viscous_y);
 }
 
 static void forces_of_pack(const struct solid *s, const struct solid_pack *pack, struct particles *p)
 {
     const struct solid_body *const body = &s->body[pack->body];
     const int64_t i = pack->i;
-    vwide acc[2];
+    const struct solid_receiver a = receiver_of(p, i);
     const bool viscous = body->viscosity > 0, hourglass = body->kappa > 0;
-    if (viscous && hourglass)
-        forces_of_slots(s, pack, p, true, true, acc);
-    else
-        forces_of_slots(s, pack, p, viscous, hourglass, acc);
+    /* The paper's combination is stamped; the others are decided as they go. */
+    const struct solid_sums sums =
+        viscous && hourglass && !body->symmetric
+            ? sum_slots(s, pack, p, &a, true, false, true)
+            : sum_slots(s, pack, p, &a, viscous, body->symmetric, hourglass);
+    vwide acc[2];
+    finish_sums(body, p, i, &a, &sums, acc);
     if (s->coupled) {
         acc[0] = acc[0] + vload_wide(&p->fx[i]) * (1 / body->mass);
         acc[1] = acc[1] + vload_wide(&p->fy[i]) * (1 / body->mass);

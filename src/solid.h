@@ -16,13 +16,14 @@ struct solid_body {
     double sound_speed;  /* c_s of Eq. 29 */
     double kappa;        /* Eq. 17 */
     double gravity[2];
-    int law, plane, symmetric;
+    int law, plane, gradient, symmetric;
 };
 
 /* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
  * weights that are zero where that lane has no such neighbour. */
 struct solid_slot {
-    double gx[LANES_WIDE], gy[LANES_WIDE]; /* V_b grad_0 W_0ab, 1/m */
+    double Gx[LANES_WIDE], Gy[LANES_WIDE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    double Hx[LANES_WIDE], Hy[LANES_WIDE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
     double X[LANES_WIDE], Y[LANES_WIDE];   /* X_ab, m */
     double hourglass[LANES_WIDE];          /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
     int64_t offset;
@@ -49,11 +50,12 @@ struct solid {
     double paper_step;        /* Eq. 29, s */
 };
 
-/* Builds constants, reference neighbours and L^-1 of the particles p (X, Y, body, free are set). */
+/* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
+ * set). */
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene, struct particles *p,
                       struct diag *d) SPHFSI_CHECKED;
 
-/* Displacement gradient and P L^-1 of every particle (Eqs. 9-13b). */
+/* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). */
 void solid_stress(const struct solid *s, struct particles *p);
 
 /* Total acceleration (Eq. 21b) into sx, sy from stresses that are up to date; zero where clamped. */

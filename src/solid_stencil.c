@@ -96,17 +96,106 @@ static struct solid_slot *slot_for(struct solid_slot *slots, int *n, int64_t off
     return slot;
 }
 
-/* Fills one lane of a slot with the constants of a pair. */
-static void slot_set(struct solid_slot *slot, int lane, const struct solid_body *b, double h, double dp,
-                     double X, double Y)
+/* What gives the gradient at a particle from the fields of its neighbours. */
+struct gradient_moments {
+    double inverse[2][5]; /* rows d/dX and d/dY of the inverse moment matrix */
+    bool quadratic;
+};
+
+/* Monomials of the offset from a particle, in units of h. */
+static void basis(double x, double y, double b[5])
 {
-    const double r2 = X * X + Y * Y, r = sqrt(r2), V = dp * dp;
-    const double slope = kernel_slope(r, h);
-    slot->gx[lane] = V * slope * X;
-    slot->gy[lane] = V * slope * Y;
+    b[0] = x;
+    b[1] = y;
+    b[2] = 0.5 * x * x;
+    b[3] = x * y;
+    b[4] = 0.5 * y * y;
+}
+
+/* Solves M z = e_row for a symmetric positive matrix by Cholesky; false where it is (nearly) singular. */
+static bool solve_row(const double M[5][5], int n, int row, double z[5])
+{
+    double C[5][5];
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = M[i][j];
+            for (int k = 0; k < j; k++)
+                sum -= C[i][k] * C[j][k];
+            if (i == j && !(sum > 1e-4 * M[i][i])) return false;
+            C[i][j] = i == j ? sqrt(sum) : sum / C[j][j];
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        double sum = i == row;
+        for (int k = 0; k < i; k++)
+            sum -= C[i][k] * z[k];
+        z[i] = sum / C[i][i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        double sum = z[i];
+        for (int k = i + 1; k < n; k++)
+            sum -= C[k][i] * z[k];
+        z[i] = sum / C[i][i];
+    }
+    return true;
+}
+
+/* Moment matrix of a particle with the weight |grad W|/r: its linear block is L of Eq. 13c, so that two
+ * rows give the paper's corrected gradient and all five one that is exact for quadratic fields as well
+ * (moving least squares). Where the neighbours cannot tell a quadratic field, as across two particles,
+ * the linear one stays. false: not even that. */
+static bool find_moments(const struct solid *s, const struct particles *p, int64_t i, const int32_t *found,
+                         int n, bool quadratic, struct gradient_moments *m)
+{
+    double M[5][5] = {{0}};
+    for (int k = 0; k < n; k++) {
+        const double x = reference_distance(p->X[found[k]], p->X[i], s->dp) / s->h;
+        const double y = reference_distance(p->Y[found[k]], p->Y[i], s->dp) / s->h;
+        const double weight = -square(s->h * s->dp) * kernel_slope(s->h * sqrt(x * x + y * y), s->h);
+        double b[5];
+        basis(x, y, b);
+        for (int r = 0; r < 5; r++)
+            for (int c = 0; c < 5; c++)
+                M[r][c] += weight * b[r] * b[c];
+    }
+    memset(m, 0, sizeof *m);
+    m->quadratic = quadratic && solve_row(M, 5, 0, m->inverse[0]) && solve_row(M, 5, 1, m->inverse[1]);
+    if (m->quadratic) return true;
+    memset(m, 0, sizeof *m);
+    return solve_row(M, 2, 0, m->inverse[0]) && solve_row(M, 2, 1, m->inverse[1]);
+}
+
+/* G_ab: the weight of u_b - u_a in the gradient at a, for X_ab = (X, Y). */
+static void gradient_weight(const struct solid *s, const struct gradient_moments *m, double X, double Y,
+                            double G[2])
+{
+    double b[5];
+    basis(-X / s->h, -Y / s->h, b);
+    const double weight = -square(s->h * s->dp) * kernel_slope(sqrt(X * X + Y * Y), s->h) / s->h;
+    for (int axis = 0; axis < 2; axis++) {
+        G[axis] = 0;
+        for (int k = 0; k < (m->quadratic ? 5 : 2); k++)
+            G[axis] += weight * m->inverse[axis][k] * b[k];
+    }
+}
+
+/* Fills one lane of a slot with the constants of the pair (i, j). */
+static void slot_set(struct solid_slot *slot, int lane, const struct solid *s, const struct particles *p,
+                     const struct gradient_moments *moments, int64_t i, int64_t j)
+{
+    const struct solid_body *const b = &s->body[p->body[i]];
+    const double X = reference_distance(p->X[i], p->X[j], s->dp), Y = reference_distance(p->Y[i], p->Y[j], s->dp);
+    const double r2 = X * X + Y * Y, V = s->dp * s->dp;
+    double G[2], H[2];
+    gradient_weight(s, &moments[i], X, Y, G);
+    gradient_weight(s, &moments[j], -X, -Y, H);
+    slot->Gx[lane] = G[0];
+    slot->Gy[lane] = G[1];
+    slot->Hx[lane] = -H[0];
+    slot->Hy[lane] = -H[1];
     slot->X[lane] = X;
     slot->Y[lane] = Y;
-    slot->hourglass[lane] = b->kappa * b->young * V * kernel_w(r, h) / (r2 * b->density);
+    slot->hourglass[lane] = b->kappa * b->young * V * kernel_w(sqrt(r2), s->h) / (r2 * b->density);
 }
 
 static int compare_slot(const void *a, const void *b)
@@ -115,20 +204,18 @@ static int compare_slot(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The slots of one pack, in ascending order of neighbours; -1: a particle has too many. */
+/* The slots of one pack, in ascending order of neighbours. */
 static int pack_slots(const struct solid *s, const struct bucket_grid *g, const struct particles *p,
-                      const struct solid_pack *pack, struct solid_slot *slots)
+                      const struct gradient_moments *moments, const struct solid_pack *pack,
+                      struct solid_slot *slots)
 {
     int32_t found[MAX_NEIGHBOURS];
     int n = 0;
     for (int l = 0; l < pack->lanes; l++) {
         const int64_t i = pack->i + l;
         const int count = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
-        if (count < 0) return -1;
         for (int k = 0; k < count; k++)
-            slot_set(slot_for(slots, &n, found[k] - i), l, &s->body[pack->body], s->h, s->dp,
-                     reference_distance(p->X[i], p->X[found[k]], s->dp),
-                     reference_distance(p->Y[i], p->Y[found[k]], s->dp));
+            slot_set(slot_for(slots, &n, found[k] - i), l, s, p, moments, i, found[k]);
     }
     qsort(slots, (size_t)n, sizeof *slots, compare_slot);
     return n;
@@ -184,7 +271,8 @@ static void cut_packs(struct solid *s, const struct particles *p)
 
 /* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
 static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
-                            const struct bucket_grid *g, const struct particles *p, struct diag *d)
+                            const struct bucket_grid *g, const struct particles *p,
+                            const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
     while (sets.size < 2 * (size_t)s->n_packs)
@@ -195,19 +283,13 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
     if (!sets.pack || !work) return ERR_MEMORY;
     int64_t total = 0;
     for (int64_t k = 0; k < s->n_packs; k++) {
-        const int n = pack_slots(s, g, p, &s->pack[k], work);
-        if (n < 0)
-            return diag_fail(d, ERR_INPUT,
-                             "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
-                             "are bodies sampled twice, or h_over_dp too large?",
-                             p->X[s->pack[k].i], p->Y[s->pack[k].i], MAX_NEIGHBOURS);
-        total += n;
+        total += pack_slots(s, g, p, moments, &s->pack[k], work);
     }
     s->slot = arena_alloc(scratch, (size_t)total, sizeof *s->slot, "slots of the solid", d);
     if (!s->slot) return ERR_MEMORY;
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
     for (int64_t k = 0; k < s->n_packs; k++)
-        share_slots(s, &sets, (int32_t)k, work, pack_slots(s, g, p, &s->pack[k], work));
+        share_slots(s, &sets, (int32_t)k, work, pack_slots(s, g, p, moments, &s->pack[k], work));
 
     const struct solid_slot *const all = s->slot;
     s->slot = arena_alloc(a, (size_t)s->n_slots, sizeof *s->slot, "slots of the solid", d);
@@ -216,32 +298,42 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
     return ERR_OK;
 }
 
-/* Eq. 13c and its inverse, from the slots. L is symmetric since the kernel is radial. */
-static enum err invert_correction(const struct solid *s, struct particles *p, struct diag *d)
+/* Moments of every particle, and the neighbours' number checked on the way. */
+static enum err all_moments(const struct solid *s, const struct bucket_grid *g, const struct particles *p,
+                            struct gradient_moments *moments, struct diag *d)
+{
+    int32_t found[MAX_NEIGHBOURS];
+    for (int64_t i = 0; i < p->n; i++) {
+        const int n = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
+        if (n < 0)
+            return diag_fail(d, ERR_INPUT,
+                             "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
+                             "are bodies sampled twice, or is h_over_dp too large?",
+                             p->X[i], p->Y[i], MAX_NEIGHBOURS);
+        const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
+        if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
+            return diag_fail(d, ERR_INPUT,
+                             "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
+                             "deformation gradient; a body needs at least 2 particles across",
+                             p->X[i], p->Y[i]);
+    }
+    return ERR_OK;
+}
+
+static void sum_weights(const struct solid *s, struct particles *p)
 {
     for (int64_t k = 0; k < s->n_packs; k++) {
         const struct solid_pack *const pack = &s->pack[k];
         for (int l = 0; l < pack->lanes; l++) {
-            double xx = 0, xy = 0, yy = 0;
+            double x = 0, y = 0;
             for (int m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
-                const struct solid_slot *const slot = &s->slot[m];
-                xx -= slot->X[l] * slot->gx[l];
-                xy -= slot->X[l] * slot->gy[l];
-                yy -= slot->Y[l] * slot->gy[l];
+                x += s->slot[m].Gx[l];
+                y += s->slot[m].Gy[l];
             }
-            const int64_t i = pack->i + l;
-            const double det = xx * yy - xy * xy;
-            if (!(det > 1e-6))
-                return diag_fail(d, ERR_INPUT,
-                                 "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
-                                 "deformation gradient; a body needs at least 2 particles across",
-                                 p->X[i], p->Y[i]);
-            p->Lxx[i] = yy / det;
-            p->Lxy[i] = -xy / det;
-            p->Lyy[i] = xx / det;
+            p->Gx[pack->i + l] = x;
+            p->Gy[pack->i + l] = y;
         }
     }
-    return ERR_OK;
 }
 
 enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles *p, struct diag *d)
@@ -252,8 +344,12 @@ enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles
 
     struct arena scratch = {.limit = a->limit};
     struct bucket_grid grid;
-    enum err e = buckets_create(&grid, &scratch, p, KERNEL_REACH * s->h, d);
-    if (!e) e = store_slots(s, a, &scratch, &grid, p, d);
+    struct gradient_moments *const moments =
+        arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
+    enum err e = moments ? buckets_create(&grid, &scratch, p, KERNEL_REACH * s->h, d) : ERR_MEMORY;
+    if (!e) e = all_moments(s, &grid, p, moments, d);
+    if (!e) e = store_slots(s, a, &scratch, &grid, p, moments, d);
     arena_free(&scratch);
-    return e ? e : invert_correction(s, p, d);
+    if (!e) sum_weights(s, p);
+    return e;
 }

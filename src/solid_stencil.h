@@ -5,8 +5,8 @@
 
 #include "solid.h"
 
-/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body, and sets
- * L^-1 (Eq. 13c). s->body, h and dp are set. */
+/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and the
+ * weights of the gradient, and sums these (Gx, Gy). s->body, h and dp are set. */
 enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles *p, struct diag *d)
     SPHFSI_CHECKED;
 
