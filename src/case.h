@@ -1,6 +1,23 @@
 /* SPDX-License-Identifier: MIT
- * Inside of the reader of case files: what case.c, case_lines.c, case_values.c and case_check.c
- * share. Others use scene.h. */
+ * Inside of the reader of case files: what its rooms share. Others use scene.h.
+ *
+ * The format. Lines of `key = value`, `[section]` or `[section NAME]`, and comments from # to the end
+ * of the line. Keys before the first section are the top of the file. [constants] names free numbers;
+ * a constant may use others, in any order, and the numbers at the top. Which keys there are, their
+ * units, ranges and defaults: params.def. Values by type:
+ *
+ *   number       arithmetic with units, functions, constants: expr.h
+ *   vector       two numbers with a comma between them
+ *   numbers      numbers with commas between them
+ *   choice       one of the names of params.def
+ *   text         as it is; between double quotes it may hold # or be empty
+ *   expressions  one or two, with a comma between them; in x and y (metres), evaluated per particle
+ *   shape        box, circle, polygon, polyline: case_shapes.c; the key may be repeated, the shapes
+ *                unite (`minus` regions are taken out of all of them)
+ *
+ * `like = NAME` takes the values, but not the regions, of an earlier section of the same kind as
+ * defaults. --set key=value and --set section.key=value replace an entry, or add it, before anything
+ * is evaluated; the section is NAME, `kind NAME`, or the word of an unnamed section. */
 #ifndef SPHFSI_CASE_H
 #define SPHFSI_CASE_H
 

@@ -236,6 +236,26 @@ static enum err read_choice(struct reader *r, const struct entry *e, const struc
     return bad_value(r, e, "unknown choice; known: %s", p->choices);
 }
 
+/* Texts go into JSON, HDF5 and plots, which all want UTF-8. */
+static bool is_utf8(struct slice text)
+{
+    int follow = 0;
+    for (size_t k = 0; k < text.length; k++) {
+        const unsigned char c = (unsigned char)text.at[k];
+        if (follow) {
+            if ((c & 0xC0) != 0x80) return false;
+            follow--;
+        } else if (c >= 0x80) {
+            follow = c >= 0xC2 && c < 0xE0   ? 1
+                     : (c & 0xF0) == 0xE0    ? 2
+                     : c >= 0xF0 && c < 0xF5 ? 3
+                                             : 0;
+            if (!follow) return false;
+        }
+    }
+    return follow == 0;
+}
+
 static enum err read_text(struct reader *r, const struct entry *e, char value[SCENE_TEXT])
 {
     struct slice text = whole(e->value);
@@ -244,6 +264,7 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
         text.length -= 2;
     }
     if (text.length >= SCENE_TEXT) return bad_value(r, e, "longer than %d bytes", SCENE_TEXT - 1);
+    if (!is_utf8(text)) return bad_entry(r, e, "%s is not UTF-8 text", e->key);
     memset(value, 0, SCENE_TEXT);
     memcpy(value, text.at, text.length);
     return ERR_OK;

@@ -13,10 +13,7 @@ static struct scene scene, again;
 static struct diag diag;
 static const char effective[] = "test_case.tmp";
 
-void setUp(void)
-{
-    diag = (struct diag){0};
-}
+void setUp(void) { diag = (struct diag){0}; }
 
 void tearDown(void)
 {
@@ -34,8 +31,9 @@ static void parse(const char *text, int n_sets, const char *const *sets)
 }
 
 #define TOP "dp = 1 mm\nend_time = 1 s\n"
-#define BLOCK                                                                                      \
-    "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1 g/cm^3\nyoung = 1 MPa\npoisson = 0.3\n"
+#define BLOCK                                                                                  \
+    "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1 g/cm^3\nyoung = 1 MPa\npoisson = " \
+    "0.3\n"
 
 static void test_defaults(void)
 {
@@ -85,9 +83,9 @@ static void test_set_comes_before_evaluation(void)
 
 static void test_set_of_sections(void)
 {
-    static const char *const sets[] = {"a.young=2 MPa",     "solid a.poisson=0.4",
+    static const char *const sets[] = {"a.young=2 MPa",      "solid a.poisson=0.4",
                                        "numerics.cfl = 0.1", "a.shape=box 0, 0, 10 mm, 10 mm",
-                                       "constants.L=1 m",   "precision=double"};
+                                       "constants.L=1 m",    "precision=double"};
     parse(derived, (int)COUNT_OF(sets), sets);
     TEST_ASSERT_EQUAL_DOUBLE(2e6, scene.solid[0].young);
     TEST_ASSERT_EQUAL_DOUBLE(0.4, scene.solid[0].poisson);
@@ -121,8 +119,10 @@ static void test_sound_speed_follows_eq_3(void)
 
 static void test_line_ends_and_marks_of_other_systems(void)
 {
-    parse("\xEF\xBB\xBF" "dp = 1 mm\r\nend_time = 1 s\r\n[solid a]\r\nshape = box 0, 0, 5 mm, 5 mm\r\n"
-          "density = 1\r\nyoung = 1\r\npoisson = 0\r", 0, NULL);
+    parse("\xEF\xBB\xBF"
+          "dp = 1 mm\r\nend_time = 1 s\r\n[solid a]\r\nshape = box 0, 0, 5 mm, 5 mm\r\n"
+          "density = 1\r\nyoung = 1\r\npoisson = 0\r",
+          0, NULL);
     TEST_ASSERT_EQUAL_INT64(25, scene.points[2].n);
 }
 
@@ -196,8 +196,7 @@ static void round_trip(void)
                            section_at(&again, p->section, k / PARAM_COUNT));
         }
     }
-    for (int kind = 0; kind < 3; kind++)
-        same_points(&scene.points[kind], &again.points[kind]);
+    for (int kind = 0; kind < 3; kind++) same_points(&scene.points[kind], &again.points[kind]);
     TEST_ASSERT_TRUE(scene.h == again.h && scene.c0 == again.c0 && scene.rho0 == again.rho0);
     TEST_ASSERT_EQUAL_MEMORY(scene.domain_upper, again.domain_upper, sizeof scene.domain_upper);
     TEST_ASSERT_EQUAL_MEMORY(scene.domain_lower, again.domain_lower, sizeof scene.domain_lower);
@@ -206,15 +205,16 @@ static void round_trip(void)
 
 static void test_every_kind_of_value_comes_back(void)
 {
-    parse("title = \"# quoted \"\ndp = 1 mm/3\nend_time = 1/3\n[constants]\na = 1/3\nb = sqrt(2 m)\n"
-          "r = 2 m/3 m\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
-          "[fluid w]\nshape = circle 5 mm, 5 mm, pi*1 mm\nsurface = 1 cm\nsound_speed = 20/7\n"
-          "velocity = a*x/1 s, b^2/1 s*r\n[fluid v]\nlike = w\npressure = 1 Pa*y\n"
-          "shape = box 0, 10 mm, 10 mm, 20 mm\n[wall b]\nmotion = m\n"
-          "shape = polyline thickness 4 mm: -9 mm, -9 mm; 20 mm, -9 mm\n"
-          "shape = polygon -9 mm, -9 mm; -20 mm, -9 mm; -20 mm, 20 mm\n"
-          "[motion m]\nkind = polynomial\npoly_x = 1/3, 2/7, 1e-300\nstop = 1/9\n",
-          0, NULL);
+    parse(
+        "title = \"# quoted \"\ndp = 1 mm/3\nend_time = 1/3\n[constants]\na = 1/3\nb = sqrt(2 m)\n"
+        "r = 2 m/3 m\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+        "[fluid w]\nshape = circle 5 mm, 5 mm, pi*1 mm\nsurface = 1 cm\nsound_speed = 20/7\n"
+        "velocity = a*x/1 s, b^2/1 s*r\n[fluid v]\nlike = w\npressure = 1 Pa*y\n"
+        "shape = box 0, 10 mm, 10 mm, 20 mm\n[wall b]\nmotion = m\n"
+        "shape = polyline thickness 4 mm: -9 mm, -9 mm; 20 mm, -9 mm\n"
+        "shape = polygon -9 mm, -9 mm; -20 mm, -9 mm; -20 mm, 20 mm\n"
+        "[motion m]\nkind = polynomial\npoly_x = 1/3, 2/7, 1e-300\nstop = 1/9\n",
+        0, NULL);
     round_trip();
 }
 

@@ -125,6 +125,7 @@ static const struct {
      NULL,
      "bad.cfg:3: title = aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...: longer "
      "than 255 bytes"},
+    {TOP "title = caf\xE9\n" SOLID, NULL, "bad.cfg:3: title is not UTF-8 text"},
     {TOP SOLID "velocity = x\n", NULL,
      "bad.cfg:8: velocity = x: two expressions are expected, with commas between them; there is 1"},
     {TOP SOLID "velocity = x, z\n", NULL,

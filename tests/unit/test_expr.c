@@ -41,13 +41,9 @@ static void is(double expected, const char *unit, const char *text)
     TEST_ASSERT_TRUE_MESSAGE(dim_fits(&q.dim, unit), text);
 }
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
-void tearDown(void)
-{
-}
+void tearDown(void) {}
 
 static void test_precedence(void)
 {
@@ -123,7 +119,8 @@ static void test_dimensions_follow_arithmetic(void)
 static void wrong(const char *expected, const char *text)
 {
     struct quantity q;
-    TEST_ASSERT_FALSE_MESSAGE(expr_value((struct slice){text, strlen(text)}, &names, &q, why), text);
+    TEST_ASSERT_FALSE_MESSAGE(expr_value((struct slice){text, strlen(text)}, &names, &q, why),
+                              text);
     TEST_ASSERT_EQUAL_STRING(expected, why);
 }
 
@@ -155,8 +152,10 @@ static double at(const char *text, double x, double y)
     struct expr *e;
     struct dim dim;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, expr_compile(&e, (struct slice){text, strlen(text)},
-                                                       &names, &dim, &arena, why, &d), why);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
+                                  expr_compile(&e, (struct slice){text, strlen(text)}, &names, &dim,
+                                               &arena, why, &d),
+                                  why);
     TEST_ASSERT_EQUAL_STRING(text, expr_source(e));
     return scene_expr_at(e, x, y);
 }
@@ -185,8 +184,7 @@ static void test_length_and_depth_are_bounded(void)
     memset(text, '9', sizeof text);
     TEST_ASSERT_FALSE(expr_value((struct slice){text, sizeof text}, &names, &q, why));
     TEST_ASSERT_EQUAL_STRING("a number of more than 60 characters", why);
-    for (size_t k = 0; k + 1 < sizeof text; k += 2)
-        memcpy(text + k, "x+", 2);
+    for (size_t k = 0; k + 1 < sizeof text; k += 2) memcpy(text + k, "x+", 2);
     struct expr *e;
     struct dim dim;
     struct diag d = {0};

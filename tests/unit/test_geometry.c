@@ -32,15 +32,9 @@ static void must_read(const char *text, const char *set)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, read(text, set), diag.text);
 }
 
-static int64_t count(enum kind kind)
-{
-    return scene.points[kind].n;
-}
+static int64_t count(enum kind kind) { return scene.points[kind].n; }
 
-static int64_t total(void)
-{
-    return count(KIND_FLUID) + count(KIND_WALL) + count(KIND_SOLID);
-}
+static int64_t total(void) { return count(KIND_FLUID) + count(KIND_WALL) + count(KIND_SOLID); }
 
 /* Smallest distance between any two points, in dp, by brute force. */
 static double nearest(void)
@@ -61,19 +55,15 @@ static double nearest(void)
     return sqrt(least) / scene.top.dp;
 }
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
-void tearDown(void)
-{
-    scene_free(&scene);
-}
+void tearDown(void) { scene_free(&scene); }
 
-static const char tank[] = "dp = 2 mm\nend_time = 1 s\n[constants]\nwall = 8 mm\n"
-                           "[fluid w]\nshape = box 0, 0, 60 mm, 40 mm\nsound_speed = 20\n"
-                           "[wall tank]\n"
-                           "shape = polyline thickness -wall: 0, 60 mm; 0, 0; 60 mm, 0; 60 mm, 60 mm\n";
+static const char tank[] =
+    "dp = 2 mm\nend_time = 1 s\n[constants]\nwall = 8 mm\n"
+    "[fluid w]\nshape = box 0, 0, 60 mm, 40 mm\nsound_speed = 20\n"
+    "[wall tank]\n"
+    "shape = polyline thickness -wall: 0, 60 mm; 0, 0; 60 mm, 0; 60 mm, 60 mm\n";
 
 static void test_a_tank_is_filled_without_gap(void)
 {
@@ -103,9 +93,10 @@ static void test_shapes_that_abut(void)
         "[fluid w]\nsound_speed = 20\nshape = box 0, 0, a, b\nshape = box a, 0, 20 mm, b\n"
         "shape = box 0, b, a, 20 mm\nshape = polygon a, b; 20 mm, b; 20 mm, 20 mm\n"
         "shape = polygon a, b; 20 mm, 20 mm; a, 20 mm\n";
-    static const char *const sets[] = {"a=7 mm",    "a=7.5 mm", "a=6.4999999 mm", "a=6.5000001 mm",
-                                       "b=9.5 mm",  "b=3.3 mm", "ox=0.5 mm",      "ox=0.25 mm",
-                                       "oy=0.3 mm", "ox=1e-10 mm", "oy=-1e-11 mm"};
+    static const char *const sets[] = {"a=7 mm",         "a=7.5 mm",    "a=6.4999999 mm",
+                                       "a=6.5000001 mm", "b=9.5 mm",    "b=3.3 mm",
+                                       "ox=0.5 mm",      "ox=0.25 mm",  "oy=0.3 mm",
+                                       "ox=1e-10 mm",    "oy=-1e-11 mm"};
     for (size_t k = 0; k < COUNT_OF(sets); k++) {
         must_read(text, sets[k]);
         TEST_ASSERT_EQUAL_INT64_MESSAGE(400, total(), sets[k]);

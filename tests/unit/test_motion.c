@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define HEAD                                                                                       \
-    "dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n"     \
+#define HEAD                                                                                   \
+    "dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n" \
     "[wall bed]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = move\n[motion move]\n"
 
 static struct scene scene;
@@ -44,9 +44,7 @@ static void write_table(const char *text)
     fclose(file);
 }
 
-void setUp(void)
-{
-}
+void setUp(void) {}
 
 void tearDown(void)
 {
