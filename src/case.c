@@ -172,7 +172,7 @@ static void drop_rivals(struct reader *r, int section)
     for (int k = 0; k < r->n_entries; k++) {
         if (r->entries[k].section != section) continue;
         if (strcmp(r->entries[k].key, "surface") == 0) f->pressure.e[0] = NULL;
-        if (strcmp(r->entries[k].key, "pressure") == 0) f->surface = NAN;
+        if (strcmp(r->entries[k].key, "pressure") == 0) f->surface = (double)NAN;
     }
 }
 

@@ -24,8 +24,8 @@ static const double max_lattice = 1e9, max_cells = 1e10;
 static void bounding_box(struct region *region)
 {
     for (int c = 0; c < 2; c++) {
-        region->low[c] = INFINITY;
-        region->high[c] = -INFINITY;
+        region->low[c] = HUGE_VAL;
+        region->high[c] = -HUGE_VAL;
         for (int k = 0; k < region->add.n; k++) {
             region->low[c] = min2(region->low[c], region->add.item[k].low[c]);
             region->high[c] = max2(region->high[c], region->add.item[k].high[c]);
@@ -81,7 +81,7 @@ static enum err check_size(struct sampler *g)
             const double low = fabs(region->low[c] - region->origin[c]) / dp;
             const double high = fabs(region->high[c] - region->origin[c]) / dp;
             wide[c] = (region->high[c] - region->low[c]) / dp + 3;
-            if (low > max_lattice || high > max_lattice) cells = INFINITY;
+            if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
         }
         cells += wide[0] * wide[1];
     }

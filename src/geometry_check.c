@@ -78,7 +78,7 @@ static double thinnest(const struct shape *shape)
     case SHAPE_CIRCLE: return 2 * shape->size;
     case SHAPE_POLYGON: break;
     }
-    return INFINITY;
+    return HUGE_VAL;
 }
 
 static void warn_thin_wall(struct sampler *g, const struct region *region,
@@ -96,7 +96,7 @@ static void warn_thin_wall(struct sampler *g, const struct region *region,
 
 static enum err check_solid(struct sampler *g, const struct region *region)
 {
-    double across = INFINITY;
+    double across = HUGE_VAL;
     for (int c = 0; c < 2; c++)
         across = min2(across, points_between(g, region, c, region->low[c], region->high[c]));
     for (int k = 0; k < region->list->n; k++)

@@ -26,7 +26,7 @@ static void include_motion(const struct scene *s, int wall, double low[2], doubl
     enum { TIMES = 257 };
     const int motion = scene_find_motion(s, s->wall[wall].motion);
     if (motion < 0) return;
-    double at_low[2] = {INFINITY, INFINITY}, at_high[2] = {-INFINITY, -INFINITY};
+    double at_low[2] = {HUGE_VAL, HUGE_VAL}, at_high[2] = {-HUGE_VAL, -HUGE_VAL};
     const struct scene_points *p = &s->points[KIND_WALL];
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == wall) include(at_low, at_high, (const double[]){p->x[k], p->y[k]});
@@ -42,8 +42,8 @@ static void include_motion(const struct scene *s, int wall, double low[2], doubl
  * largest solid, which may swing that far; above it the scene's height once more. */
 static void default_domain(struct scene *s)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    double solid_low[2] = {INFINITY, INFINITY}, solid_high[2] = {-INFINITY, -INFINITY};
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    double solid_low[2] = {HUGE_VAL, HUGE_VAL}, solid_high[2] = {-HUGE_VAL, -HUGE_VAL};
     for (int kind = 0; kind < KIND_COUNT; kind++) include_points(s, kind, low, high);
     include_points(s, KIND_SOLID, solid_low, solid_high);
     for (int k = 0; k < s->n_wall; k++) include_motion(s, k, low, high);
@@ -90,7 +90,7 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     const struct scene *s = g->scene;
     const struct scene_points *p = &s->points[KIND_SOLID];
     const int body = scene_find_solid(s, probe->body);
-    double nearest = INFINITY;
+    double nearest = HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == body)
             nearest = min2(nearest, hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));

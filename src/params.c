@@ -25,7 +25,7 @@ const struct param param_table[PARAM_COUNT] = {
 #define REAL(section, key, def, lo, hi, unit_, meaning)          \
     {ROW(section, REAL, key, meaning),                           \
      .unit = unit_,                                              \
-     .number_default = {def},                                    \
+     .number_default = {(double)(def)},                          \
      .low = lo,                                                  \
      .high = hi,                                                 \
      .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', \

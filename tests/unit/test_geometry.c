@@ -48,7 +48,7 @@ static double nearest(void)
             y[n++] = scene.points[kind].y[k];
         }
     }
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (int64_t i = 0; i < n; i++)
         for (int64_t j = 0; j < i; j++)
             least = min2(least, square(x[i] - x[j]) + square(y[i] - y[j]));
