@@ -36,11 +36,11 @@ struct run {
     char restarted_from[FOLDER_PATH], checkpoint[FOLDER_PATH];
     struct due due[OUT_COUNT];
     struct record record;
-    double wall_start, wall_progress, wall_checkpoint, wall_image;
+    double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
 };
 
-/* Seconds between copies of a sound state in memory: a copy takes milliseconds. */
-static const double image_seconds = 1.0;
+/* Copies of a sound state in memory take this share of the time at most. */
+static const double image_share = 0.02;
 static const double progress_seconds = 0.25;
 
 static const char ledger_header[] =
@@ -121,8 +121,11 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 
 static enum err capture(struct run *r, struct diag *d)
 {
+    const double begin = wall_clock();
+    TRY(checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d));
     r->wall_image = wall_clock();
-    return checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d);
+    r->image_cost = r->wall_image - begin;
+    return ERR_OK;
 }
 
 static enum err write_checkpoint(struct run *r)
@@ -155,7 +158,8 @@ static enum err write_due(struct run *r, bool at_end)
         TRY(write_output(r, (enum output)k));
         pass(u, time);
     }
-    if (!at_end && wall_clock() - r->wall_image > image_seconds) TRY(capture(r, r->diag));
+    if (!at_end && image_share * (wall_clock() - r->wall_image) > r->image_cost)
+        TRY(capture(r, r->diag));
     r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
     return ERR_OK;
 }

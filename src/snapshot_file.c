@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: MIT */
+#include "snapshot_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* How the rows of a dataset grow with a snapshot of n points. */
+enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
+
+enum item { F64, F32, I64, I32, I8, U8 };
+
+/* The datasets below /VTKHDF. Values are handed to HDF5 as double where the file holds a floating
+ * type and as int64 otherwise; HDF5 converts. */
+static const struct column {
+    const char *name;
+    enum growth growth;
+    enum item item;
+    int width;
+} columns[D_COUNT] = {
+    [D_POINTS_COUNT] = {"NumberOfPoints", BY_STEP, I64, 1},
+    [D_CELLS_COUNT] = {"NumberOfCells", BY_STEP, I64, 1},
+    [D_IDS_COUNT] = {"NumberOfConnectivityIds", BY_STEP, I64, 1},
+    [D_TIME] = {"Steps/Values", BY_STEP, F64, 1},
+    [D_PARTS_BEFORE] = {"Steps/PartOffsets", BY_STEP, I64, 1},
+    [D_PARTS] = {"Steps/NumberOfParts", BY_STEP, I64, 1},
+    [D_POINTS_BEFORE] = {"Steps/PointOffsets", BY_STEP, I64, 1},
+    [D_CELLS_BEFORE] = {"Steps/CellOffsets", BY_STEP, I64, 1},
+    [D_IDS_BEFORE] = {"Steps/ConnectivityIdOffsets", BY_STEP, I64, 1},
+    [D_POINTS] = {"Points", BY_POINT, F64, 3},
+    [D_CONNECTIVITY] = {"Connectivity", BY_POINT, I64, 1},
+    [D_OFFSETS] = {"Offsets", BY_POINT_AND_ONE, I64, 1},
+    [D_TYPES] = {"Types", BY_POINT, U8, 1},
+    [D_VELOCITY] = {"PointData/velocity", BY_POINT, F32, 3},
+    [D_DENSITY] = {"PointData/density", BY_POINT, F32, 1},
+    [D_PRESSURE] = {"PointData/pressure", BY_POINT, F32, 1},
+    [D_KIND] = {"PointData/kind", BY_POINT, I8, 1},
+    [D_ID] = {"PointData/id", BY_POINT, I64, 1},
+    [D_BODY] = {"PointData/body", BY_POINT, I32, 1},
+    [D_STRESS] = {"PointData/stress", BY_POINT, F32, 6},
+    [D_VON_MISES] = {"PointData/von_mises", BY_POINT, F32, 1},
+    [D_DISPLACEMENT] = {"PointData/displacement", BY_POINT, F32, 3},
+    [D_DET_F] = {"PointData/det_F", BY_POINT, F32, 1},
+};
+
+enum {
+    COPY_ROWS = 1 << 16,
+    STEP_CHUNK = 128,
+    POINT_CHUNK_LEAST = 64,
+    POINT_CHUNK_MOST = 1 << 14,
+    METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
+};
+static const unsigned deflate_level = 2;
+
+static hid_t file_type(enum item item)
+{
+    switch (item) {
+    case F64: return H5T_IEEE_F64LE;
+    case F32: return H5T_IEEE_F32LE;
+    case I64: return H5T_STD_I64LE;
+    case I32: return H5T_STD_I32LE;
+    case I8: return H5T_STD_I8LE;
+    case U8: break;
+    }
+    return H5T_STD_U8LE;
+}
+
+static hid_t memory_type(const struct column *c)
+{
+    return c->item == F64 || c->item == F32 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+}
+
+/* --- one dataset --- */
+
+static int64_t point_chunk(int64_t n)
+{
+    return n < POINT_CHUNK_LEAST ? POINT_CHUNK_LEAST : n < POINT_CHUNK_MOST ? n : POINT_CHUNK_MOST;
+}
+
+static bool create_dataset(hid_t root, const struct column *c, int64_t n)
+{
+    const hsize_t width = (hsize_t)c->width;
+    const hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width};
+    const hsize_t chunk[2] = {(hsize_t)(c->growth == BY_STEP ? STEP_CHUNK : point_chunk(n)), width};
+    const int rank = c->width > 1 ? 2 : 1;
+    const hid_t space = H5Screate_simple(rank, size, most);
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    bool ok = space >= 0 && how >= 0 && H5Pset_chunk(how, rank, chunk) >= 0;
+    if (ok && c->growth != BY_STEP && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0)
+        ok = H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, deflate_level) >= 0;
+    const hid_t set =
+        ok ? H5Dcreate2(root, c->name, file_type(c->item), space, H5P_DEFAULT, how, H5P_DEFAULT)
+           : -1;
+    ok = set >= 0 && H5Dclose(set) >= 0;
+    H5Pclose(how);
+    H5Sclose(space);
+    return ok;
+}
+
+static int64_t count_rows(hid_t set)
+{
+    hsize_t size[2] = {0, 0};
+    const hid_t space = H5Dget_space(set);
+    const bool ok = space >= 0 && H5Sget_simple_extent_dims(space, size, NULL) >= 0;
+    H5Sclose(space);
+    return ok ? (int64_t)size[0] : -1;
+}
+
+/* Moves rows between memory and an open dataset. */
+static bool move_rows(hid_t set, const struct column *c, int64_t first, int64_t n, void *values,
+                      bool write)
+{
+    if (n == 0) return true;
+    const int rank = c->width > 1 ? 2 : 1;
+    const hsize_t at[2] = {(hsize_t)first, 0}, size[2] = {(hsize_t)n, (hsize_t)c->width};
+    const hid_t in_file = H5Dget_space(set), in_memory = H5Screate_simple(rank, size, NULL);
+    bool ok = in_file >= 0 && in_memory >= 0 &&
+              H5Sselect_hyperslab(in_file, H5S_SELECT_SET, at, NULL, size, NULL) >= 0;
+    if (ok && write)
+        ok = H5Dwrite(set, memory_type(c), in_memory, in_file, H5P_DEFAULT, values) >= 0;
+    else if (ok)
+        ok = H5Dread(set, memory_type(c), in_memory, in_file, H5P_DEFAULT, values) >= 0;
+    H5Sclose(in_memory);
+    H5Sclose(in_file);
+    return ok;
+}
+
+static bool append_rows(hid_t set, const struct column *c, int64_t n, void *values)
+{
+    const int64_t first = count_rows(set);
+    const hsize_t size[2] = {(hsize_t)(first + n), (hsize_t)c->width};
+    return first >= 0 && H5Dset_extent(set, size) >= 0 && move_rows(set, c, first, n, values, true);
+}
+
+bool snapshot_file_append(hid_t root, enum data what, int64_t n, void *values)
+{
+    const hid_t set = H5Dopen2(root, columns[what].name, H5P_DEFAULT);
+    const bool ok = set >= 0 && append_rows(set, &columns[what], n, values);
+    return (set < 0 || H5Dclose(set) >= 0) && ok;
+}
+
+/* --- a whole file --- */
+
+static bool put_text(hid_t at, const char *name, const char *text)
+{
+    const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+    H5Tset_size(type, text[0] ? strlen(text) : 1);
+    const hid_t a = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool ok = a >= 0 && H5Awrite(a, type, text) >= 0;
+    H5Aclose(a);
+    H5Sclose(space);
+    H5Tclose(type);
+    return ok;
+}
+
+static bool put_numbers(hid_t at, const char *name, enum item item, const void *values, int n)
+{
+    const hsize_t size = (hsize_t)n;
+    const hid_t space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR);
+    const hid_t a = H5Acreate2(at, name, file_type(item), space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool ok =
+        a >= 0 && H5Awrite(a, item == F64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, values) >= 0;
+    H5Aclose(a);
+    H5Sclose(space);
+    return ok;
+}
+
+/* What VTK has no place for stands in a group of its own, which VTK ignores. */
+static bool put_case(hid_t file, const struct scene *scene, const char *version)
+{
+    const hid_t group = H5Gcreate2(file, "sphfsi", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const bool ok = group >= 0 && put_text(group, "title", scene->top.title) &&
+                    put_text(group, "version", version) &&
+                    put_text(group, "kinds", "0 fluid, 1 wall, 2 solid") &&
+                    put_text(group, "stress", "Cauchy: xx yy zz xy yz xz, Pa") &&
+                    put_numbers(group, "dp", F64, &scene->top.dp, 1) &&
+                    put_numbers(group, "h", F64, &scene->h, 1) &&
+                    put_numbers(group, "c0", F64, &scene->c0, 1);
+    H5Gclose(group);
+    return ok;
+}
+
+bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *program, int64_t n)
+{
+    static const char *const groups[] = {"Steps", "PointData", "Steps/PointDataOffsets"};
+    const int64_t version[2] = {2, 0}, none = 0;
+    const hid_t root = H5Gcreate2(file, "VTKHDF", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    bool ok = root >= 0 && put_numbers(root, "Version", I64, version, 2) &&
+              put_text(root, "Type", "UnstructuredGrid") && put_case(file, scene, program);
+    for (size_t k = 0; ok && k < COUNT_OF(groups); k++) {
+        const hid_t group = H5Gcreate2(root, groups[k], H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+        ok = group >= 0 && (k > 0 || put_numbers(group, "NSteps", I64, &none, 1));
+        H5Gclose(group);
+    }
+    for (int k = 0; ok && k < D_COUNT; k++) ok = create_dataset(root, &columns[k], n);
+    /* All arrays of points are read from the same place: their offsets are one dataset. */
+    for (int k = D_VELOCITY; ok && k < D_COUNT; k++) {
+        char link[64];
+        snprintf(link, sizeof link, "Steps/PointDataOffsets/%s", strchr(columns[k].name, '/') + 1);
+        ok = H5Lcreate_hard(root, columns[D_POINTS_BEFORE].name, root, link, H5P_DEFAULT,
+                            H5P_DEFAULT) >= 0;
+    }
+    H5Gclose(root);
+    return ok;
+}
+
+/* Reads or writes the number of snapshots. */
+static bool move_steps(hid_t file, int64_t *n, bool write)
+{
+    const hid_t group = H5Gopen2(file, "VTKHDF/Steps", H5P_DEFAULT);
+    const hid_t a = group >= 0 ? H5Aopen(group, "NSteps", H5P_DEFAULT) : -1;
+    const bool ok =
+        a >= 0 && (write ? H5Awrite(a, H5T_NATIVE_INT64, n) : H5Aread(a, H5T_NATIVE_INT64, n)) >= 0;
+    if (a >= 0) H5Aclose(a);
+    if (group >= 0) H5Gclose(group);
+    return ok;
+}
+
+int64_t snapshot_file_steps(hid_t file)
+{
+    int64_t n = -1;
+    return move_steps(file, &n, false) ? n : -1;
+}
+
+bool snapshot_file_set_steps(hid_t file, int64_t n) { return move_steps(file, &n, true); }
+
+bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values)
+{
+    char name[96];
+    snprintf(name, sizeof name, "VTKHDF/%s", columns[what].name);
+    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+    const bool ok =
+        set >= 0 && count_rows(set) >= n && move_rows(set, &columns[what], 0, n, values, false);
+    H5Dclose(set);
+    return ok;
+}
+
+/* --- catching up --- */
+
+bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT])
+{
+    int64_t points = 0;
+    int64_t *n = malloc((size_t)(steps + 1) * sizeof *n);
+    const bool ok = n && snapshot_file_first(file, D_POINTS_COUNT, steps, n);
+    for (int64_t k = 0; ok && k < steps; k++) points += n[k];
+    free(n);
+    for (int k = 0; k < D_COUNT; k++)
+        rows[k] = columns[k].growth == BY_STEP
+                      ? steps
+                      : points + (columns[k].growth == BY_POINT_AND_ONE ? steps : 0);
+    return ok;
+}
+
+static bool copy_rows(hid_t from, hid_t to, const struct column *c, int64_t until, void *buffer)
+{
+    char name[96];
+    snprintf(name, sizeof name, "VTKHDF/%s", c->name);
+    const hid_t source = H5Dopen2(from, name, H5P_DEFAULT),
+                target = H5Dopen2(to, name, H5P_DEFAULT);
+    bool ok = source >= 0 && target >= 0 && count_rows(source) >= until;
+    int64_t at = ok ? count_rows(target) : until;
+    for (int64_t n; ok && at < until; at += n) {
+        n = until - at < COPY_ROWS ? until - at : COPY_ROWS;
+        ok = move_rows(source, c, at, n, buffer, false) && append_rows(target, c, n, buffer);
+    }
+    H5Dclose(source);
+    return (target < 0 || H5Dclose(target) >= 0) && ok;
+}
+
+bool snapshot_file_catch_up(hid_t from, hid_t to, int64_t steps)
+{
+    int64_t rows[D_COUNT];
+    void *buffer = malloc((size_t)COPY_ROWS * SNAPSHOT_WIDTH * 8);
+    bool ok = buffer && snapshot_file_rows(from, steps, rows);
+    for (int k = 0; ok && k < D_COUNT; k++) ok = copy_rows(from, to, &columns[k], rows[k], buffer);
+    free(buffer);
+    return ok && snapshot_file_set_steps(to, steps);
+}
+
+int snapshot_file_width(enum data what) { return columns[what].width; }
+
+bool snapshot_file_real(enum data what) { return memory_type(&columns[what]) == H5T_NATIVE_DOUBLE; }
+
+/* The rows, and once more the last chunk of each dataset, which moves when it grows. */
+int64_t snapshot_file_bytes(int64_t n)
+{
+    int64_t row = 0;
+    for (int k = 0; k < D_COUNT; k++)
+        row += (int64_t)H5Tget_size(file_type(columns[k].item)) * columns[k].width;
+    return row * (n + 1 + point_chunk(n)) + METADATA_BYTES;
+}

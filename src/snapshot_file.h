@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ * Inside of snapshot: the datasets of fields.vtkhdf, and appending to them by HDF5. */
+#ifndef SPHFSI_SNAPSHOT_FILE_H
+#define SPHFSI_SNAPSHOT_FILE_H
+
+#include "scene.h"
+
+#include <hdf5.h>
+
+/* The datasets below /VTKHDF, in the order of the table in snapshot_file.c. */
+enum data {
+    D_POINTS_COUNT,
+    D_CELLS_COUNT,
+    D_IDS_COUNT,
+    D_TIME,
+    D_PARTS_BEFORE,
+    D_PARTS,
+    D_POINTS_BEFORE,
+    D_CELLS_BEFORE,
+    D_IDS_BEFORE,
+    D_POINTS,
+    D_CONNECTIVITY,
+    D_OFFSETS,
+    D_TYPES,
+    D_VELOCITY,
+    D_DENSITY,
+    D_PRESSURE,
+    D_KIND,
+    D_ID,
+    D_BODY,
+    D_STRESS,
+    D_VON_MISES,
+    D_DISPLACEMENT,
+    D_DET_F,
+    D_COUNT
+};
+
+enum { SNAPSHOT_WIDTH = 6 }; /* most columns of one of them */
+
+/* Makes the groups and empty datasets of a new file for snapshots of about n points. */
+bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n);
+
+/* Columns of a dataset, and whether its values are handed over as double; otherwise as int64. */
+int snapshot_file_width(enum data what);
+bool snapshot_file_real(enum data what);
+
+/* Number of snapshots; negative: it cannot be read. */
+int64_t snapshot_file_steps(hid_t file);
+bool snapshot_file_set_steps(hid_t file, int64_t n);
+
+/* Appends rows to a dataset of the group /VTKHDF. */
+bool snapshot_file_append(hid_t root, enum data what, int64_t n, void *values);
+
+/* Reads the first n rows of a dataset of one column. */
+bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
+
+/* Rows of every dataset in the first `steps` snapshots of a file; false: it does not hold them. */
+bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT]);
+
+/* Appends to `to` what it lacks of the first `steps` snapshots of `from`. */
+bool snapshot_file_catch_up(hid_t from, hid_t to, int64_t steps);
+
+/* Bytes that a snapshot of n points adds at most. */
+int64_t snapshot_file_bytes(int64_t n);
+
+#endif

@@ -1,0 +1,148 @@
+#!/usr/bin/env bash
+# The program's door: exit status and sentence for wrong command lines and folders, a full disk, a
+# signal, a killed run.
+set -u
+sphfsi=${SPHFSI:-./sphfsi}
+case=tests/fault/tiny.cfg
+dir=$(mktemp -d)
+trap 'chmod -R u+w "$dir"; rm -rf "$dir"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $1"
+    sed 's/^/    /' "$dir/output"
+    failures=$((failures + 1))
+}
+
+# expect STATUS WORDS ARGUMENTS...: the program ends so and says so.
+expect() {
+    local status=$1 words=$2
+    shift 2
+    "$sphfsi" "$@" >"$dir/output" 2>&1
+    local got=$?
+    [ $got = "$status" ] || fail "$*: exit status $got instead of $status"
+    grep -q -- "$words" "$dir/output" || fail "$*: does not say '$words'"
+}
+
+# --- command line ---
+expect 0 'usage:' --help
+expect 0 '^[0-9]*\.[0-9]*\.[0-9]' --version
+expect 1 'no case is given'
+expect 1 'nearest one is --threads' "$case" --thread 2
+expect 1 'unknown option -x' "$case" -x
+expect 1 '--out: its operand is missing' "$case" --out
+expect 1 'from 1 to 4096' "$case" --threads 0
+expect 1 'from 1 to 4096' "$case" --threads many
+expect 1 'above 0' "$case" --until -1
+expect 1 'key=value' "$case" --set dp
+expect 1 'takes no operand' "$case" --quiet=yes
+expect 1 'one case at a time' "$case" "$case"
+expect 1 'nowhere.cfg' "$dir/nowhere.cfg" --out "$dir/none"
+expect 1 'dp' "$case" --set dp=-1 --out "$dir/none"
+expect 1 'dpp' "$case" --set dpp=1 --out "$dir/none"
+[ ! -e "$dir/none" ] || fail "wrong input made a folder"
+
+# --- explaining writes nothing ---
+expect 0 'binds' "$case" --explain --out "$dir/none"
+[ ! -e "$dir/none" ] || fail "--explain made a folder"
+
+# --- a run, its files, no overwriting ---
+run=$dir/run
+expect 0 'simulated' "$case" --out "$run"
+for file in summary.json probes.csv ledger.csv fields.vtkhdf case.cfg; do
+    [ -s "$run/$file" ] || fail "no $file"
+done
+[ "$(head -n 1 "$run/probes.csv")" = time_s,M1_dx_m,M1_dy_m ] || fail "columns of probes.csv"
+[ "$(wc -l <"$run/probes.csv")" = 202 ] || fail "rows of probes.csv: $(wc -l <"$run/probes.csv")"
+[ "$(wc -l <"$run/ledger.csv")" = 22 ] || fail "rows of ledger.csv: $(wc -l <"$run/ledger.csv")"
+[ "$(tail -n 1 "$run/probes.csv" | cut -d, -f1)" = 0.02 ] || fail "the last row is not at the end"
+[ ! -e "$run/.lock" ] && [ ! -e "$run/fields.vtkhdf.spare" ] || fail "something was left behind"
+cp "$run/summary.json" "$dir/summary.json"
+expect 1 'not overwritten' "$case" --out "$run"
+cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused run changed its files"
+
+# --- the effective case gives the same bits ---
+expect 0 'simulated' "$run/case.cfg" --out "$dir/again"
+cmp "$run/probes.csv" "$dir/again/probes.csv" || fail "case.cfg gives other probes"
+hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
+[ "$(hash "$run")" = "$(hash "$dir/again")" ] || fail "case.cfg gives another state"
+
+# --- restart: what may change and what not ---
+expect 1 'no such folder' "$case" --out "$dir/none" --restart
+expect 1 'the case has changed.*young' "$case" --out "$run" --restart --set gate.young=2e6
+expect 1 'beyond the end' "$case" --out "$run" --restart --until 0.01
+expect 1 'nowhere.ckpt' "$case" --out "$run" --restart "$dir/nowhere.ckpt"
+expect 1 'not a sound checkpoint' "$case" --out "$run" --restart "$case"
+cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused restart changed its files"
+expect 0 'restart from' "$case" --out "$run" --restart --until 0.03
+[ "$(wc -l <"$run/probes.csv")" = 302 ] || fail "a longer run has $(wc -l <"$run/probes.csv") rows"
+
+# --- folders that cannot be used ---
+: >"$dir/file"
+expect 1 "$dir/file" "$case" --out "$dir/file/run"
+if [ "$(id -u)" != 0 ]; then
+    mkdir "$dir/closed"
+    chmod a-w "$dir/closed"
+    expect 1 "$dir/closed" "$case" --out "$dir/closed"
+    expect 1 "$dir/closed/run" "$case" --out "$dir/closed/run"
+fi
+
+# --- a disk that fills up: reported, and what was good stays good ---
+for blocks in 1 100 400 480 600; do
+    full=$dir/full-$blocks
+    (ulimit -f $blocks; exec "$sphfsi" "$case" --out "$full") >"$dir/output" 2>&1
+    got=$?
+    [ $got = 2 ] || [ $got = 0 ] || fail "limit of $blocks blocks: exit status $got"
+    [ $got = 0 ] || grep -q "$full" "$dir/output" || fail "limit of $blocks blocks: no path named"
+    [ ! -e "$full/.lock" ] || fail "limit of $blocks blocks: the lock is left"
+done
+[ "$(ls "$dir"/full-1/*.ckpt 2>/dev/null)" = "" ] || fail "a checkpoint in half a kilobyte"
+
+# --- signals ---
+still=tests/fault/still.cfg
+wait_for() {
+    for _ in $(seq 200); do
+        compgen -G "$1" >/dev/null && return
+        sleep 0.05
+    done
+    fail "$1 did not appear"
+}
+"$sphfsi" "$still" --out "$dir/signal" >"$dir/output" 2>&1 &
+pid=$!
+wait_for "$dir/signal/probes.csv"
+kill -USR1 $pid
+wait_for "$dir/signal/*.ckpt"
+kill -0 $pid 2>/dev/null || fail "SIGUSR1 ended the run"
+"$sphfsi" "$still" --out "$dir/signal" --restart >"$dir/second" 2>&1 &&
+    fail "a second run went into the same folder"
+grep -q "process $pid" "$dir/second" || fail "the second run does not name the first"
+kill -INT $pid
+wait $pid
+got=$?
+[ $got = 130 ] || fail "SIGINT: exit status $got"
+grep -q '"exit_reason": "interrupted"' "$dir/signal/summary.json" || fail "SIGINT: no summary"
+[ ! -e "$dir/signal/.lock" ] || fail "SIGINT: the lock is left"
+
+# --- killed outright: what is there can be read and continued ---
+"$sphfsi" "$still" --out "$dir/killed" --set output.checkpoint_interval=0.001 \
+    >"$dir/output" 2>&1 &
+pid=$!
+wait_for "$dir/killed/*.ckpt"
+kill -KILL $pid
+wait $pid 2>/dev/null
+printf '0.5,0.' >>"$dir/killed/probes.csv"
+tenths=$(tail -n 1 "$dir/killed/ledger.csv" | awk -F, '{ print int(10 * $1) + 2 }')
+expect 0 'restart from' "$still" --out "$dir/killed" --restart \
+    --until "$(awk "BEGIN { print $tenths / 10 }")"
+awk -F, -v rows=$((tenths * 100 + 2)) '
+    NR > 1 { off = $1 - (NR - 2) * 0.001; if (off * off > 1e-20) bad = 1 }
+    END { exit bad || NR != rows }' "$dir/killed/probes.csv" ||
+    fail "killed and continued: a gap or a doubled row in probes.csv"
+
+# --- a guard: the last sound state and the state at the stop are left ---
+expect 2 'last sound state is in' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"
+compgen -G "$dir/guard/*.ckpt" >/dev/null || fail "guard: no checkpoint"
+[ -s "$dir/guard/fields.vtkhdf" ] || fail "guard: no snapshot"
+grep -q '"exit_reason": "guard"' "$dir/guard/summary.json" || fail "guard: no summary"
+
+[ $failures = 0 ] || exit 1

@@ -1,0 +1,184 @@
+/* SPDX-License-Identifier: MIT
+ * The public header, used as a program would: it alone is included. */
+#include "sphfsi.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+static struct sphfsi_simulation *s;
+static int warnings, notes;
+
+static void on_message(void *context, enum sphfsi_message kind, const char *text)
+{
+    (void)context, (void)text;
+    *(kind == SPHFSI_WARNING ? &warnings : &notes) += 1;
+}
+
+static struct sphfsi_options tiny_options(void)
+{
+    return (struct sphfsi_options){.case_text = tiny_case, .message = on_message};
+}
+
+void setUp(void)
+{
+    const struct sphfsi_options o = tiny_options();
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_create(&s, &o), sphfsi_error());
+}
+
+void tearDown(void)
+{
+    sphfsi_free(s);
+    s = NULL;
+}
+
+static void counts_and_times(void)
+{
+    TEST_ASSERT_TRUE(sphfsi_count(s, SPHFSI_FLUID) == 100);
+    TEST_ASSERT_TRUE(sphfsi_count(s, SPHFSI_WALL) > 0 && sphfsi_count(s, SPHFSI_SOLID) == 45);
+    TEST_ASSERT_TRUE(sphfsi_time(s) == 0 && sphfsi_end_time(s) == 0.02 && sphfsi_steps(s) == 0);
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(s, 1));
+    TEST_ASSERT_TRUE(sphfsi_time(s) == sphfsi_time_step(s) && sphfsi_steps(s) == 1);
+}
+
+static void advance_hits_the_time(void)
+{
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_advance(s, 0.00123));
+    TEST_ASSERT_TRUE(sphfsi_time(s) == 0.00123);
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_advance(s, 0.00123));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "0.00123"));
+}
+
+static void fields_are_views(void)
+{
+    struct sphfsi_view x, id, again;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "x", &x));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "x", &again));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "id", &id));
+    TEST_ASSERT_TRUE(x.data == again.data);
+    TEST_ASSERT_TRUE(x.count == 100 && x.type == SPHFSI_DOUBLE && id.type == SPHFSI_INT64);
+    TEST_ASSERT_EQUAL_STRING("m", x.unit);
+    for (int64_t k = 0; k < x.count; k++) {
+        const double at = ((const double *)x.data)[k];
+        TEST_ASSERT_TRUE(at > 0 && at < 0.1);
+    }
+}
+
+static void pressure_is_up_to_date(void)
+{
+    struct sphfsi_view p;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "p", &p));
+    double most = 0;
+    for (int64_t k = 0; k < p.count; k++)
+        if (((const double *)p.data)[k] > most) most = ((const double *)p.data)[k];
+    TEST_ASSERT_DOUBLE_WITHIN(30, 1000 * 9.81 * 0.095, most);
+}
+
+static void an_unknown_field_names_the_nearest(void)
+{
+    struct sphfsi_view v;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_field(s, SPHFSI_FLUID, "denz", &v));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "dens"));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_field(s, SPHFSI_FLUID, "ux", &v));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_field(s, (enum sphfsi_kind)7, "x", &v));
+}
+
+static void wrong_input_makes_nothing(void)
+{
+    struct sphfsi_simulation *none = s;
+    struct sphfsi_options o = tiny_options();
+    o.case_text = "dp = -1\n";
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_create(&none, &o));
+    TEST_ASSERT_NULL(none);
+    TEST_ASSERT_TRUE(strlen(sphfsi_error()) > 0);
+    o = (struct sphfsi_options){.case_path = "/nowhere.cfg"};
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_create(&none, &o));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "/nowhere.cfg"));
+    o = (struct sphfsi_options){0};
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_create(&none, &o));
+    o = tiny_options();
+    o.threads = -1;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_create(&none, &o));
+    sphfsi_free(NULL);
+}
+
+static void the_same_input_gives_the_same_bits(void)
+{
+    struct sphfsi_simulation *twin;
+    const struct sphfsi_options o = tiny_options();
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_create(&twin, &o));
+    sphfsi_advance(s, 0.002);
+    TEST_ASSERT_FALSE(sphfsi_hash(s) == sphfsi_hash(twin));
+    sphfsi_advance(twin, 0.002);
+    TEST_ASSERT_TRUE(sphfsi_hash(s) == sphfsi_hash(twin));
+    sphfsi_free(twin);
+}
+
+static int calls, finished;
+static void on_progress(void *context, const struct sphfsi_progress *p)
+{
+    (void)context;
+    TEST_ASSERT_TRUE(p->time <= p->end_time && p->bound != NULL);
+    calls++;
+    finished += p->finished;
+}
+
+static void a_run_writes_its_files(void)
+{
+    static const char *const names[] = {"summary.json", "probes.csv", "ledger.csv", "case.cfg",
+                                        "fields.vtkhdf"};
+    struct sphfsi_options o = tiny_options();
+    o.out = tiny_path("run");
+    o.until = 0.002;
+    o.progress = on_progress;
+    o.progress_interval = 1e-9;
+    notes = 0;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
+    TEST_ASSERT_TRUE(calls > 10 && finished == 1 && notes > 0);
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        char path[600];
+        struct stat info;
+        snprintf(path, sizeof path, "%s/%s", tiny_path("run"), names[k]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, stat(path, &info), path);
+        TEST_ASSERT_TRUE(info.st_size > 0);
+    }
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
+}
+
+static void a_request_stops_a_run(void)
+{
+    struct sphfsi_requests requests = {.stop = 15};
+    struct sphfsi_options o = tiny_options();
+    o.out = tiny_path("stopped");
+    o.requests = &requests;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INTERRUPT, sphfsi_run(&o));
+    TEST_ASSERT_EQUAL_INT(143, sphfsi_exit_status(SPHFSI_INTERRUPT, 15));
+    requests.stop = 0;
+    o.restart = 1;
+    o.until = 0.001;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
+}
+
+static void nearest_names(void)
+{
+    static const char *const names[] = {"--out", "--threads"};
+    TEST_ASSERT_EQUAL_STRING("--threads", sphfsi_nearest("--thread", names, 2));
+    TEST_ASSERT_NULL(sphfsi_nearest("--colour-of-water", names, 2));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(counts_and_times);
+    RUN_TEST(advance_hits_the_time);
+    RUN_TEST(fields_are_views);
+    RUN_TEST(pressure_is_up_to_date);
+    RUN_TEST(an_unknown_field_names_the_nearest);
+    RUN_TEST(wrong_input_makes_nothing);
+    RUN_TEST(the_same_input_gives_the_same_bits);
+    RUN_TEST(a_run_writes_its_files);
+    RUN_TEST(a_request_stops_a_run);
+    RUN_TEST(nearest_names);
+    return UNITY_END();
+}
