@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ * Every verb of the lanes against one lane at a time in plain C, to the bit. */
+#include "simd.h"
+
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* What makes lanes differ: signs, zeros, infinities, tiny and huge, and plain numbers. */
+static const double values[] = {0.0,      -0.0,      1.0,   -1.0,  0.1,       3.0e-5,
+                                -7.25,    1e20,      -1e20, 1e-30, 0x1p-1022, 1.0 / 3,
+                                INFINITY, -INFINITY, 2.5,   -1e-3};
+enum { N = COUNT_OF(values) };
+
+static double at(int k) { return values[(unsigned)k % N]; }
+
+static bool same_double(double a, double b)
+{
+    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+}
+
+static bool same_float(float a, float b)
+{
+    return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+}
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* Lane l of three operands: all pairs meet as `turn` goes round. */
+#define OPERANDS(type, lanes)              \
+    type a[lanes], b[lanes], c[lanes];     \
+    for (int l = 0; l < (lanes); l++) {    \
+        a[l] = (type)at(turn + l);         \
+        b[l] = (type)at(turn / N + 3 * l); \
+        c[l] = (type)at(turn / 5 + 7 * l); \
+    }
+
+#define CHECK_LANES(type, lanes, store, same, verb, expected)                                   \
+    do {                                                                                        \
+        type out_[lanes];                                                                       \
+        store(out_, verb);                                                                      \
+        for (int l = 0; l < (lanes); l++) {                                                     \
+            char text_[128];                                                                    \
+            snprintf(text_, sizeof text_, "%s lane %d of (%g, %g, %g)", #verb, l, (double)a[l], \
+                     (double)b[l], (double)c[l]);                                               \
+            TEST_ASSERT_TRUE_MESSAGE(same((expected), out_[l]), text_);                         \
+        }                                                                                       \
+    } while (0)
+
+static void test_float_verbs(void)
+{
+    for (int turn = 0; turn < N * N; turn++) {
+        OPERANDS(float, LANES_FLOAT)
+        const vfloat A = vload_float(a), B = vload_float(b), C = vload_float(c);
+#define CHECK(verb, expected) \
+    CHECK_LANES(float, LANES_FLOAT, vstore_float, same_float, verb, expected)
+        CHECK(A, a[l]);
+        CHECK(A + B, a[l] + b[l]);
+        CHECK(A / B, a[l] / b[l]);
+        CHECK(vset_float(a[0]), a[0] + 0.0f);
+        CHECK(vfma_float(A, B, C), fmaf(a[l], b[l], c[l]));
+        CHECK(vmin_float(A, B), a[l] < b[l] ? a[l] : b[l]);
+        CHECK(vmax_float(A, B), a[l] > b[l] ? a[l] : b[l]);
+        CHECK(vsqrt_float(A), sqrtf(a[l]));
+#undef CHECK
+    }
+}
+
+static void test_double_verbs(void)
+{
+    for (int turn = 0; turn < N * N; turn++) {
+        OPERANDS(double, LANES_DOUBLE)
+        const vdouble A = vload_double(a), B = vload_double(b), C = vload_double(c);
+#define CHECK(verb, expected) \
+    CHECK_LANES(double, LANES_DOUBLE, vstore_double, same_double, verb, expected)
+        CHECK(A, a[l]);
+        CHECK(A - B, a[l] - b[l]);
+        CHECK(A / B, a[l] / b[l]);
+        CHECK(vset_double(a[0]), a[0] + 0.0);
+        CHECK(vfma_double(A, B, C), fma(a[l], b[l], c[l]));
+        CHECK(vmin_double(A, B), a[l] < b[l] ? a[l] : b[l]);
+        CHECK(vmax_double(A, B), a[l] > b[l] ? a[l] : b[l]);
+        CHECK(vsqrt_double(A), sqrt(a[l]));
+#undef CHECK
+    }
+}
+
+static void test_wide_verbs(void)
+{
+    for (int turn = 0; turn < N * N; turn++) {
+        OPERANDS(double, LANES_WIDE)
+        const vwide A = vload_wide(a), B = vload_wide(b), C = vload_wide(c);
+#define CHECK(verb, expected) \
+    CHECK_LANES(double, LANES_WIDE, vstore_wide, same_double, verb, expected)
+        CHECK(A, a[l]);
+        CHECK(A * B, a[l] * b[l]);
+        CHECK(vset_wide(a[0]), a[0] + 0.0);
+        CHECK(vfma_wide(A, B, C), fma(a[l], b[l], c[l]));
+        CHECK(vmin_wide(A, B), a[l] < b[l] ? a[l] : b[l]);
+        CHECK(vsqrt_wide(A), sqrt(a[l]));
+#undef CHECK
+    }
+}
+
+/* vmin and vmax give the second operand where the comparison fails: for NaN and for equal zeros. */
+static void test_min_and_max_of_nan_and_zeros(void)
+{
+    const float nf = NAN;
+    const double nd = (double)NAN;
+    TEST_ASSERT_TRUE(vmin_float(vset_float(nf), vset_float(2))[0] == 2.0f);
+    TEST_ASSERT_TRUE(isnan(vmin_float(vset_float(2), vset_float(nf))[0]));
+    TEST_ASSERT_TRUE(vmax_float(vset_float(nf), vset_float(2))[0] == 2.0f);
+    TEST_ASSERT_TRUE(isnan(vmax_float(vset_float(2), vset_float(nf))[0]));
+    TEST_ASSERT_TRUE(vmin_double(vset_double(nd), vset_double(2))[0] == 2);
+    TEST_ASSERT_TRUE(isnan(vmin_double(vset_double(2), vset_double(nd))[0]));
+    TEST_ASSERT_TRUE(vmax_double(vset_double(nd), vset_double(2))[0] == 2);
+    TEST_ASSERT_TRUE(isnan(vmax_double(vset_double(2), vset_double(nd))[0]));
+    TEST_ASSERT_TRUE(vmin_wide(vset_wide(nd), vset_wide(2))[0] == 2);
+    TEST_ASSERT_TRUE(isnan(vmin_wide(vset_wide(2), vset_wide(nd))[0]));
+    const vfloat minus = -vset_float(0);
+    TEST_ASSERT_TRUE(signbit(vmin_float(vset_float(0), minus)[0]));
+    TEST_ASSERT_FALSE(signbit(vmin_float(minus, vset_float(0))[0]));
+}
+
+/* fma rounds once: (1 + 2^-27)^2 - 1 keeps its last term in double, (1 + 2^-13)^2 - 1 in float. */
+static void test_fma_rounds_once(void)
+{
+    const double d = 1 + 0x1p-27;
+    TEST_ASSERT_TRUE(vfma_double(vset_double(d), vset_double(d), vset_double(-1))[0] ==
+                     0x1p-26 + 0x1p-54);
+    TEST_ASSERT_TRUE(vfma_wide(vset_wide(d), vset_wide(d), vset_wide(-1))[0] == 0x1p-26 + 0x1p-54);
+    const float f = 1 + 0x1p-13f;
+    TEST_ASSERT_TRUE(vfma_float(vset_float(f), vset_float(f), vset_float(-1))[0] ==
+                     0x1p-12f + 0x1p-26f);
+}
+
+/* The sum is by halving, whatever the machine: lane k meets lane k + n/2. */
+static void test_sum_follows_the_tree(void)
+{
+    uint32_t seed = 1;
+    for (int turn = 0; turn < 200; turn++) {
+        float f[LANES_FLOAT], tree_f[LANES_FLOAT];
+        double d[LANES_DOUBLE], tree_d[LANES_DOUBLE];
+        for (int l = 0; l < LANES_FLOAT; l++) {
+            seed = seed * 1664525u + 1013904223u;
+            tree_f[l] = f[l] = ldexpf((float)(int32_t)seed, -(int)(seed >> 28));
+        }
+        for (int l = 0; l < LANES_DOUBLE; l++) tree_d[l] = d[l] = (double)f[l] / 3;
+        for (int half = LANES_FLOAT / 2; half; half /= 2)
+            for (int l = 0; l < half; l++) tree_f[l] += tree_f[l + half];
+        for (int half = LANES_DOUBLE / 2; half; half /= 2)
+            for (int l = 0; l < half; l++) tree_d[l] += tree_d[l + half];
+        TEST_ASSERT_TRUE(tree_f[0] == vsum_float(vload_float(f)));
+        TEST_ASSERT_TRUE(tree_d[0] == vsum_double(vload_double(d)));
+    }
+}
+
+static void test_top_finds_the_largest_wherever_it_is(void)
+{
+    for (int where = 0; where < LANES_FLOAT; where++) {
+        vfloat a = vset_float(-2);
+        a[where] = -1;
+        TEST_ASSERT_TRUE(vtop_float(a) == -1.0f);
+    }
+    for (int where = 0; where < LANES_DOUBLE; where++) {
+        vdouble a = vset_double(-2);
+        a[where] = -1;
+        TEST_ASSERT_TRUE(vtop_double(a) == -1);
+    }
+}
+
+static void test_loads_and_stores_at_any_address(void)
+{
+    double d[3 * LANES_WIDE + 1] = {0};
+    float f[3 * LANES_FLOAT + 1] = {0};
+    for (int shift = 0; shift <= LANES_WIDE; shift++) {
+        vstore_wide(d + shift, vset_wide(shift + 1));
+        TEST_ASSERT_TRUE(vload_wide(d + shift)[LANES_WIDE - 1] == shift + 1);
+        TEST_ASSERT_TRUE(d[shift + LANES_WIDE] == 0);
+    }
+    for (int shift = 0; shift <= LANES_FLOAT; shift++) {
+        vstore_float(f + shift, vset_float((float)shift + 1));
+        TEST_ASSERT_TRUE(vload_float(f + shift)[LANES_FLOAT - 1] == (float)shift + 1);
+        TEST_ASSERT_TRUE(f[shift + LANES_FLOAT] == 0);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_float_verbs);
+    RUN_TEST(test_double_verbs);
+    RUN_TEST(test_wide_verbs);
+    RUN_TEST(test_min_and_max_of_nan_and_zeros);
+    RUN_TEST(test_fma_rounds_once);
+    RUN_TEST(test_sum_follows_the_tree);
+    RUN_TEST(test_top_finds_the_largest_wherever_it_is);
+    RUN_TEST(test_loads_and_stores_at_any_address);
+    return UNITY_END();
+}
