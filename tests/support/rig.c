@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+#include "rig.h"
+
+#include "unity.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_SETS = 16 };
+
+void rig_open(struct rig *r, const char *text, ...)
+{
+    const char *sets[MAX_SETS];
+    int n = 0;
+    va_list args;
+    va_start(args, text);
+    for (const char *set; (set = va_arg(args, const char *));) {
+        TEST_ASSERT_TRUE(n < MAX_SETS);
+        sets[n++] = set;
+    }
+    va_end(args);
+    rig_close(r);
+    enum err e = scene_parse(&r->scene, text, "rig.cfg", n, sets, &r->diag);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
+    r->scene_open = true;
+    e = simulation_create(&r->sim, &r->scene, &r->diag);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
+    r->sim_open = true;
+}
+
+void rig_close(struct rig *r)
+{
+    if (r->sim_open) simulation_free(&r->sim);
+    if (r->scene_open) scene_free(&r->scene);
+    memset(r, 0, sizeof *r);
+}
+
+void rig_run(struct rig *r, double time)
+{
+    while (r->sim.state.time < time) {
+        const enum err e = simulation_step(&r->sim, time, &r->diag);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
+    }
+}
+
+void rig_steps(struct rig *r, int steps, double limit)
+{
+    for (int k = 0; k < steps; k++) {
+        const enum err e = simulation_step(&r->sim, limit, &r->diag);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
+    }
+}
+
+void rig_sort(struct rig *r)
+{
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        if (r->sim.kind[kind].n)
+            TEST_ASSERT_EQUAL_INT64(0,
+                                    cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
+    fluid_find_near(&r->sim.fluid, &r->sim.cells);
+}
+
+void rig_evaluate(struct rig *r)
+{
+    double seconds[3] = {0};
+    fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
+}
+
+double noise(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return (double)(*state >> 11) * 0x1p-52 - 1;
+}
+
+void assert_near(double tolerance, double expected, double actual, const char *what)
+{
+    char text[256];
+    const double difference = actual > expected ? actual - expected : expected - actual;
+    snprintf(text, sizeof text, "%s: %.17g, not %.17g (off by %.3g, allowed %.3g)", what, actual,
+             expected, difference, tolerance);
+    TEST_ASSERT_TRUE_MESSAGE(difference <= tolerance, text);
+}
+
+void assert_at_most(double limit, double value, const char *what)
+{
+    char text[256];
+    snprintf(text, sizeof text, "%s: %.17g, more than %.17g", what, value, limit);
+    TEST_ASSERT_TRUE_MESSAGE(value <= limit, text);
+}

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ * A simulation built from a case given as text, numbers without a pattern, and comparisons that
+ * print both values. */
+#ifndef RIG_H
+#define RIG_H
+
+#include "simulation.h"
+
+/* A zeroed rig is a valid closed one. */
+struct rig {
+    struct scene scene;
+    struct simulation sim;
+    struct diag diag;
+    bool scene_open, sim_open;
+};
+
+/* Parses the case with the --set arguments that follow, up to NULL, and creates the simulation; the
+ * test fails with the sentence if either does. A rig in use is closed first. */
+void rig_open(struct rig *r, const char *text, ...) __attribute__((sentinel));
+void rig_close(struct rig *r);
+
+/* Steps until the time is reached exactly; the test fails if a guard stops the run. */
+void rig_run(struct rig *r, double time);
+/* Takes `steps` time steps (batches of a lone solid), none of which ends beyond `limit`. */
+void rig_steps(struct rig *r, int steps, double limit);
+
+/* Sorts all particles into cells anew, after a test has moved them. */
+void rig_sort(struct rig *r);
+/* One evaluation of the fluid's rates, the walls' pressures and the fluid's force on solids. */
+void rig_evaluate(struct rig *r);
+
+/* The next of a fixed sequence of numbers, evenly spread over [-1, 1). */
+double noise(uint64_t *state);
+
+/* Fails with both values unless |actual - expected| <= tolerance. */
+void assert_near(double tolerance, double expected, double actual, const char *what);
+/* Fails with both values unless value <= limit. */
+void assert_at_most(double limit, double value, const char *what);
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT */
+#include "twin.h"
+
+#include "unity.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Wendland C2 in two dimensions, and dW/dr. */
+static double kernel(double r, double h)
+{
+    const double q = r / h;
+    return q >= 2 ? 0 : 7 / (4 * pi * h * h) * pow(1 - q / 2, 4) * (2 * q + 1);
+}
+
+static double kernel_derivative(double r, double h)
+{
+    const double q = r / h;
+    return q >= 2 ? 0 : -7 / (4 * pi * h * h) * 5 * q * pow(1 - q / 2, 3) / h;
+}
+
+/* Eq. 2 and its inverse, Eq. 20. */
+static double tait(const struct twin *t, double rho)
+{
+    return t->c0 * t->c0 * t->rho0 / 7 * (pow(rho / t->rho0, 7) - 1);
+}
+
+static double tait_inverse(const struct twin *t, double p)
+{
+    return t->rho0 * pow(p * 7 / (t->c0 * t->c0 * t->rho0) + 1, 1.0 / 7);
+}
+
+void twin_copy(struct twin *t, const struct simulation *s)
+{
+    const struct scene *const scene = s->scene;
+    const struct scene_fluid *const f = &scene->fluid[0];
+    *t = (struct twin){.h = scene->numerics.h_over_dp * scene->top.dp,
+                       .mass = f->density * scene->top.dp * scene->top.dp,
+                       .c0 = f->sound_speed,
+                       .rho0 = f->density,
+                       .alpha = f->artificial_viscosity,
+                       .delta = f->density_diffusion,
+                       .g = {scene->top.gravity[0], scene->top.gravity[1]},
+                       .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const p = &s->kind[kind];
+        t->n[kind] = p->n;
+        t->point[kind] = calloc((size_t)p->n + 1, sizeof *t->point[kind]);
+        TEST_ASSERT_NOT_NULL(t->point[kind]);
+        for (int64_t i = 0; i < p->n; i++) {
+            struct twin_point *const q = &t->point[kind][i];
+            *q = (struct twin_point){.x = p->x[i], .y = p->y[i], .u = p->vx[i], .v = p->vy[i]};
+            if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * p->dens[i];
+            if (kind == KIND_SOLID) q->u = p->wx[i];
+            if (kind == KIND_SOLID) q->v = p->wy[i];
+            if (kind != KIND_FLUID && p->ax) q->ax = p->ax[i];
+            if (kind != KIND_FLUID && p->ay) q->ay = p->ay[i];
+        }
+    }
+}
+
+void twin_free(struct twin *t)
+{
+    for (int kind = 0; kind < KIND_COUNT; kind++) free(t->point[kind]);
+    memset(t, 0, sizeof *t);
+}
+
+/* Eqs. 19 and 20 for one wall or solid particle. */
+static void extrapolate(const struct twin *t, struct twin_point *s)
+{
+    double sum_w = 0, sum = 0, size = 0;
+    for (int64_t k = 0; k < t->n[KIND_FLUID]; k++) {
+        const struct twin_point *const f = &t->point[KIND_FLUID][k];
+        const double dx = s->x - f->x, dy = s->y - f->y;
+        const double w = kernel(sqrt(dx * dx + dy * dy), t->h);
+        const double lift = f->rho * ((t->g[0] - s->ax) * dx + (t->g[1] - s->ay) * dy);
+        sum_w += w;
+        sum += (f->p + lift) * w;
+        size += (fabs(f->p) + fabs(lift)) * w;
+    }
+    s->weight = sum_w / kernel(0, t->h);
+    s->p = sum_w > 0 ? sum / sum_w : 0;
+    s->size_p = sum_w > 0 ? size / sum_w : 0;
+    s->rho = tait_inverse(t, s->p);
+}
+
+/* What a fluid particle a feels of b (Eqs. 4, 6, 7, 21a); b of a wall or solid slips freely. */
+static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_point *b, bool slip)
+{
+    const double dx = a->x - b->x, dy = a->y - b->y, r = sqrt(dx * dx + dy * dy);
+    if (r >= 2 * t->h || r == 0) return;
+    const double gx = kernel_derivative(r, t->h) * dx / r; /* Eq. 5 */
+    const double gy = kernel_derivative(r, t->h) * dy / r;
+    const double du = a->u - b->u, dv = a->v - b->v, vx = du * dx + dv * dy;
+    const double eta2 = 0.01 * t->h * t->h, V = t->mass / b->rho;
+    double Pi = 0, psi = 0;
+    if (!slip && vx < 0)
+        Pi = -t->alpha * t->c0 / (0.5 * (a->rho + b->rho)) * t->h * vx / (r * r + eta2);
+    if (!slip) {
+        double step = b->rho - a->rho;
+        /* The hydrostatic density of b less that of a, for a small change of density. */
+        if (t->hydrostatic) step -= t->rho0 * (t->g[0] * -dx + t->g[1] * -dy) / (t->c0 * t->c0);
+        psi = 2 * step / (r * r + eta2);
+    }
+    const double factor = -t->mass * ((a->p + b->p) / (a->rho * b->rho) + Pi);
+    const double moved = a->rho * V * (du * gx + dv * gy);
+    const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
+    a->ax += factor * gx;
+    a->ay += factor * gy;
+    a->drho += moved + diffused;
+    a->size_a +=
+        t->mass * ((fabs(a->p) + fabs(b->p)) / (a->rho * b->rho) + fabs(Pi)) * hypot(gx, gy);
+    a->size_drho += a->rho * V * (fabs(du * gx) + fabs(dv * gy)) + fabs(diffused);
+    t->top_approach = fmax(t->top_approach, fabs(t->h * vx / (r * r + eta2)));
+}
+
+/* Eq. 21b: what a solid particle feels of the fluid, as a force. */
+static void solid_force(const struct twin *t, struct twin_point *s)
+{
+    for (int64_t k = 0; k < t->n[KIND_FLUID]; k++) {
+        const struct twin_point *const f = &t->point[KIND_FLUID][k];
+        const double dx = s->x - f->x, dy = s->y - f->y, r = sqrt(dx * dx + dy * dy);
+        if (r >= 2 * t->h) continue;
+        const double slope = kernel_derivative(r, t->h) / r;
+        const double factor = -t->mass * t->mass * (s->p + f->p) / (s->rho * f->rho);
+        s->fx += factor * slope * dx;
+        s->fy += factor * slope * dy;
+        s->size_f +=
+            fabs(t->mass * t->mass / (s->rho * f->rho) * slope * r) * (fabs(s->p) + fabs(f->p));
+    }
+}
+
+void twin_evaluate(struct twin *t)
+{
+    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++)
+        t->point[KIND_FLUID][i].p = tait(t, t->point[KIND_FLUID][i].rho);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        for (int64_t i = 0; i < t->n[kind]; i++) extrapolate(t, &t->point[kind][i]);
+    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) {
+        struct twin_point *const a = &t->point[KIND_FLUID][i];
+        for (int kind = 0; kind < KIND_COUNT; kind++)
+            for (int64_t k = 0; k < t->n[kind]; k++)
+                fluid_pair(t, a, &t->point[kind][k], kind != KIND_FLUID);
+        a->ax += t->g[0];
+        a->ay += t->g[1];
+        t->top_acceleration = fmax(t->top_acceleration, hypot(a->ax, a->ay));
+    }
+    for (int64_t i = 0; i < t->n[KIND_SOLID]; i++) solid_force(t, &t->point[KIND_SOLID][i]);
+}

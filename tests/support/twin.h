@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's equations of the paper a second time: plain double loops over all pairs, written from
+ * the article (with Eq. 19 as in Adami et al. 2012) and not from the code under test. */
+#ifndef TWIN_H
+#define TWIN_H
+
+#include "simulation.h"
+
+struct twin_point {
+    double x, y, u, v; /* m, m/s; of a solid: the velocity that the fluid sees */
+    double ax, ay;     /* m/s^2: of a fluid particle the result, of the others given */
+    double rho, p;     /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
+    double drho;       /* kg/(m^3 s) */
+    double fx, fy;     /* N/m: force of the fluid on a solid particle, Eq. 21b */
+    /* Sums of the sizes of the terms: what round-off is relative to. */
+    double size_a, size_drho, size_p, size_f;
+    double weight; /* sum of W over the fluid, relative to W(0): of walls and solids */
+};
+
+struct twin {
+    double h, mass, c0, rho0, alpha, delta, g[2];
+    bool hydrostatic; /* the form of Fourtakas et al. 2019 for Eq. 6 */
+    int64_t n[KIND_COUNT];
+    struct twin_point *point[KIND_COUNT];
+    double top_acceleration, top_approach; /* for Eqs. 28a and 28b */
+};
+
+/* Copies the state, but nothing that the code has computed from it. */
+void twin_copy(struct twin *t, const struct simulation *s);
+/* Eqs. 19-20 for walls and solids, Eqs. 4, 6, 7 and 21a for the fluid, Eq. 21b for the solids. */
+void twin_evaluate(struct twin *t);
+void twin_free(struct twin *t);
+
+#endif
