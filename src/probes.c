@@ -38,7 +38,7 @@ static int find_near(const struct particles *p, int body, const double at[2], do
 
 static double nearest_distance(const struct particles *p, int body, const double at[2])
 {
-    double best = INFINITY;
+    double best = (double)INFINITY;
     for (int64_t i = 0; i < p->n; i++)
         if (p->body[i] == body)
             best = min2(best, square(p->X[i] - at[0]) + square(p->Y[i] - at[1]));

@@ -69,7 +69,8 @@ static void write_parameters(struct json *j, const struct scene *scene)
 {
     json_open(j, "parameters", '{');
     write_section(j, SECTION_top, section_at(scene, SECTION_top, 0));
-    for (int id = 0; id < SECTION_COUNT; id++) {
+    for (int at = 0; at < SECTION_COUNT; at++) {
+        const enum section_id id = (enum section_id)at;
         if (id == SECTION_top || section_count(scene, id) == 0) continue;
         json_open(j, section_table[id].word, '{');
         for (int k = 0; k < section_count(scene, id); k++) {

@@ -234,7 +234,8 @@ static enum err advance(struct run *r)
 static void leave_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
-    if (why == ERR_GUARD && r->image.size > 0 &&
+    /* All rows up to the image have been written, so that a restart from it leaves no gap. */
+    if (why != ERR_INTERRUPT && r->image.size > 0 &&
         checkpoint_store(&r->image, r->folder.path, r->checkpoint, &second))
         diag_warn(&second, "the last sound state could not be kept: %s", second.text);
     second.code = ERR_OK;
