@@ -55,6 +55,15 @@ void place_solid(struct particles *p)
     }
 }
 
+/* The acceleration that Eq. 19 feeds back holds oscillations of single particles and answers the fluid's
+ * own force with the delay of a step: taken as it is, it blew the gate up, with sub-steps within 400
+ * steps and at a single rate within 4000. The fluid cannot follow anything faster than sound crosses h,
+ * so it sees the mean over about that time. */
+double acceleration_weight(const struct simulation *s, double dt)
+{
+    return dt / (dt + s->fluid.k.h / s->fluid.k.c0);
+}
+
 void advance_solid(struct simulation *s, double dt, int n, bool centred)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
@@ -71,11 +80,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     s->state.solid_evaluations += n;
     place_solid(p);
     const double per_dt = 1 / dt;
-    /* With sub-steps the mean acceleration holds oscillations that are faster than the fluid's step, and
-     * answers the fluid's own force with the delay of a step: fed back as it is (Eq. 19) it blew the
-     * gate up within 400 steps. The fluid cannot follow anything faster than sound crosses h, so it sees
-     * the mean over about that time. */
-    const double newest = s->effects & FX_MULTIRATE ? dt / (dt + s->fluid.k.h / s->fluid.k.c0) : 1;
+    const double newest = acceleration_weight(s, dt);
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt;

@@ -20,6 +20,9 @@ void evaluate_fluid(struct simulation *s, double time);
  * solid's mean velocity and acceleration over the step. */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
+/* Weight of the newest acceleration in the mean that the fluid sees of the structure. */
+double acceleration_weight(const struct simulation *s, double dt);
+
 /* x = X + u for the solid. */
 void place_solid(struct particles *p);
 

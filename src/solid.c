@@ -27,6 +27,7 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
         .plane = c->plane,
         .gradient = c->gradient,
         .symmetric = c->viscosity_form == VISCOSITY_SYMMETRIC,
+        .variational = c->hourglass > 0 && c->hourglass_form == HOURGLASS_VARIATIONAL,
     };
 }
 
@@ -43,6 +44,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
         s->body[k] = body_of(scene, &scene->solid[k], s->h);
+        s->variational |= s->body[k].variational;
         s->paper_step = min2(s->paper_step, 0.6 * s->h / s->body[k].sound_speed); /* Eq. 29 */
     }
     return solid_stencil_create(s, a, p, d);
@@ -183,22 +185,57 @@ SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct soli
     *ey = ((a->U.yx + q->U_b.yx) * q->X + (a->U.yy + q->U_b.yy) * q->Y) * 0.5 - q->uy;
 }
 
-/* Eq. 17, over the mass of a: a force along x_ab. */
-SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
+/* Over the mass of a: Eq. 17 as printed, a force along x_ab; or the direct part -dE/du_a of the
+ * variational form, the sum of k_ab e_ab. */
+SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a, bool variational,
                                    struct solid_sums *s)
 {
     vwide ex, ey;
     hourglass_error(q, a, &ex, &ey);
-    const vwide along = vload_wide(q->slot->hourglass) * vfma_wide(ex, q->x, ey * q->y) /
-                        vfma_wide(q->x, q->x, q->y * q->y);
+    const vwide stiffness = vload_wide(q->slot->hourglass);
+    if (variational) {
+        s->ax = vfma_wide(stiffness, ex, s->ax);
+        s->ay = vfma_wide(stiffness, ey, s->ay);
+        return;
+    }
+    const vwide along = stiffness * vfma_wide(ex, q->x, ey * q->y) / vfma_wide(q->x, q->x, q->y * q->y);
     s->ax = vfma_wide(along, q->x, s->ax);
     s->ay = vfma_wide(along, q->y, s->ay);
+}
+
+/* The rest of the variational form. With the energy E = sum over pairs of k_ab |e_ab|^2/2, where
+ * k_ab = kappa E_ab V_a V_b W_0ab/X_ab^2 as in Eq. 17, e_ab also depends on F_a: dE/dF_a/V_a, the sum of
+ * k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
+static void hourglass_stress(const struct solid *s, const struct solid_pack *pack, struct particles *p)
+{
+    const int64_t i = pack->i;
+    const struct solid_receiver a = receiver_of(p, i);
+    struct vtensor2 sum = {vset_wide(0), vset_wide(0), vset_wide(0), vset_wide(0)};
+    const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
+    for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
+        struct solid_pair q = pair_of(slot, p, i, &a);
+        q.U_b = load_gradient(p, q.j);
+        vwide ex, ey;
+        hourglass_error(&q, &a, &ex, &ey);
+        const vwide stiffness = vload_wide(slot->hourglass);
+        ex = ex * stiffness;
+        ey = ey * stiffness;
+        sum.xx = vfma_wide(ex, q.X, sum.xx);
+        sum.xy = vfma_wide(ex, q.Y, sum.xy);
+        sum.yx = vfma_wide(ey, q.X, sum.yx);
+        sum.yy = vfma_wide(ey, q.Y, sum.yy);
+    }
+    const double half = 0.5 * s->body[pack->body].density;
+    store_lanes(&p->Pxx[i], vload_wide(&p->Pxx[i]) + sum.xx * half, pack->lanes);
+    store_lanes(&p->Pxy[i], vload_wide(&p->Pxy[i]) + sum.xy * half, pack->lanes);
+    store_lanes(&p->Pyx[i], vload_wide(&p->Pyx[i]) + sum.yx * half, pack->lanes);
+    store_lanes(&p->Pyy[i], vload_wide(&p->Pyy[i]) + sum.yy * half, pack->lanes);
 }
 
 /* Sums of a pack; `viscous`, `symmetric` and `hourglass` are constants where it is inlined. */
 SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
                                           const struct particles *p, const struct solid_receiver *a,
-                                          bool viscous, bool symmetric, bool hourglass)
+                                          bool viscous, bool symmetric, bool hourglass, bool variational)
 {
     const double viscosity = s->body[pack->body].viscosity;
     const vwide eta2 = vset_wide(0.01 * s->h * s->h), zero = vset_wide(0);
@@ -210,7 +247,7 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
         struct solid_pair q = pair_of(slot, p, pack->i, a);
         if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
         if (viscous) viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
-        if (hourglass) hourglass_force(&q, a, &sums);
+        if (hourglass) hourglass_force(&q, a, variational, &sums);
     }
     return sums;
 }
@@ -235,11 +272,14 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
     const int64_t i = pack->i;
     const struct solid_receiver a = receiver_of(p, i);
     const bool viscous = body->viscosity > 0, hourglass = body->kappa > 0;
-    /* The paper's combination is stamped; the others are decided as they go. */
-    const struct solid_sums sums =
-        viscous && hourglass && !body->symmetric
-            ? sum_slots(s, pack, p, &a, true, false, true)
-            : sum_slots(s, pack, p, &a, viscous, body->symmetric, hourglass);
+    struct solid_sums sums;
+    /* The default and the paper's combination are stamped; the others are decided as they go. */
+    if (viscous && hourglass && !body->symmetric && body->variational)
+        sums = sum_slots(s, pack, p, &a, true, false, true, true);
+    else if (viscous && hourglass && !body->symmetric)
+        sums = sum_slots(s, pack, p, &a, true, false, true, false);
+    else
+        sums = sum_slots(s, pack, p, &a, viscous, body->symmetric, hourglass, body->variational);
     vwide acc[2];
     finish_sums(body, p, i, &a, &sums, acc);
     if (s->coupled) {
@@ -257,6 +297,10 @@ static void stress_loop(const struct solid *s, struct particles *p)
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < s->n_packs; k++)
         stress_of_pack(s, &s->pack[k], p);
+    if (!s->variational) return;
+#pragma omp for schedule(static)
+    for (int64_t k = 0; k < s->n_packs; k++)
+        if (s->body[s->pack[k].body].variational) hourglass_stress(s, &s->pack[k], p);
 }
 
 static void forces_loop(const struct solid *s, struct particles *p)
@@ -320,9 +364,9 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
     *det = J;
 }
 
-/* Energy of the hourglass force of a pack, J/m: half of force (Eq. 17) times the stretch of the pair, and
- * half of that since each pair is met twice. The force has no potential of its own, since it leaves out
- * how e_ab depends on F; for small strains this is the work it takes. */
+/* Energy of the hourglass force of a pack, J/m, half of it since each pair is met twice. Variational: the
+ * sum of k |e|^2/2. The printed force has no potential, since it leaves out how e_ab depends on F: half of
+ * force times stretch of the pair, which is the work it takes for small strains. */
 static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pack, const struct particles *p)
 {
     const struct solid_receiver a = receiver_of(p, pack->i);
@@ -333,6 +377,10 @@ static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pa
         q.U_b = load_gradient(p, q.j);
         vwide ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
+        if (s->body[pack->body].variational) {
+            sum = sum + vload_wide(slot->hourglass) * (ex * ex + ey * ey);
+            continue;
+        }
         const vwide x2 = q.x * q.x + q.y * q.y, x = vsqrt_wide(x2), X = vsqrt_wide(q.X * q.X + q.Y * q.Y);
         const vwide stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
         sum = sum - vload_wide(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;

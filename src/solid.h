@@ -16,7 +16,9 @@ struct solid_body {
     double sound_speed;  /* c_s of Eq. 29 */
     double kappa;        /* Eq. 17 */
     double gravity[2];
-    int law, plane, gradient, symmetric;
+    int law, plane, gradient;
+    bool symmetric;      /* viscous force with both particles' tensors */
+    bool variational;    /* hourglass force from an energy */
 };
 
 /* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
@@ -44,6 +46,7 @@ struct solid {
     struct solid_pack *pack;
     struct solid_slot *slot;
     bool coupled;             /* meets fluid */
+    bool variational;         /* some body has its hourglass force from an energy */
     double omega_max;         /* largest frequency of the linearised operator, 1/s */
     double damping_max;       /* largest rate of its viscous part, 1/s */
     double stable_step;       /* the largest stable step that follows from both, s */

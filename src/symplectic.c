@@ -60,12 +60,10 @@ static void predict_solid(struct particles *p, double half)
         p->y[i] = p->Y[i] + p->uy[i];
         p->wx[i] = p->vx[i];
         p->wy[i] = p->vy[i];
-        p->ax[i] = p->sx[i];
-        p->ay[i] = p->sy[i];
     }
 }
 
-static void correct_solid(struct particles *p, double dt)
+static void correct_solid(struct particles *p, double dt, double newest)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
@@ -77,8 +75,8 @@ static void correct_solid(struct particles *p, double dt)
         p->y[i] = p->Y[i] + p->uy[i];
         p->wx[i] = p->vx[i];
         p->wy[i] = p->vy[i];
-        p->ax[i] = p->sx[i];
-        p->ay[i] = p->sy[i];
+        p->ax[i] += newest * (p->sx[i] - p->ax[i]);
+        p->ay[i] += newest * (p->sy[i] - p->ay[i]);
     }
 }
 
@@ -117,7 +115,7 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     correct_fluid(fluid, dt);
     if (coupled && !multirate) {
-        correct_solid(solid, dt);
+        correct_solid(solid, dt, acceleration_weight(s, dt));
         s->state.solid_substeps++;
         s->substeps = 1;
     }
