@@ -328,40 +328,48 @@ static enum err start_again(struct run *r, const char *header)
     return ERR_OK;
 }
 
+/* A place in the text of an effective case: the line at hand and the section it stands in. */
+struct place {
+    const char *next, *line;
+    int length;
+    char section[SCENE_NAME + 32];
+};
+
 /* The end of a run and how often it writes may change at a restart; all else is another case. */
-static bool may_change(const char *section, const char *line)
+static bool matters(const struct place *p)
 {
-    return strcmp(section, "[output]") == 0 || (!section[0] && strncmp(line, "end_time", 8) == 0);
+    if (p->length == 0 || p->line[0] == '#') return false;
+    if (!p->section[0]) return strncmp(p->line, "end_time", 8) != 0;
+    return strcmp(p->section, "[output]") != 0;
 }
 
-/* Copies the next line that matters to `line`, following the sections; false: none is left. */
-static bool next_line(const char **at, char section[SCENE_NAME + 32], char line[512])
+/* Goes to the next line that matters; an empty one stands for the end. */
+static void go_on(struct place *p)
 {
-    while (**at) {
-        const int length = (int)strcspn(*at, "\n");
-        snprintf(line, 512, "%.*s", length, *at);
-        *at += length + ((*at)[length] == '\n');
-        if (line[0] == '[') snprintf(section, SCENE_NAME + 32, "%.*s", SCENE_NAME + 31, line);
-        if (line[0] && line[0] != '#' && !may_change(section, line)) return true;
-    }
-    line[0] = '\0';
-    return false;
+    do {
+        p->line = p->next;
+        p->length = (int)strcspn(p->line, "\n");
+        p->next += p->length + (p->line[p->length] == '\n');
+        if (p->line[0] == '[') snprintf(p->section, sizeof p->section, "%.*s", p->length, p->line);
+    } while (!matters(p) && *p->next);
+    if (!matters(p)) p->length = 0;
 }
 
 static enum err compare_cases(const char *then, const char *now, struct diag *d)
 {
-    char section_then[SCENE_NAME + 32] = "", section_now[SCENE_NAME + 32] = "";
-    char line_then[512], line_now[512];
-    for (;;) {
-        const bool a = next_line(&then, section_then, line_then);
-        const bool b = next_line(&now, section_now, line_now);
-        if (!a && !b) return ERR_OK;
-        if (strcmp(line_then, line_now) != 0)
+    struct place a = {.next = then}, b = {.next = now};
+    do {
+        go_on(&a);
+        go_on(&b);
+        if (a.length != b.length || memcmp(a.line, b.line, (size_t)a.length) != 0)
             return diag_fail(d, ERR_INPUT,
-                             "restart: the case has changed since the checkpoint: %s '%s' is now "
-                             "'%s'; only end_time, [output] and the threads may change",
-                             section_then[0] ? section_then : "at the top", line_then, line_now);
-    }
+                             "restart: the case has changed since the checkpoint: %s '%.*s' is now "
+                             "'%.*s'; only end_time, [output] and the threads may change",
+                             a.section[0] ? a.section : "at the top",
+                             a.length < 200 ? a.length : 200, a.line,
+                             b.length < 200 ? b.length : 200, b.line);
+    } while (a.length > 0);
+    return ERR_OK;
 }
 
 static enum err find_checkpoint(struct run *r)

@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT
+ * Snapshots: appended, dropped by a restart, kept when the copy in the making is damaged, held open
+ * or cannot be written. Other readers of the file: test_snapshot_reader.py. */
+#include "snapshot.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <hdf5.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static struct diag diag;
+static struct scene scene;
+static struct simulation simulation;
+static struct snapshots writer;
+
+void setUp(void)
+{
+    diag = (struct diag){.code = ERR_OK};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
+}
+
+void tearDown(void)
+{
+    snapshots_close(&writer);
+    simulation_free(&simulation);
+    scene_free(&scene);
+}
+
+static void begin(const char *folder)
+{
+    mkdir(folder, 0777);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_create(&writer, folder, &scene, "1.2.3", &diag));
+}
+
+static void write_one(double time)
+{
+    simulation.state.time = time;
+    simulation.kind[KIND_FLUID].x[0] = time;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_write(&writer, &simulation, &diag), diag.text);
+}
+
+/* Reads a whole dataset of doubles; returns its items. */
+static hsize_t read_all(const char *name, double *values, size_t room)
+{
+    const hid_t file = H5Fopen(writer.path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    TEST_ASSERT_TRUE(file >= 0);
+    const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(set);
+    const hssize_t n = H5Sget_simple_extent_npoints(space);
+    TEST_ASSERT_TRUE(n >= 0 && (size_t)n <= room);
+    TEST_ASSERT_TRUE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
+    H5Sclose(space);
+    H5Dclose(set);
+    H5Fclose(file);
+    return (hsize_t)n;
+}
+
+/* The times are those, and each snapshot has its own position of its first particle. */
+static void times_are(const double *expected, hsize_t n)
+{
+    static double times[16], x[16 * 3 * 1000];
+    TEST_ASSERT_EQUAL_UINT(n, read_all("VTKHDF/Steps/Values", times, 16));
+    const hsize_t items = read_all("VTKHDF/Points", x, COUNT_OF(x));
+    for (hsize_t k = 0; k < n; k++) {
+        TEST_ASSERT_TRUE(times[k] == expected[k]);
+        TEST_ASSERT_TRUE(x[items / n * k] == expected[k]);
+    }
+}
+
+static void snapshots_are_appended(void)
+{
+    begin(tiny_path("append"));
+    for (int k = 0; k < 4; k++) write_one(0.5 * k);
+    times_are((double[]){0, 0.5, 1, 1.5}, 4);
+    snapshots_close(&writer);
+    TEST_ASSERT_NOT_EQUAL(0, access(writer.spare, F_OK));
+    struct stat info;
+    stat(writer.path, &info);
+    TEST_ASSERT_TRUE_MESSAGE(info.st_size < 200000, "claimed space was not given back");
+}
+
+static void a_restart_drops_later_ones(void)
+{
+    double last;
+    begin(tiny_path("resume"));
+    for (int k = 0; k < 4; k++) write_one(k);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_resume(&writer, tiny_path("resume"), &scene, "1.2.3",
+                                                   1.5, &last, &diag));
+    TEST_ASSERT_TRUE(last == 1);
+    times_are((double[]){0, 1}, 2);
+    write_one(1.75);
+    write_one(3.5);
+    times_are((double[]){0, 1, 1.75, 3.5}, 4);
+}
+
+static void a_restart_without_the_file_begins_anew(void)
+{
+    double last;
+    mkdir(tiny_path("gone"), 0777);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_resume(&writer, tiny_path("gone"), &scene, "1.2.3", 9,
+                                                   &last, &diag));
+    TEST_ASSERT_TRUE(last == -1);
+    write_one(9);
+    times_are((double[]){9}, 1);
+}
+
+static void a_damaged_file_is_not_continued(void)
+{
+    double last;
+    begin(tiny_path("damaged"));
+    write_one(0);
+    TEST_ASSERT_EQUAL_INT(0, truncate(writer.path, 3000));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, snapshots_resume(&writer, tiny_path("damaged"), &scene,
+                                                      "1.2.3", 9, &last, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "fields.vtkhdf"));
+}
+
+static void a_damaged_copy_is_made_anew(void)
+{
+    begin(tiny_path("spare"));
+    for (int k = 0; k < 3; k++) {
+        write_one(k);
+        if (k > 0) TEST_ASSERT_EQUAL_INT(0, truncate(writer.spare, 100 + 3000 * k));
+    }
+    write_one(3);
+    times_are((double[]){0, 1, 2, 3}, 4);
+}
+
+/* A viewer keeps the file open over two snapshots: its file becomes the copy in the making. */
+static void an_open_reader_does_no_harm(void)
+{
+    begin(tiny_path("reader"));
+    write_one(0);
+    write_one(1);
+    const hid_t viewer = H5Fopen(writer.path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    TEST_ASSERT_TRUE(viewer >= 0);
+    for (int k = 2; k < 5; k++) write_one(k);
+    H5Fclose(viewer);
+    times_are((double[]){0, 1, 2, 3, 4}, 5);
+}
+
+static void what_cannot_be_written_is_named(void)
+{
+    begin(tiny_path("lost"));
+    rmdir(tiny_path("lost"));
+    TEST_ASSERT_EQUAL_INT(ERR_IO, snapshots_write(&writer, &simulation, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "lost/fields.vtkhdf"));
+}
+
+static void fewer_particles_are_fewer_points(void)
+{
+    static double counts[4];
+    begin(tiny_path("fewer"));
+    write_one(0);
+    simulation.kind[KIND_FLUID].n -= 7;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_write(&writer, &simulation, &diag));
+    TEST_ASSERT_EQUAL_UINT(2, read_all("VTKHDF/NumberOfPoints", counts, 4));
+    TEST_ASSERT_TRUE(counts[0] - counts[1] == 7);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(snapshots_are_appended);
+    RUN_TEST(a_restart_drops_later_ones);
+    RUN_TEST(a_restart_without_the_file_begins_anew);
+    RUN_TEST(a_damaged_file_is_not_continued);
+    RUN_TEST(a_damaged_copy_is_made_anew);
+    RUN_TEST(an_open_reader_does_no_harm);
+    RUN_TEST(what_cannot_be_written_is_named);
+    RUN_TEST(fewer_particles_are_fewer_points);
+    return UNITY_END();
+}
