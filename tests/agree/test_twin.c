@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's sweeps against a second, plain implementation of the paper's equations (support/twin.c)
+ * on disordered particles in a wall corner with a structure.
+ *
+ * Tolerances, relative to the largest sum of the sizes of a particle's terms (what its round-off is
+ * relative to). Double: coordinates of some 30 h are known to 4e-15 h, and a term changes by at most
+ * a few times its size per h; with densities near rho0 the pressure B ((1 + d)^7 - 1) of the twin
+ * loses a digit or two: 1e-12 of the terms. Mixed: lanes hold offsets up to 4 h from a cell's centre
+ * as floats, known to 2.4e-7 h each; a term t^3 xi, whose slope is at most 1.5 a unit of its own
+ * size near the particle, is off by some 1e-6 of itself, and a dozen neighbours of random sign do not
+ * add up to more than that: 2e-6 of the terms. */
+#include "twin.h"
+
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char scene[] =
+    "dp = 1 cm\nend_time = 1 s\ngravity = 1.5, -9.81\n"
+    "[fluid water]\nshape = box 0, 0, 0.24, 0.2\nsound_speed = 20\nartificial_viscosity = 0.05\n"
+    "density_diffusion = 0.1\n"
+    "[wall floor]\nshape = box -0.06, -0.06, 0.3, 0\n"
+    "[wall side]\nshape = box -0.06, 0, 0, 0.25\nmotion = push\n"
+    "[motion push]\nkind = velocity\nvelocity = 0.1, 0\n"
+    "[solid gate]\nshape = box 0.24, 0, 0.3, 0.25\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n"
+    "[domain]\nlower = -0.3, -0.3\nupper = 0.6, 0.6\n";
+
+static struct rig rig;
+static struct twin twin;
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    twin_free(&twin);
+    rig_close(&rig);
+}
+
+/* Displaces every particle by up to 0.2 dp and gives it a velocity, density and acceleration. */
+static void disorder(void)
+{
+    uint64_t seed = 42;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        struct particles *const p = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < p->n; i++) {
+            p->x[i] += 0.002 * noise(&seed);
+            p->y[i] += 0.002 * noise(&seed);
+            p->vx[i] = noise(&seed);
+            p->vy[i] = noise(&seed);
+            p->ax[i] = 20 * noise(&seed);
+            p->ay[i] = 20 * noise(&seed);
+            if (kind == KIND_FLUID) p->dens[i] = 0.01 + 0.02 * noise(&seed);
+            if (kind == KIND_SOLID) p->wx[i] = noise(&seed);
+            if (kind == KIND_SOLID) p->wy[i] = noise(&seed);
+        }
+    }
+    rig_sort(&rig);
+}
+
+static void compare_fluid(double tolerance)
+{
+    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const double rho0 = twin.rho0;
+    double top_a = 0, top_rho = 0, size_a = 0, size_rho = 0, size_p = 0, top_p = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct twin_point *const q = &twin.point[KIND_FLUID][i];
+        size_a = fmax(size_a, q->size_a);
+        size_rho = fmax(size_rho, q->size_drho);
+        size_p = fmax(size_p, fabs(q->p));
+        top_a = fmax(top_a, hypot(p->ax[i] - q->ax, p->ay[i] - q->ay));
+        top_rho = fmax(top_rho, fabs(rho0 * p->ddens[i] - q->drho));
+        top_p = fmax(top_p, fabs(p->p[i] - q->p));
+    }
+    TEST_ASSERT_TRUE(size_a > 100 && size_rho > 1e4);
+    assert_at_most(tolerance, top_a / size_a, "acceleration of the fluid");
+    assert_at_most(tolerance, top_rho / size_rho, "rate of density");
+    /* The state is double in both precisions. */
+    assert_at_most(1e-13, top_p / size_p, "pressure of the fluid");
+    const struct fluid_extremes *const top = &rig.sim.fluid.extremes;
+    assert_near(tolerance, 1, sqrt(top->acceleration2) / twin.top_acceleration, "largest |a|");
+    assert_near(tolerance, 1, top->approach / twin.top_approach, "largest rate of approach");
+}
+
+/* Where hardly any fluid is in reach (W below 1e-3 of W(0) in all) the quotient of Eq. 19 is as
+ * uncertain as the single distances at the rim of the support; the force of such a particle is
+ * compared with the others' all the same. */
+static void compare_dummies(enum kind kind, double tolerance)
+{
+    const struct particles *const p = &rig.sim.kind[kind];
+    const double c2 = twin.rho0 * twin.c0 * twin.c0;
+    double top = 0, top_rho = 0, size = 0;
+    int64_t wet = 0, dry = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct twin_point *const q = &twin.point[kind][i];
+        size = fmax(size, q->size_p);
+        if (q->weight == 0) {
+            dry++;
+            TEST_ASSERT_TRUE(p->p[i] == 0);
+            TEST_ASSERT_TRUE(p->dens[i] == 0);
+        }
+        if (q->weight < 1e-3) continue;
+        wet++;
+        top = fmax(top, fabs(p->p[i] - q->p));
+        top_rho = fmax(top_rho, fabs(twin.rho0 * (1 + p->dens[i]) - q->rho) / twin.rho0);
+    }
+    TEST_ASSERT_TRUE(wet > 30);
+    TEST_ASSERT_TRUE(dry > 30);
+    assert_at_most(tolerance, top / size, "extrapolated pressure");
+    assert_at_most(tolerance * size / c2 + 1e-15, top_rho, "extrapolated density");
+}
+
+static void compare_forces(double tolerance)
+{
+    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    double top = 0, size = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct twin_point *const q = &twin.point[KIND_SOLID][i];
+        size = fmax(size, q->size_f);
+        top = fmax(top, hypot(p->fx[i] - q->fx, p->fy[i] - q->fy));
+    }
+    TEST_ASSERT_TRUE(size > 0);
+    assert_at_most(tolerance, top / size, "force on the solid");
+}
+
+static void agree(const char *precision, const char *set, const char *another, double tolerance)
+{
+    rig_open(&rig, scene, precision, set, another, NULL);
+    disorder();
+    twin_copy(&twin, &rig.sim);
+    rig_evaluate(&rig);
+    twin_evaluate(&twin);
+    compare_fluid(tolerance);
+    compare_dummies(KIND_WALL, tolerance);
+    compare_dummies(KIND_SOLID, tolerance);
+    compare_forces(tolerance);
+    twin_free(&twin);
+}
+
+static void agree_for_all_effects(const char *precision, double tolerance)
+{
+    const char *const viscosity[] = {"water.artificial_viscosity=0",
+                                     "water.artificial_viscosity=0.05"};
+    const char *const diffusion[] = {"water.density_diffusion=0", "water.density_diffusion=0.1"};
+    for (int v = 0; v < 2; v++)
+        for (int d = 0; d < 2; d++) agree(precision, viscosity[v], diffusion[d], tolerance);
+    agree(precision, "water.diffusion_form=fourtakas", "water.density_diffusion=0.5", tolerance);
+    agree(precision, "numerics.h_over_dp=2", "numerics.skin=0", tolerance);
+}
+
+static void test_double(void) { agree_for_all_effects("precision=double", 1e-12); }
+
+static void test_mixed(void) { agree_for_all_effects("precision=mixed", 2e-6); }
+
+/* The twin differs if any law differs by one part in a million: viscosity, diffusion, gravity. */
+static void test_the_comparison_can_fail(void)
+{
+    rig_open(&rig, scene, "precision=double", NULL);
+    disorder();
+    rig_evaluate(&rig);
+    for (int what = 0; what < 4; what++) {
+        twin_copy(&twin, &rig.sim);
+        double *const constant[] = {&twin.alpha, &twin.delta, &twin.g[1], &twin.h};
+        *constant[what] *= 1 + 1e-6;
+        twin_evaluate(&twin);
+        double a = 0, rho = 0, size_a = 0, size_rho = 0;
+        for (int64_t i = 0; i < twin.n[KIND_FLUID]; i++) {
+            const struct twin_point *const q = &twin.point[KIND_FLUID][i];
+            a = fmax(a, fabs(rig.sim.kind[KIND_FLUID].ay[i] - q->ay));
+            rho = fmax(rho, fabs(rig.sim.kind[KIND_FLUID].ddens[i] * twin.rho0 - q->drho));
+            size_a = fmax(size_a, q->size_a);
+            size_rho = fmax(size_rho, q->size_drho);
+        }
+        TEST_ASSERT_TRUE(fmax(a / size_a, rho / size_rho) > 1e-11);
+        twin_free(&twin);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_double);
+    RUN_TEST(test_mixed);
+    RUN_TEST(test_the_comparison_can_fail);
+    return UNITY_END();
+}

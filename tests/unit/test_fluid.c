@@ -1,0 +1,215 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's laws one by one, on pairs of particles with numbers worked out by hand.
+ *
+ * All pairs: dp = 0.8 m and h_over_dp = 1.25, so that h = 1 m, m = 640 kg/m; rho0 = 1000 kg/m^3,
+ * c0 = 10 m/s; a at (0.6, 0.8), b at the origin, so that q = 1 and
+ *   grad_a W_ab = -5 * 7/(4 pi) * (1/2)^3 x_ab = -0.3481514380135211 (0.6, 0.8).
+ * rho_a = 1010 and rho_b = 1020 kg/m^3 have by Eq. 2 the pressures
+ *   P_a = 1e5/7 (1.01^7 - 1) = 1030.5050301001436 Pa, P_b = 2124.080966418286 Pa. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\n"
+                           "[numerics]\nh_over_dp = 1.25\nskin = 0.5\n"
+                           "[domain]\nlower = -10, -10\nupper = 10, 10\n"
+                           "[fluid w]\nshape = box 0, 0, 1.6, 0.8\nsound_speed = 10\n";
+
+static struct rig rig;
+static struct particles *p;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void place(const char *set, const char *another)
+{
+    rig_open(&rig, pair, set, another, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    TEST_ASSERT_EQUAL_INT64(2, p->n);
+    const double x[2] = {0.6, 0}, y[2] = {0.8, 0}, dens[2] = {0.01, 0.02};
+    for (int64_t i = 0; i < 2; i++) {
+        p->id[i] = i;
+        p->x[i] = x[i];
+        p->y[i] = y[i];
+        p->dens[i] = dens[i];
+        p->vx[i] = p->vy[i] = 0;
+    }
+}
+
+/* Velocities of a and b; evaluates. The cells may have put b first. */
+static int64_t a, b;
+static void evaluate(double ua, double va, double ub, double vb)
+{
+    p->vx[0] = ua;
+    p->vy[0] = va;
+    p->vx[1] = ub;
+    p->vy[1] = vb;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    a = p->id[0] == 0 ? 0 : 1;
+    b = 1 - a;
+}
+
+static void check_forces(double magnitude, double gx, double gy)
+{
+    const double tolerance = 1e-13 * (magnitude + fabs(gx) + fabs(gy));
+    assert_near(tolerance, 0.6 * magnitude + gx, p->ax[a], "ax of a");
+    assert_near(tolerance, 0.8 * magnitude + gy, p->ay[a], "ay of a");
+    assert_near(tolerance, -0.6 * magnitude + gx, p->ax[b], "ax of b");
+    assert_near(tolerance, -0.8 * magnitude + gy, p->ay[b], "ay of b");
+}
+
+/* Eq. 4b: m (P_a + P_b)/(rho_a rho_b) |grad W|
+ *   = 640 * 3154.5859965184296/1030200 * 0.3481514380135211 = 0.6822899792818219 m/s^2, apart. */
+static void test_pressure(void)
+{
+    place("w.density=1000", "gravity=0,0");
+    evaluate(0, 0, 0, 0);
+    check_forces(0.6822899792818219, 0, 0);
+    assert_near(1e-10, 1030.5050301001436, p->p[a], "P_a");
+    assert_near(1e-10, 2124.080966418286, p->p[b], "P_b");
+    TEST_ASSERT_TRUE(p->ddens[a] == 0);
+}
+
+static void test_gravity_is_added(void)
+{
+    place("gravity=1,-9.81", "w.density=1000");
+    evaluate(0, 0, 0, 0);
+    check_forces(0.6822899792818219, 1, -9.81);
+    assert_near(1e-12,
+                square(0.6 * -0.6822899792818219 + 1) + square(-0.8 * 0.6822899792818219 - 9.81),
+                rig.sim.fluid.extremes.acceleration2, "largest |a|^2");
+}
+
+/* Eq. 4a with v_ab = (2, -2): v_ab . grad W = -0.348151438 * (1.2 - 1.6) = 0.1392605752 1/s;
+ *   drho_a = 1010 * 640/1020 * 0.13926 = 88.2529762870353 kg/(m^3 s), drho_b = 90.00921138028774.
+ * Eq. 28b: |v.x|/(r^2 + 0.01) = 0.4/1.01. */
+static void test_continuity(void)
+{
+    place("w.density=1000", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    assert_near(1e-11, 88.2529762870353, 1000 * p->ddens[a], "drho_a");
+    assert_near(1e-11, 90.00921138028774, 1000 * p->ddens[b], "drho_b");
+    assert_near(1e-14, 0.4 / 1.01, rig.sim.fluid.extremes.approach, "rate of approach");
+    check_forces(0.6822899792818219, 0, 0);
+}
+
+/* Eq. 7 with alpha = 0.1 and v.x = -0.4: Pi = 0.1 * 10/1015 * 0.4/1.01, which adds
+ *   640 * Pi * 0.3481514 = 0.08694022155924634 m/s^2. Nothing for the same pair on its way apart. */
+static void test_viscosity_acts_on_approaching_pairs(void)
+{
+    place("w.artificial_viscosity=0.1", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    check_forces(0.6822899792818219 + 0.08694022155924634, 0, 0);
+    place("w.artificial_viscosity=0.1", "gravity=0,0");
+    evaluate(-1, 0, 1, -2);
+    check_forces(0.6822899792818219, 0, 0);
+    assert_near(1e-11, -88.2529762870353, 1000 * p->ddens[a], "drho_a");
+}
+
+/* Eq. 6 with delta = 0.1: D_a = 0.1 * 10 * 640/1020 * 2 * 10/1.01 * 0.3481514 =
+ * 4.325702200129168 kg/(m^3 s); of b, less dense a: -4.368530934783912. */
+static void test_diffusion_levels_densities(void)
+{
+    place("w.density_diffusion=0.1", "gravity=0,0");
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
+    assert_near(1e-12, -4.368530934783912, 1000 * p->ddens[b], "D_b");
+    check_forces(0.6822899792818219, 0, 0);
+}
+
+/* Fourtakas et al. 2019: b lies 0.8 m lower and is to be denser by rho0 g 0.8/c0^2 = 78.48 kg/m^3;
+ * it is so by 10, so that a loses: 4.3257022 * (10 - 78.48)/10 = -29.622408666484546. A pair with just
+ * the hydrostatic difference does not diffuse. */
+static void test_diffusion_spares_the_hydrostatic_part(void)
+{
+    place("w.density_diffusion=0.1", "w.diffusion_form=fourtakas");
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "no gravity: as Eq. 6");
+    rig_open(&rig, pair, "gravity=0,-9.81", "w.density_diffusion=0.1", "w.diffusion_form=fourtakas",
+             NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < 2; i++) {
+        p->id[i] = i;
+        p->x[i] = i ? 0 : 0.6;
+        p->y[i] = i ? 0 : 0.8;
+        p->dens[i] = i ? 0.02 : 0.01;
+    }
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-11, -29.622408666484546, 1000 * p->ddens[a], "D_a");
+    p->dens[a] = 0.02 - 0.07848;
+    rig_evaluate(&rig);
+    assert_near(1e-14, 0, p->ddens[a], "hydrostatic difference");
+}
+
+/* Beyond 2h = 2 m there is nothing, whatever the cells hold. */
+static void test_nothing_beyond_the_support(void)
+{
+    place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
+    p->x[0] = 2.0000001;
+    p->y[0] = 0;
+    evaluate(-1, 0, 1, 0);
+    TEST_ASSERT_TRUE(p->ax[a] == 0 && p->ay[a] == 0 && p->ddens[a] == 0);
+    p->x[a] = p->x[b] + 1.999;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    TEST_ASSERT_TRUE(p->ax[a] > 0 || p->ax[b] > 0);
+}
+
+/* Two particles on the same spot, and one alone: finite, and no force. */
+static void test_coincident_and_lone_particles(void)
+{
+    place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
+    p->x[0] = p->x[1];
+    p->y[0] = p->y[1];
+    evaluate(1, 0, -1, 0);
+    for (int64_t i = 0; i < 2; i++)
+        TEST_ASSERT_TRUE(p->ax[i] == 0 && p->ay[i] == 0 && p->ddens[i] == 0);
+    p->x[0] = -8;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    TEST_ASSERT_TRUE(p->ax[0] == 0 && p->ddens[0] == 0);
+    TEST_ASSERT_TRUE(isfinite(rig.sim.fluid.extremes.approach));
+}
+
+/* Momentum of the disordered fluid: forces cancel to the round-off of their sizes. */
+static void test_forces_between_particles_cancel(void)
+{
+    rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35", NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 11;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] += 0.05 * noise(&seed);
+        p->y[i] += 0.05 * noise(&seed);
+        p->vx[i] = noise(&seed);
+        p->vy[i] = noise(&seed);
+        p->dens[i] = 0.05 * noise(&seed);
+    }
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    double sum_x = 0, sum_y = 0, size = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        sum_x += p->ax[i];
+        sum_y += p->ay[i];
+        size += hypot(p->ax[i], p->ay[i]);
+    }
+    TEST_ASSERT_TRUE(p->n == 32 && size > 1);
+    assert_near(1e-13 * size, 0, sum_x, "sum of forces, x");
+    assert_near(1e-13 * size, 0, sum_y, "sum of forces, y");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_pressure);
+    RUN_TEST(test_gravity_is_added);
+    RUN_TEST(test_continuity);
+    RUN_TEST(test_viscosity_acts_on_approaching_pairs);
+    RUN_TEST(test_diffusion_levels_densities);
+    RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
+    RUN_TEST(test_nothing_beyond_the_support);
+    RUN_TEST(test_coincident_and_lone_particles);
+    RUN_TEST(test_forces_between_particles_cancel);
+    return UNITY_END();
+}

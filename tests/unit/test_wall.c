@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ * Walls as the fluid sees them: Eqs. 19-20 in the form of Adami et al. 2012, free slip.
+ *
+ * Pairs by hand: h = 1 m, m = 640 kg/m, rho0 = 1000 kg/m^3, c0 = 10 m/s; a fluid particle of rho =
+ * 1010 (P = 1030.5050301001436 Pa) one metre above a wall particle: |grad W| = 0.3481514380135211. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\ngravity = 0, -9.81\n"
+                           "[numerics]\nh_over_dp = 1.25\nskin = 0.5\n"
+                           "[domain]\nlower = -10, -10\nupper = 10, 10\n"
+                           "[fluid w]\nshape = box 0, 0, 0.8, 0.8\nsound_speed = 10\n"
+                           "[wall plate]\nshape = box 0, -0.8, 0.8, 0\nmotion = m\n"
+                           "[motion m]\nkind = velocity\nvelocity = 0, 0\n";
+
+static struct rig rig;
+static struct particles *fluid, *wall;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void place(double wall_acceleration, const char *set)
+{
+    rig_open(&rig, pair, set, NULL);
+    fluid = &rig.sim.kind[KIND_FLUID];
+    wall = &rig.sim.kind[KIND_WALL];
+    TEST_ASSERT_TRUE(fluid->n == 1 && wall->n == 1);
+    fluid->x[0] = wall->x[0] = 0;
+    fluid->y[0] = 1;
+    wall->y[0] = 0;
+    fluid->dens[0] = 0.01;
+    wall->ay[0] = wall_acceleration;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+}
+
+/* P_s = P_f + rho_f g 1 m = 1030.505 + 1010 * 9.81 = 10938.605030100143 Pa, whatever the weight;
+ * rho_s = 1000 (7 P_s/1e5 + 1)^(1/7) = 1084.610808319408; and the fluid rises by
+ * 640 (P_f + P_s)/(1010 rho_s) 0.34815 = 2.434527732452041 m/s^2 against g. */
+static void test_pressure_below_a_particle(void)
+{
+    place(0, "w.density=1000");
+    assert_near(1e-9, 10938.605030100143, wall->p[0], "P_s");
+    assert_near(1e-13, 0.084610808319408, wall->dens[0], "rho_s/rho0 - 1");
+    assert_near(1e-12, 2.434527732452041 - 9.81, fluid->ay[0], "ay");
+    assert_near(1e-12, 0, fluid->ax[0], "ax");
+    /* The wall's share of the pair: 640 kg/m times the acceleration, downwards. */
+    assert_near(1e-9, -640 * 2.434527732452041, wall->fy[0], "force on the wall");
+}
+
+/* A wall that falls with 4 m/s^2 carries less: P_s = 1030.505 + 1010 * 5.81 = 6898.605030100144 Pa;
+ * one in free fall carries the fluid's own pressure. */
+static void test_acceleration_of_the_wall(void)
+{
+    place(-4, "w.density=1000");
+    assert_near(1e-9, 6898.605030100144, wall->p[0], "P_s");
+    assert_near(1e-13, 0.0579000814699364, wall->dens[0], "rho_s/rho0 - 1");
+    place(-9.81, "w.density=1000");
+    assert_near(1e-9, 1030.5050301001436, wall->p[0], "P_s");
+}
+
+/* Eq. 4a counts the wall's own velocity: v_ab = (0, -1.5), drho = 1010 * 640/1084.6108 * 1.5 * 0.34815
+ * = 311.2338838121733 kg/(m^3 s). */
+static void test_velocity_of_the_wall(void)
+{
+    place(0, "w.density=1000");
+    fluid->vy[0] = -1;
+    wall->vy[0] = 0.5;
+    rig_evaluate(&rig);
+    assert_near(1e-10, 311.2338838121733, 1000 * fluid->ddens[0], "drho");
+    assert_near(1e-14, 1.5 / 1.01, rig.sim.fluid.extremes.approach, "rate of approach");
+}
+
+/* Free slip: neither viscosity nor diffusion between fluid and walls. */
+static void test_walls_slip_freely(void)
+{
+    double ay[2], ddens[2];
+    for (int k = 0; k < 2; k++) {
+        place(0, k ? "w.artificial_viscosity=0.5" : "w.artificial_viscosity=0");
+        fluid->vy[0] = -1;
+        fluid->vx[0] = 3;
+        rig_evaluate(&rig);
+        TEST_ASSERT_TRUE(fluid->ax[0] == 0);
+        ay[k] = fluid->ay[0];
+        place(0, k ? "w.density_diffusion=0.5" : "w.density_diffusion=0");
+        ddens[k] = fluid->ddens[0];
+    }
+    TEST_ASSERT_TRUE(ay[0] == ay[1]);
+    TEST_ASSERT_TRUE(ddens[0] == ddens[1]);
+    TEST_ASSERT_TRUE(ddens[0] == 0);
+}
+
+static void test_dry_walls_have_no_pressure(void)
+{
+    place(0, "w.density=1000");
+    fluid->y[0] = 2.0001;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    TEST_ASSERT_TRUE(wall->p[0] == 0 && wall->dens[0] == 0 && wall->fy[0] == 0);
+    TEST_ASSERT_TRUE(fluid->ay[0] == -9.81);
+}
+
+/* Below still water the extrapolation is exact but for the lift's own density: P_s = rho0 g (H - y_s)
+ * within the largest dens, g H/c0^2 = 2.5e-5. */
+static void test_hydrostatic_pressure_continues_into_the_wall(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\nprecision = double\n"
+             "[fluid w]\nshape = box 0, 0, 0.2, 0.1\nsurface = 0.1\nsound_speed = 200\n"
+             "[wall w]\nshape = box -0.03, -0.03, 0.23, 0\nshape = box -0.03, 0, 0, 0.1\n",
+             NULL);
+    rig_evaluate(&rig);
+    wall = &rig.sim.kind[KIND_WALL];
+    int64_t wet = 0;
+    for (int64_t i = 0; i < wall->n; i++) {
+        if (wall->p[i] == 0) continue;
+        wet++;
+        const double exact = 1000 * 9.81 * (0.1 - wall->y[i]);
+        assert_near(2.5e-5 * 1000 * 9.81 * 0.13, exact, wall->p[i], "P_s");
+    }
+    TEST_ASSERT_TRUE(wet > 50);
+}
+
+/* A moving wall is where its motion says, to the last bit, at every stage that ends a step. */
+static void test_moving_walls_follow_their_motion(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.1, 0.05\nsurface = 0.05\nsound_speed = 20\n"
+             "[wall w]\nshape = box -0.04, 0, 0, 0.1\nmotion = m\n"
+             "[wall floor]\nshape = box -0.04, -0.04, 0.14, 0\n"
+             "[motion m]\nkind = polynomial\npoly_x = 0.1, 2\n",
+             NULL);
+    wall = &rig.sim.kind[KIND_WALL];
+    rig_run(&rig, 0.01);
+    rig_evaluate(&rig);
+    simulation_refresh(&rig.sim);
+    for (int64_t i = 0; i < wall->n; i++) {
+        const bool moves = wall->body[i] == 0;
+        assert_near(1e-15, wall->X[i] + (moves ? 0.1 * 0.01 + 2 * 1e-4 : 0), wall->x[i], "x");
+        assert_near(1e-15, moves ? 0.1 + 4 * 0.01 : 0, wall->vx[i], "vx");
+        assert_near(1e-15, moves ? 4 : 0, wall->ax[i], "ax");
+        TEST_ASSERT_TRUE(wall->y[i] == wall->Y[i] && wall->vy[i] == 0);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_pressure_below_a_particle);
+    RUN_TEST(test_acceleration_of_the_wall);
+    RUN_TEST(test_velocity_of_the_wall);
+    RUN_TEST(test_walls_slip_freely);
+    RUN_TEST(test_dry_walls_have_no_pressure);
+    RUN_TEST(test_hydrostatic_pressure_continues_into_the_wall);
+    RUN_TEST(test_moving_walls_follow_their_motion);
+    return UNITY_END();
+}
