@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT
+ * Kernels stamped for a set of effects against the generic one that decides at run time: the same
+ * bits after many steps. */
+#include "rig.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char scene[] =
+    "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+    "[fluid water]\nshape = box 0, 0, 0.2, 0.15\nsound_speed = 20\nsurface = 0.15\n"
+    "[wall tank]\nshape = polyline thickness -0.03: 0, 0.25; 0, 0; 0.4, 0; 0.4, 0.25\n"
+    "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+
+/* The sets of effects of variants.def, as case files ask for them, and one without a kernel. */
+static const struct {
+    const char *name, *alpha, *delta, *form;
+    unsigned effects;
+} sets[] = {
+    {"bare", "0", "0", "molteni", 0},
+    {"viscous", "0.05", "0", "molteni", FX_VISCOSITY},
+    {"dam_break", "0.05", "0.1", "molteni", FX_VISCOSITY | FX_DIFFUSION},
+    {"hydrostatic", "0.05", "0.1", "fourtakas", FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS},
+    {"any", "0", "0.1", "molteni", ANY_EFFECTS},
+};
+
+static struct rig rig;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static uint64_t run(int set, const char *precision, const char *kernel)
+{
+    char alpha[64], delta[64], form[64];
+    snprintf(alpha, sizeof alpha, "water.artificial_viscosity=%s", sets[set].alpha);
+    snprintf(delta, sizeof delta, "water.density_diffusion=%s", sets[set].delta);
+    snprintf(form, sizeof form, "water.diffusion_form=%s", sets[set].form);
+    rig_open(&rig, scene, precision, kernel, alpha, delta, form, NULL);
+    rig_steps(&rig, 40, 1);
+    return simulation_hash(&rig.sim);
+}
+
+static void compare(const char *precision)
+{
+    for (int k = 0; k < (int)COUNT_OF(sets); k++) {
+        const uint64_t generic = run(k, precision, "numerics.kernel=generic");
+        TEST_ASSERT_EQUAL_HEX32(ANY_EFFECTS, rig.sim.fluid.sweeps->effects);
+        const uint64_t stamped = run(k, precision, "numerics.kernel=stamped");
+        TEST_ASSERT_EQUAL_HEX32_MESSAGE(sets[k].effects, rig.sim.fluid.sweeps->effects,
+                                        sets[k].name);
+        TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.sweeps->name, sets[k].name,
+                                         strlen(sets[k].name)));
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(generic, stamped, sets[k].name);
+    }
+}
+
+static void test_mixed(void) { compare("precision=mixed"); }
+
+static void test_double(void) { compare("precision=double"); }
+
+/* Every row of variants.def is in the table above, so that none goes untested. */
+static void test_every_variant_is_compared(void)
+{
+    const struct fluid_sweeps *row = fluid_sweeps_mixed;
+    for (; row->effects != ANY_EFFECTS; row++) {
+        bool found = false;
+        for (int k = 0; k < (int)COUNT_OF(sets); k++) found |= sets[k].effects == row->effects;
+        TEST_ASSERT_TRUE_MESSAGE(found, row->name);
+    }
+    for (int k = 0; k + 1 < (int)COUNT_OF(sets); k++) {
+        const struct fluid_sweeps *other = fluid_sweeps_double;
+        while (other->effects != ANY_EFFECTS && other->effects != sets[k].effects) other++;
+        TEST_ASSERT_EQUAL_HEX32_MESSAGE(sets[k].effects, other->effects, sets[k].name);
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_mixed);
+    RUN_TEST(test_double);
+    RUN_TEST(test_every_variant_is_compared);
+    return UNITY_END();
+}

@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ * The same bits on any number of threads: fluid, walls that move, a structure, both integrators, both
+ * precisions, with and without sub-steps. */
+#include "rig.h"
+#include "unity.h"
+
+#include <stdio.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static const char scene[] =
+    "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nskin = 0.02\n"
+    "[fluid water]\nshape = box 0, 0, 0.2, 0.2\nsound_speed = 20\nsurface = 0.2\n"
+    "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
+    "[wall tank]\nshape = polyline thickness -0.02: 0, 0; 0.5, 0; 0.5, 0.25\n"
+    "[wall piston]\nshape = box -0.02, 0, 0, 0.25\nmotion = push\n"
+    "[motion push]\nkind = polynomial\npoly_x = 0.2, 3\n"
+    "[solid gate]\nshape = box 0.2, 0, 0.22, 0.25\nclamp = box 0.2, 0.22, 0.22, 0.25\n"
+    "density = 1100\nyoung = 4e6\npoisson = 0.4\n";
+
+static struct rig rig;
+static int threads_before;
+
+void setUp(void) { threads_before = thread_count(); }
+
+static void use_threads(int n)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(n);
+#else
+    (void)n;
+#endif
+}
+
+void tearDown(void)
+{
+    use_threads(threads_before);
+    rig_close(&rig);
+}
+
+static uint64_t run(int threads, const char *integrator, const char *precision, const char *rate)
+{
+    use_threads(threads);
+    rig_open(&rig, scene, integrator, precision, rate, NULL);
+    rig_steps(&rig, 50, 1);
+    return simulation_hash(&rig.sim);
+}
+
+static void compare(const char *integrator, const char *precision, const char *rate)
+{
+    const uint64_t expected = run(1, integrator, precision, rate);
+    /* The run sorts more than once, and sub-steps where it is asked to. */
+    TEST_ASSERT_TRUE(rig.sim.state.sorts > 1);
+    TEST_ASSERT_TRUE(rig.sim.fluid.n_near_fluid[KIND_SOLID] > 8);
+    TEST_ASSERT_TRUE(!(rig.sim.effects & FX_MULTIRATE) || rig.sim.substeps > 1);
+    const int threads[] = {1, 2, 3, 8};
+    for (int k = 0; k < 4; k++) {
+        char text[128];
+        snprintf(text, sizeof text, "%d threads, %s, %s, %s", threads[k], integrator, precision,
+                 rate);
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(expected, run(threads[k], integrator, precision, rate),
+                                        text);
+    }
+}
+
+static void test_symplectic_mixed_with_substeps(void)
+{
+    compare("integrator=symplectic", "precision=mixed", "numerics.multirate=on");
+}
+
+static void test_symplectic_double_with_one_rate(void)
+{
+    compare("integrator=symplectic", "precision=double", "numerics.multirate=off");
+}
+
+static void test_verlet_mixed_with_one_rate(void)
+{
+    compare("integrator=verlet", "precision=mixed", "numerics.multirate=off");
+}
+
+static void test_verlet_double_with_substeps(void)
+{
+    compare("integrator=verlet", "precision=double", "numerics.multirate=on");
+}
+
+/* A solid alone: its packs are cut the same way whoever sweeps them. */
+static void test_lone_solid(void)
+{
+    static const char lone[] =
+        "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+        "[solid bar]\nshape = box 0, 0, 0.37, 0.06\nclamp = box 0, 0, 0.05, 0.06\n"
+        "density = 1000\nyoung = 2e6\npoisson = 0.4\n";
+    uint64_t expected = 0;
+    for (int integrator = 0; integrator < 2; integrator++) {
+        const int threads[] = {1, 2, 3, 8};
+        for (int k = 0; k < 4; k++) {
+            use_threads(threads[k]);
+            rig_open(&rig, lone, integrator ? "integrator=verlet" : "integrator=symplectic", NULL);
+            rig_run(&rig, 0.02);
+            const uint64_t hash = simulation_hash(&rig.sim);
+            if (k == 0) expected = hash;
+            TEST_ASSERT_EQUAL_HEX64(expected, hash);
+        }
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_symplectic_mixed_with_substeps);
+    RUN_TEST(test_symplectic_double_with_one_rate);
+    RUN_TEST(test_verlet_mixed_with_one_rate);
+    RUN_TEST(test_verlet_double_with_substeps);
+    RUN_TEST(test_lone_solid);
+    return UNITY_END();
+}
