@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ * The solid's packs against a second, plain implementation of Eqs. 9-18 (support/twin_solid.c): two
+ * bodies of different material, deformed and in motion without a pattern.
+ *
+ * Tolerances: F to 1e-12 (sums of some 20 terms of order 1, coordinates known to 1e-14 of dp), stress
+ * to 1e-12 of Young's modulus, and accelerations to 1e-12 of the largest sum of the sizes of the terms
+ * of a particle, which the round-off of its sum is relative to. */
+#include "twin_solid.h"
+
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char scene[] =
+    "dp = 1 cm\nend_time = 1\n"
+    "[solid bar]\nshape = box 0, 0, 0.15, 0.05\nclamp = box 0, 0, 0.02, 0.05\n"
+    "density = 1100\nyoung = 2e6\npoisson = 0.4\ngradient = linear\n"
+    "[solid plug]\nshape = circle 0.25, 0.02, 0.045\n"
+    "density = 2700\nyoung = 5e6\npoisson = 0.25\ngradient = linear\n";
+
+static struct rig rig;
+static struct twin_solid twin;
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    twin_solid_free(&twin);
+    rig_close(&rig);
+}
+
+/* A rotation by 0.7, stretches of +20 % and -15 %, and noise of 5 % of dp; velocities at random. */
+static void deform(struct particles *p)
+{
+    uint64_t seed = 99;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double a = 1.2 * p->X[i] + 0.1 * p->Y[i], b = 0.85 * p->Y[i];
+        p->ux[i] = cos(0.7) * a - sin(0.7) * b - p->X[i] + 5e-4 * noise(&seed);
+        p->uy[i] = sin(0.7) * a + cos(0.7) * b - p->Y[i] + 5e-4 * noise(&seed);
+        p->vx[i] = noise(&seed);
+        p->vy[i] = noise(&seed);
+    }
+}
+
+static double difference(struct twin_mat t, double xx, double xy, double yx, double yy)
+{
+    return fmax(fmax(fabs(t.m[0][0] - xx), fabs(t.m[0][1] - xy)),
+                fmax(fabs(t.m[1][0] - yx), fabs(t.m[1][1] - yy)));
+}
+
+static void compare_stress(const struct particles *p)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct twin_solid_point *const q = &twin.point[i];
+        const double young = twin.body[q->body].young;
+        const double off = difference(q->F, 1 + p->Uxx[i], p->Uxy[i], p->Uyx[i], 1 + p->Uyy[i]);
+        assert_at_most(1e-12, off, "deformation gradient");
+        assert_at_most(1e-12 * young, difference(q->P, p->Pxx[i], p->Pxy[i], p->Pyx[i], p->Pyy[i]),
+                       "first Piola-Kirchhoff stress");
+        double sigma[4], det;
+        solid_cauchy(&rig.sim.solid, p, i, sigma, &det);
+        assert_at_most(1e-12 * young, difference(q->sigma, sigma[0], sigma[2], sigma[2], sigma[1]),
+                       "Cauchy stress");
+    }
+}
+
+static void compare(const char *set, const char *another, const char *third)
+{
+    rig_open(&rig, scene, set, another, third, NULL);
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    deform(p);
+    solid_stress(&rig.sim.solid, p);
+    solid_forces(&rig.sim.solid, p);
+    twin_solid_copy(&twin, &rig.sim);
+    twin_solid_evaluate(&twin);
+    compare_stress(p);
+    double size[2] = {0}, top[2] = {0};
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct twin_solid_point *const q = &twin.point[i];
+        size[q->body] = fmax(size[q->body], q->size);
+        if (p->free[i] > 0)
+            top[q->body] = fmax(top[q->body], hypot(p->sx[i] - q->ax, p->sy[i] - q->ay));
+        else
+            TEST_ASSERT_TRUE(p->sx[i] == 0 && p->sy[i] == 0);
+    }
+    for (int k = 0; k < 2; k++) {
+        TEST_ASSERT_TRUE(size[k] > 1e3);
+        assert_at_most(1e-12, top[k] / size[k], rig.scene.solid[k].common.name);
+    }
+    twin_solid_free(&twin);
+}
+
+static void test_laws_in_plane_strain(void)
+{
+    compare("plug.law=paper", "bar.law=paper", "bar.plane=strain");
+    compare("plug.law=svk", "bar.law=neo_hookean", "bar.plane=strain");
+    compare("plug.law=neo_hookean", "bar.law=svk", "bar.plane=strain");
+}
+
+static void test_laws_in_plane_stress(void)
+{
+    compare("plug.plane=stress", "bar.law=paper", "bar.plane=stress");
+    compare("bar.plane=strain", "plug.law=svk", "plug.plane=stress");
+    compare("bar.law=neo_hookean", "plug.law=neo_hookean", "bar.plane=stress");
+}
+
+static void test_hourglass_forms(void)
+{
+    compare("bar.hourglass_form=printed", "plug.hourglass_form=variational", "plug.hourglass=10");
+    compare("bar.hourglass_form=variational", "plug.hourglass_form=printed", "bar.hourglass=200");
+    compare("bar.hourglass=0", "plug.hourglass=0", "bar.law=paper");
+}
+
+static void test_viscosity_forms(void)
+{
+    compare("bar.viscosity_form=printed", "plug.viscosity_form=symmetric",
+            "bar.artificial_viscosity=1");
+    compare("bar.viscosity_form=symmetric", "plug.viscosity_form=printed",
+            "plug.artificial_viscosity=1");
+    compare("bar.artificial_viscosity=0", "plug.artificial_viscosity=0", "bar.hourglass=0");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_laws_in_plane_strain);
+    RUN_TEST(test_laws_in_plane_stress);
+    RUN_TEST(test_hourglass_forms);
+    RUN_TEST(test_viscosity_forms);
+    return UNITY_END();
+}
