@@ -19,15 +19,9 @@ static const struct {
 #undef ERROR
 };
 
-int err_status(enum err e)
-{
-    return error_rows[e].status;
-}
+int err_status(enum err e) { return error_rows[e].status; }
 
-const char *err_meaning(enum err e)
-{
-    return error_rows[e].meaning;
-}
+const char *err_meaning(enum err e) { return error_rows[e].meaning; }
 
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...)
 {
@@ -61,10 +55,7 @@ enum { BLOCK_HEADER = ARENA_ALIGN };
 
 static long fail_countdown = -1;
 
-void arena_fail_after(long n)
-{
-    fail_countdown = n;
-}
+void arena_fail_after(long n) { fail_countdown = n; }
 
 static bool rehearsed_failure(void)
 {
@@ -76,15 +67,16 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
 {
     const size_t overhead = BLOCK_HEADER + 2 * (size_t)ARENA_MARGIN;
     if (size && count > (SIZE_MAX - overhead - ARENA_ALIGN) / size) {
-        diag_fail(d, ERR_MEMORY, "%s: %zu items of %zu bytes are more than memory can address", what,
-                  count, size);
+        diag_fail(d, ERR_MEMORY, "%s: %zu items of %zu bytes are more than memory can address",
+                  what, count, size);
         return NULL;
     }
     const size_t want = (count * size + ARENA_ALIGN - 1) / ARENA_ALIGN * ARENA_ALIGN;
     if (a->limit && (want > a->limit || a->bytes > a->limit - want)) {
         diag_fail(d, ERR_MEMORY,
-                  "%s: %.3g GB would raise the run to %.3g GB, more than the %.3g GB it may use", what,
-                  1e-9 * (double)want, 1e-9 * (double)(a->bytes + want), 1e-9 * (double)a->limit);
+                  "%s: %.3g GB would raise the run to %.3g GB, more than the %.3g GB it may use",
+                  what, 1e-9 * (double)want, 1e-9 * (double)(a->bytes + want),
+                  1e-9 * (double)a->limit);
         return NULL;
     }
     unsigned char *raw = rehearsed_failure() ? NULL : aligned_alloc(ARENA_ALIGN, want + overhead);

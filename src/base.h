@@ -9,8 +9,7 @@
 
 #define SPHFSI_INLINE static inline __attribute__((always_inline))
 #define SPHFSI_API __attribute__((visibility("default")))
-#define SPHFSI_PRINTF(fmt_index, args_index) \
-    __attribute__((format(printf, fmt_index, args_index)))
+#define SPHFSI_PRINTF(fmt_index, args_index) __attribute__((format(printf, fmt_index, args_index)))
 #define SPHFSI_CHECKED __attribute__((warn_unused_result))
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 
@@ -48,8 +47,8 @@ void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
  * A zeroed struct arena is a valid empty one. */
 struct arena {
     struct arena_block *blocks;
-    size_t bytes;  /* handed out so far */
-    size_t limit;  /* refuse beyond this many bytes; 0: no limit */
+    size_t bytes; /* handed out so far */
+    size_t limit; /* refuse beyond this many bytes; 0: no limit */
 };
 
 /* Zeroed memory for count items of the given size, or NULL with the sizes in d. Never NULL for

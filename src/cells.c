@@ -29,8 +29,9 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
-enum err cells_create(struct cells *c, struct arena *a, const double lower[2], const double upper[2],
-                      double reach, const struct particles kinds[KIND_COUNT], struct diag *d)
+enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
+                      const double upper[2], double reach, const struct particles kinds[KIND_COUNT],
+                      struct diag *d)
 {
     memset(c, 0, sizeof *c);
     double n[2];
@@ -38,22 +39,25 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2], c
         c->lower[k] = lower[k];
         n[k] = max2(1, floor((upper[k] - lower[k]) / reach));
         if (!(n[k] <= MORTON_CELLS))
-            return diag_fail(d, ERR_INPUT,
-                             "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
-                             "smaller or dp larger",
-                             upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, reach);
+            return diag_fail(
+                d, ERR_INPUT,
+                "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
+                "smaller or dp larger",
+                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, reach);
         c->side[k] = (upper[k] - lower[k]) / n[k];
     }
     c->nx = (int)n[0];
     c->ny = (int)n[1];
     if (n[0] * n[1] > INT32_MAX)
-        return diag_fail(d, ERR_INPUT, "the domain has %d x %d cells, too many to number", c->nx, c->ny);
+        return diag_fail(d, ERR_INPUT, "the domain has %d x %d cells, too many to number", c->nx,
+                         c->ny);
 
     int64_t most = 0;
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         if (kinds[k].capacity > most) most = kinds[k].capacity;
-        TRY(list_create(&c->kind[k], a, (size_t)c->nx * (size_t)c->ny, &kinds[k], k != KIND_FLUID, d));
+        TRY(list_create(&c->kind[k], a, (size_t)c->nx * (size_t)c->ny, &kinds[k], k != KIND_FLUID,
+                        d));
     }
     c->pair_a = arena_alloc(a, (size_t)most, sizeof *c->pair_a, "sorting", d);
     c->pair_b = arena_alloc(a, (size_t)most, sizeof *c->pair_b, "sorting", d);
@@ -62,7 +66,7 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2], c
     c->sort_threads = sort_threads();
     c->histogram = arena_alloc(a, (size_t)c->sort_threads, sizeof *c->histogram, "sorting", d);
     return c->pair_a && c->pair_b && c->permutation && c->scratch && c->histogram ? ERR_OK
-                                                                                   : ERR_MEMORY;
+                                                                                  : ERR_MEMORY;
 }
 
 static int32_t cell_of(const struct cells *c, double x, double y)
@@ -82,8 +86,7 @@ static uint32_t key_of(const struct cells *c, int32_t cell)
 static int key_bits(const struct cells *c)
 {
     int bits = 1;
-    while ((1 << bits) < c->nx || (1 << bits) < c->ny)
-        bits++;
+    while ((1 << bits) < c->nx || (1 << bits) < c->ny) bits++;
     return 2 * bits + 1;
 }
 
@@ -124,7 +127,8 @@ static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
         const uint64_t moved = pair[k];
         const int64_t moved_id = id[(uint32_t)moved];
         int64_t j = k;
-        for (; j > 0 && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id; j--)
+        for (; j > 0 && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id;
+             j--)
             pair[j] = pair[j - 1];
         pair[j] = moved;
     }
@@ -147,8 +151,7 @@ static const uint64_t *sort_pairs(struct cells *c, int64_t n, const int64_t *id)
 
 static void list_clear(struct cell_list *list)
 {
-    for (int32_t k = 0; k < list->n_active; k++)
-        list->count[list->active[k]] = 0;
+    for (int32_t k = 0; k < list->n_active; k++) list->count[list->active[k]] = 0;
     list->n_active = 0;
 }
 
@@ -181,8 +184,7 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     const uint64_t *const sorted = sort_pairs(c, n, p->id);
     int32_t *const order = list->order ? list->order : c->permutation;
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++)
-        order[k] = (int32_t)(uint32_t)sorted[k];
+    for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
     if (!list->order) particles_permute(p, order, n, c->scratch);
     list_fill(list, p->cell, n);
     return outside;
@@ -195,8 +197,7 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p)
         for (int64_t k = 0; k < p->n; k++)
             c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
         const uint64_t *const sorted = sort_pairs(c, p->n, p->id);
-        for (int64_t k = 0; k < p->n; k++)
-            list->order[k] = (int32_t)(uint32_t)sorted[k];
+        for (int64_t k = 0; k < p->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
     list_fill(list, p->cell, p->n);
 }

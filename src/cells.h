@@ -10,7 +10,7 @@ struct cell_list {
     int32_t *start, *count; /* [nx * ny]: range in cell order; count 0: empty */
     int32_t *active;        /* cells that hold particles, in Morton order */
     int32_t n_active;
-    int32_t *order;         /* particle at each place of the cell order; fluid is kept sorted in
+    int32_t *order; /* particle at each place of the cell order; fluid is kept sorted in
                                memory, so that there place = particle and order is NULL */
 };
 
@@ -26,14 +26,14 @@ struct cells {
     int64_t (*histogram)[1 << CELLS_SORT_DIGIT_BITS]; /* [sort_threads] */
     int sort_threads;
     int32_t *permutation;
-    void *scratch;             /* 8 bytes for each particle of the largest kind */
+    void *scratch; /* 8 bytes for each particle of the largest kind */
 };
 
 /* Lays the grid over [lower, upper) with cells of at least `reach` and makes room for the kinds'
  * capacities. */
-enum err cells_create(struct cells *c, struct arena *a, const double lower[2], const double upper[2],
-                      double reach, const struct particles kinds[KIND_COUNT], struct diag *d)
-    SPHFSI_CHECKED;
+enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
+                      const double upper[2], double reach, const struct particles kinds[KIND_COUNT],
+                      struct diag *d) SPHFSI_CHECKED;
 
 /* Sorts the particles of one kind into cells, by Morton key and then id; the fluid itself is
  * permuted. Particles outside the grid come last and are left out: their number is returned, and

@@ -18,7 +18,8 @@ static void move_walls(struct simulation *s, double time)
     struct motion_state state[SCENE_MAX_SECTIONS];
     bool moves[SCENE_MAX_SECTIONS];
     for (int k = 0; k < scene->n_wall; k++) {
-        const int motion = scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
+        const int motion =
+            scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
         moves[k] = motion >= 0;
         if (moves[k]) state[k] = motion_at(scene, motion, time);
     }
@@ -125,8 +126,7 @@ void solid_only_step(struct simulation *s, double t_limit)
 {
     struct state *const st = &s->state;
     const double start = wall_clock();
-    for (int k = 0; k < BOUND_COUNT; k++)
-        s->dt_bound[k] = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
     const double fixed = s->scene->numerics.fixed_step;
     s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
     const double bound = fixed > 0 ? fixed : s->dt_solid;
@@ -136,8 +136,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
     const double dt = hits ? left / n : bound;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
-        for (int k = 0; k < n; k++)
-            solid_symplectic(s, dt);
+        for (int k = 0; k < n; k++) solid_symplectic(s, dt);
     } else {
         solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
         st->solid_evaluations += n;

@@ -6,8 +6,7 @@
 static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
 {
     const unsigned wanted = f->effects & PAIR_EFFECTS;
-    while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted))
-        table++;
+    while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted)) table++;
     f->sweeps = table;
 }
 
@@ -25,7 +24,8 @@ static struct fluid_constants constants_of(const struct scene *s)
     };
 }
 
-static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, size_t size, struct diag *d)
+static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, size_t size,
+                             struct diag *d)
 {
     for (int m = 0; m < LANE_FIELDS; m++) {
         lanes->field[m] = arena_alloc(a, (size_t)n, size, "lanes of the fluid's sweep", d);

@@ -9,9 +9,9 @@
 /* Constants of the fluid, SI. */
 struct fluid_constants {
     double h, c0, rho0;
-    double mass;       /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
-    double alpha;      /* Eq. 7 */
-    double delta;      /* Eq. 6 */
+    double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
+    double alpha; /* Eq. 7 */
+    double delta; /* Eq. 6 */
     double gravity[2];
 };
 
@@ -44,8 +44,8 @@ struct fluid_sweeps {
     void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their lanes, and the
      * fluid's force on solid particles (Eq. 21b). */
-    void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                    enum kind kind);
+    void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                    const struct cells *c, enum kind kind);
     /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
     void (*rates)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 };
@@ -61,9 +61,10 @@ struct fluid {
     unsigned effects;
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct lanes lanes[KIND_COUNT];
-    int32_t *near_fluid[KIND_COUNT];   /* walls and solids: cells with fluid within reach, Morton order */
+    int32_t
+        *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    void *tiles;                       /* [threads] of candidate tiles */
+    void *tiles; /* [threads] of candidate tiles */
     int threads;
     struct fluid_extremes extremes;
 };

@@ -15,24 +15,24 @@ struct receiver {
 
 /* Pairs of a with a pack of candidates b. */
 struct pair {
-    vreal x, y;        /* xi_ab */
-    vreal r2;          /* |xi_ab|^2 */
-    vreal vx;          /* v_ab . xi_ab, m/s */
-    vreal slope;       /* V_b/h^2 t^3 */
-    vreal p, dens;     /* of b */
+    vreal x, y;    /* xi_ab */
+    vreal r2;      /* |xi_ab|^2 */
+    vreal vx;      /* v_ab . xi_ab, m/s */
+    vreal slope;   /* V_b/h^2 t^3 */
+    vreal p, dens; /* of b */
 };
 
 struct sums {
-    vreal ax, ay;      /* Pa */
-    vreal rate;        /* m/s */
-    vreal approach;    /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
+    vreal ax, ay;   /* Pa */
+    vreal rate;     /* m/s */
+    vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity;   /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
-    vreal gx, gy;      /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal eta2;        /* (eta/h)^2 = 0.01 */
+    vreal viscosity; /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal gx, gy;    /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;      /* (eta/h)^2 = 0.01 */
 };
 
 /* Geometry of the pairs, Eq. 5. */

@@ -28,8 +28,8 @@ static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
 }
 
 /* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h. */
-SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lanes *lanes, int32_t start,
-                              int32_t count, real dx, real dy)
+SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lanes *lanes,
+                              int32_t start, int32_t count, real dx, real dy)
 {
     const vreal shift_x = vset(dx), shift_y = vset(dy);
     for (int32_t k = 0; k < count; k += LANES) {
@@ -44,8 +44,8 @@ SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lan
 }
 
 /* Appends the nine cells around `cell` of one kind; returns the number of candidates so far. */
-static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f, const struct cells *c,
-                       enum kind kind, int32_t cell)
+static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
+                       const struct cells *c, enum kind kind, int32_t cell)
 {
     const struct cell_list *list = &c->kind[kind];
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
@@ -66,14 +66,14 @@ static void tile_close(struct SWEEP(tile) * tile, int n)
 {
     const int padded = (n + LANES - 1) / LANES * LANES;
     for (; n < padded; n++) {
-        for (int m = 0; m < LANE_FIELDS; m++)
-            tile->field[m][n] = 0;
+        for (int m = 0; m < LANE_FIELDS; m++) tile->field[m][n] = 0;
         tile->field[LANE_X][n] = TILE_FAR;
     }
     tile->n = padded;
 }
 
-static void lanes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c, int32_t cell)
+static void lanes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
+                          int32_t cell)
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
     const double centre_x = cell_centre_x(c, cell), centre_y = cell_centre_y(c, cell);
@@ -91,7 +91,8 @@ static void lanes_of_cell(const struct fluid *f, struct particles *p, const stru
     }
 }
 
-static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                         const struct cells *c)
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
 #pragma omp parallel for schedule(static)
@@ -101,8 +102,8 @@ static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUN
 
 /* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of a wall or solid particle at (x, y),
  * with acceleration (ax, ay), from the fluid in the tile; 0 where no fluid is in reach. */
-static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(tile) * tile, real x, real y,
-                                    double ax, double ay)
+static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(tile) * tile, real x,
+                                    real y, double ax, double ay)
 {
     vreal sum_w = vset(0), sum_p = vset(0), sum_x = vset(0), sum_y = vset(0);
     for (int j = 0; j < tile->n; j += LANES) {
@@ -119,20 +120,21 @@ static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(ti
     }
     const double weight = (double)vsum(sum_w);
     if (!(weight > 1e-12)) return 0;
-    const double lift = (f->k.gravity[0] - ax) * (double)vsum(sum_x) + (f->k.gravity[1] - ay) * (double)vsum(sum_y);
+    const double lift =
+        (f->k.gravity[0] - ax) * (double)vsum(sum_x) + (f->k.gravity[1] - ay) * (double)vsum(sum_y);
     return ((double)vsum(sum_p) + f->k.rho0 * f->k.h * lift) / weight;
 }
 
 /* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
  * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. */
-static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile, const struct receiver *s,
-                        double volume, double force[2])
+static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
+                        const struct receiver *s, double volume, double force[2])
 {
     vreal sum_x = vset(0), sum_y = vset(0);
     for (int j = 0; j < tile->n; j += LANES) {
-        struct pair q = pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
-                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
-                                  &tile->field[LANE_VOLUME][j]);
+        struct pair q =
+            pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
+                      &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
         const vreal g = q.slope * fx_pressure(s, &q);
         sum_x = vfma(g, q.x, sum_x);
@@ -144,8 +146,9 @@ static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile, 
 }
 
 /* One wall or solid particle i at place `place` of the cell order. */
-static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place, int32_t i,
-                         double centre_x, double centre_y, const struct SWEEP(tile) * tile)
+static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place,
+                         int32_t i, double centre_x, double centre_y,
+                         const struct SWEEP(tile) * tile)
 {
     const double inv_h = 1 / f->k.h;
     const bool solid = kind == KIND_SOLID;
@@ -162,7 +165,8 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
     if (!p->fx) return;
-    const struct receiver s = {vset(x), vset(y), vset(0), vset(0), vset(out[LANE_P][place]), vset(0), vset(0)};
+    const struct receiver s = {vset(x), vset(y), vset(0), vset(0), vset(out[LANE_P][place]),
+                               vset(0), vset(0)};
     double force[2];
     fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
@@ -189,9 +193,9 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
                              const struct lane_constants *k, unsigned fx, struct sums *s)
 {
     for (int j = 0; j < tile->n; j += LANES) {
-        struct pair q = pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
-                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
-                                  &tile->field[LANE_VOLUME][j]);
+        struct pair q =
+            pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
+                      &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
         fx_continuity(&q, s);
         vreal stress = fx_pressure(a, &q), inv;
@@ -217,9 +221,9 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
                                const struct lane_constants *k, struct sums *s)
 {
     for (int j = 0; j < tile->n; j += LANES) {
-        struct pair q = pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j],
-                                  &tile->field[LANE_U][j], &tile->field[LANE_V][j],
-                                  &tile->field[LANE_VOLUME][j]);
+        struct pair q =
+            pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
+                      &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
         fx_continuity(&q, s);
         fx_approach(&q, vset(1) / (q.r2 + k->eta2), s);
@@ -243,8 +247,9 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
     top->approach = max2(top->approach, (double)vtop(s->approach));
 }
 
-SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c, int32_t cell,
-                                 const struct lane_constants *k, unsigned fx, struct fluid_extremes *top)
+SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
+                                 int32_t cell, const struct lane_constants *k, unsigned fx,
+                                 struct fluid_extremes *top)
 {
     struct SWEEP(tile) *const tile = thread_tile(f, 0), *const dummies = thread_tile(f, 1);
     tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
@@ -256,8 +261,12 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     const struct cell_list *list = &c->kind[KIND_FLUID];
     const real *const *const own = (const real *const *)(const void *)f->lanes[KIND_FLUID].field;
     for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-        const struct receiver a = {vset(own[LANE_X][i]), vset(own[LANE_Y][i]), vset(own[LANE_U][i]),
-                                   vset(own[LANE_V][i]), vset(own[LANE_P][i]), vset(own[LANE_DENS][i]),
+        const struct receiver a = {vset(own[LANE_X][i]),
+                                   vset(own[LANE_Y][i]),
+                                   vset(own[LANE_U][i]),
+                                   vset(own[LANE_V][i]),
+                                   vset(own[LANE_P][i]),
+                                   vset(own[LANE_DENS][i]),
                                    vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
         struct sums s = {vset(0), vset(0), vset(0), vset(0)};
         sum_fluid(tile, &a, k, fx, &s);
@@ -266,15 +275,15 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     }
 }
 
-SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                              unsigned fx)
+SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT],
+                              const struct cells *c, unsigned fx)
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
     const struct fluid_constants *const fk = &f->k;
     const double per_c2 = fk->h / square(fk->c0);
-    const struct lane_constants k = {
-        vset((real)(fk->alpha * fk->c0 * fk->rho0)),
-        vset((real)(fk->gravity[0] * per_c2)), vset((real)(fk->gravity[1] * per_c2)), vset((real)0.01)};
+    const struct lane_constants k = {vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+                                     vset((real)(fk->gravity[0] * per_c2)),
+                                     vset((real)(fk->gravity[1] * per_c2)), vset((real)0.01)};
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(dynamic, 16) reduction(max : acceleration2, approach)
     for (int32_t m = 0; m < list->n_active; m++) {
@@ -286,23 +295,26 @@ SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT
     f->extremes = (struct fluid_extremes){acceleration2, approach};
 }
 
-#define VARIANT(variant, set)                                                                         \
-    static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT],          \
-                                       const struct cells *c)                                         \
-    {                                                                                                 \
-        rates_body(f, kinds, c, (set));                                                               \
+#define VARIANT(variant, set)                                                                \
+    static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT], \
+                                       const struct cells *c)                                \
+    {                                                                                        \
+        rates_body(f, kinds, c, (set));                                                      \
     }
 #include "variants.def"
 #undef VARIANT
 
-static void SWEEP(rates_any)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+static void SWEEP(rates_any)(struct fluid *f, struct particles kinds[KIND_COUNT],
+                             const struct cells *c)
 {
     rates_body(f, kinds, c, f->effects & PAIR_EFFECTS);
 }
 
-#define SWEEPS_ROW(variant, set)                                                                      \
-    {#variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)), SWEEP(lanes),    \
-     SWEEP(dummies), SWEEP(rates_##variant)}
+#define SWEEPS_ROW(variant, set)                                                        \
+    {                                                                                   \
+#variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)), \
+            SWEEP(lanes), SWEEP(dummies), SWEEP(rates_##variant)                        \
+    }
 
 /* The generic kernel stands last. */
 const struct fluid_sweeps SWEEP(fluid_sweeps)[] = {

@@ -49,7 +49,8 @@ SPHFSI_INLINE struct vtensor2 paper_pk1(const struct solid_body *b, struct vtens
     if (b->plane == PLANE_STRESS) {
         const vwide eps_zz = (eps.xx + eps.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
         const vwide thickness = 1.0 / vsqrt_wide(1.0 - 2.0 * eps_zz);
-        P = (struct vtensor2){P.xx * thickness, P.xy * thickness, P.yx * thickness, P.yy * thickness};
+        P = (struct vtensor2){P.xx * thickness, P.xy * thickness, P.yx * thickness,
+                              P.yy * thickness};
     }
     return P;
 }

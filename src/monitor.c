@@ -23,22 +23,24 @@ static struct finding look_at(const struct particles *p, double speed_limit, dou
     for (int64_t i = 0; i < p->n; i++) {
         const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
         if (!(speed <= speed_limit)) return (struct finding){i, "speed (m/s)", speed};
-        if (!isfinite(p->x[i] + p->y[i])) return (struct finding){i, "position (m)", p->x[i] + p->y[i]};
+        if (!isfinite(p->x[i] + p->y[i]))
+            return (struct finding){i, "position (m)", p->x[i] + p->y[i]};
         if (dens_limit > 0 && !(fabs(p->dens[i]) <= dens_limit))
             return (struct finding){i, "rho/rho0 - 1", p->dens[i]};
     }
     return (struct finding){-1, "", 0};
 }
 
-static enum err complain(const struct simulation *s, enum kind kind, struct finding f, const char *cause,
-                         struct diag *d)
+static enum err complain(const struct simulation *s, enum kind kind, struct finding f,
+                         const char *cause, struct diag *d)
 {
     const struct particles *const p = &s->kind[kind];
-    return diag_fail(d, ERR_GUARD,
-                     "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, which is not "
-                     "sound: %s",
-                     s->state.time, (long long)s->state.steps, kind_names[kind], (long long)p->id[f.at],
-                     p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
+    return diag_fail(
+        d, ERR_GUARD,
+        "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, which is not "
+        "sound: %s",
+        s->state.time, (long long)s->state.steps, kind_names[kind], (long long)p->id[f.at],
+        p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
 }
 
 /* Whether any speed or density is out of bounds; cheap and without branches, run after every step. */
@@ -48,7 +50,11 @@ static bool fluid_sound(struct simulation *s)
     const double speed2_limit = square(s->guard.speed_limit), dens_limit = s->guard.dens_limit;
     double low = 0, high = 0, speed2 = 0;
     int bad = 0;
-#pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) reduction(| : bad)
+#pragma omp parallel for schedule(static) reduction(min                              \
+                                                    : low) reduction(max             \
+                                                                     : high, speed2) \
+    reduction(|                                                                      \
+              : bad)
     for (int64_t i = 0; i < p->n; i++) {
         const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i], dens = p->dens[i];
         bad |= !(v2 <= speed2_limit) | !(dens <= dens_limit) | !(dens >= -dens_limit);
@@ -65,17 +71,20 @@ static bool fluid_sound(struct simulation *s)
 static enum err check_fluid(struct simulation *s, struct diag *d)
 {
     if (!fluid_sound(s)) {
-        const struct finding f = look_at(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
+        const struct finding f =
+            look_at(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
         if (f.at >= 0)
-            return complain(s, KIND_FLUID, f,
-                            "the fluid is unstable (a smaller cfl may help) or sound_speed is too low for "
-                            "this flow",
-                            d);
+            return complain(
+                s, KIND_FLUID, f,
+                "the fluid is unstable (a smaller cfl may help) or sound_speed is too low for "
+                "this flow",
+                d);
     }
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's speed %.4g m/s is beyond %g of the speed of sound %.4g m/s, where "
+                  "t = %.6g s: the fluid's speed %.4g m/s is beyond %g of the speed of sound %.4g "
+                  "m/s, where "
                   "weak compressibility is lost; a higher sound_speed would mend it",
                   s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
     }
@@ -102,15 +111,17 @@ static enum err check_solid(struct simulation *s, struct diag *d)
         limit = max2(limit, 10 * s->solid.body[k].sound_speed);
     const struct finding fast = look_at(p, limit, 0);
     if (fast.at >= 0)
-        return complain(s, KIND_SOLID, fast, "the solid is unstable; a smaller solid_safety may help", d);
+        return complain(s, KIND_SOLID, fast,
+                        "the solid is unstable; a smaller solid_safety may help", d);
     if (s->state.steps % DET_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);
     if (!(det.value > 0))
-        return complain(s, KIND_SOLID, det,
-                        "the material has turned inside out; finer particles, more hourglass control or a "
-                        "stiffer law may help",
-                        d);
+        return complain(
+            s, KIND_SOLID, det,
+            "the material has turned inside out; finer particles, more hourglass control or a "
+            "stiffer law may help",
+            d);
     return ERR_OK;
 }
 
@@ -119,9 +130,10 @@ enum err monitor_check(struct simulation *s, struct diag *d)
     if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
     if (s->effects & FX_SOLID) TRY(check_solid(s, d));
     if (s->state.dt < s->guard.step_limit && s->dt_bound[BOUND_output] > s->guard.step_limit)
-        return diag_fail(d, ERR_GUARD,
-                         "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow without bound; "
-                         "a higher sound_speed or a smaller cfl may help",
-                         s->state.time, s->state.dt);
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow without bound; "
+            "a higher sound_speed or a smaller cfl may help",
+            s->state.time, s->state.dt);
     return ERR_OK;
 }

@@ -6,9 +6,9 @@
 const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};
 
 const struct field_info field_table[] = {
-#define FIELD(type, name, group, keep, unit, meaning)                                               \
-    {#name,     #type, unit, meaning, sizeof(type), offsetof(struct particles, name), G_##group, \
-     KEEP_##keep},
+#define FIELD(type, name, group, keep, unit, meaning)                                      \
+    {#name,     #type,      unit, meaning, sizeof(type), offsetof(struct particles, name), \
+     G_##group, KEEP_##keep},
 #include "fields.def"
 #undef FIELD
 };
@@ -19,10 +19,7 @@ static void *const *slot(const struct particles *p, const struct field_info *f)
     return (void *const *)(const void *)((const unsigned char *)p + f->offset);
 }
 
-void *field_array(const struct particles *p, const struct field_info *f)
-{
-    return *slot(p, f);
-}
+void *field_array(const struct particles *p, const struct field_info *f) { return *slot(p, f); }
 
 enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
                           const char *what, struct diag *d)
@@ -47,21 +44,17 @@ typedef uint32_t bits32 __attribute__((may_alias));
 static void permute_8(bits64 *values, const int32_t *order, int64_t n, bits64 *scratch)
 {
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++)
-        scratch[k] = values[order[k]];
+    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++)
-        values[k] = scratch[k];
+    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
 }
 
 static void permute_4(bits32 *values, const int32_t *order, int64_t n, bits32 *scratch)
 {
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++)
-        scratch[k] = values[order[k]];
+    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
 #pragma omp parallel for schedule(static)
-    for (int64_t k = 0; k < n; k++)
-        values[k] = scratch[k];
+    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
 }
 
 void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch)
@@ -84,8 +77,7 @@ uint64_t particles_hash(const struct particles *p, uint64_t seed)
         const unsigned char *bytes = field_array(p, &field_table[k]);
         if (!bytes || field_table[k].keep != KEEP_STATE) continue;
         const size_t count = (size_t)p->n * field_table[k].size;
-        for (size_t i = 0; i < count; i++)
-            h = (h ^ bytes[i]) * fnv_prime;
+        for (size_t i = 0; i < count; i++) h = (h ^ bytes[i]) * fnv_prime;
     }
     return h;
 }

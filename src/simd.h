@@ -63,8 +63,14 @@ SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 {
     return (vdouble)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
 }
-SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b) { return (vfloat)_mm256_min_ps((__m256)a, (__m256)b); }
-SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b) { return (vfloat)_mm256_max_ps((__m256)a, (__m256)b); }
+SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
+{
+    return (vfloat)_mm256_min_ps((__m256)a, (__m256)b);
+}
+SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
+{
+    return (vfloat)_mm256_max_ps((__m256)a, (__m256)b);
+}
 SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
 {
     return (vdouble)_mm256_min_pd((__m256d)a, (__m256d)b);
@@ -86,27 +92,30 @@ SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 }
 SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
 {
-    return (vfloat)vbslq_f32(vcltq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a, (float32x4_t)b);
+    return (vfloat)vbslq_f32(vcltq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a,
+                             (float32x4_t)b);
 }
 SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
 {
-    return (vfloat)vbslq_f32(vcgtq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a, (float32x4_t)b);
+    return (vfloat)vbslq_f32(vcgtq_f32((float32x4_t)a, (float32x4_t)b), (float32x4_t)a,
+                             (float32x4_t)b);
 }
 SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
 {
-    return (vdouble)vbslq_f64(vcltq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a, (float64x2_t)b);
+    return (vdouble)vbslq_f64(vcltq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a,
+                              (float64x2_t)b);
 }
 SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
 {
-    return (vdouble)vbslq_f64(vcgtq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a, (float64x2_t)b);
+    return (vdouble)vbslq_f64(vcgtq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a,
+                              (float64x2_t)b);
 }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #else
-#define SIMD_LANEWISE(type, name, lanes, value) \
-    type result;                                \
-    for (int l = 0; l < (lanes); l++)           \
-        result[l] = value;                      \
+#define SIMD_LANEWISE(type, name, lanes, value)          \
+    type result;                                         \
+    for (int l = 0; l < (lanes); l++) result[l] = value; \
     return result
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
@@ -148,14 +157,20 @@ SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
 {
     return (vwide)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
 }
-SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b) { return (vwide)_mm512_min_pd((__m512d)a, (__m512d)b); }
+SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b)
+{
+    return (vwide)_mm512_min_pd((__m512d)a, (__m512d)b);
+}
 SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)_mm512_sqrt_pd((__m512d)a); }
 #else
 SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
 {
     return (vwide)vfma_double((vdouble)a, (vdouble)b, (vdouble)c);
 }
-SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b) { return (vwide)vmin_double((vdouble)a, (vdouble)b); }
+SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b)
+{
+    return (vwide)vmin_double((vdouble)a, (vdouble)b);
+}
 SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)vsqrt_double((vdouble)a); }
 #endif
 
@@ -163,40 +178,38 @@ SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)vsqrt_double((vdouble)a)
 SPHFSI_INLINE float vsum_float(vfloat a)
 {
 #ifdef SIMD_AVX2
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128((__m256)a), _mm256_extractf128_ps((__m256)a, 1));
+    const __m128 four =
+        _mm_add_ps(_mm256_castps256_ps128((__m256)a), _mm256_extractf128_ps((__m256)a, 1));
     const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
     return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 #else
     for (int half = LANES_FLOAT / 2; half > 0; half /= 2)
-        for (int l = 0; l < half; l++)
-            a[l] += a[l + half];
+        for (int l = 0; l < half; l++) a[l] += a[l + half];
     return a[0];
 #endif
 }
 SPHFSI_INLINE double vsum_double(vdouble a)
 {
 #ifdef SIMD_AVX2
-    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128((__m256d)a), _mm256_extractf128_pd((__m256d)a, 1));
+    const __m128d two =
+        _mm_add_pd(_mm256_castpd256_pd128((__m256d)a), _mm256_extractf128_pd((__m256d)a, 1));
     return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
 #else
     for (int half = LANES_DOUBLE / 2; half > 0; half /= 2)
-        for (int l = 0; l < half; l++)
-            a[l] += a[l + half];
+        for (int l = 0; l < half; l++) a[l] += a[l + half];
     return a[0];
 #endif
 }
 SPHFSI_INLINE float vtop_float(vfloat a)
 {
     float top = a[0];
-    for (int l = 1; l < LANES_FLOAT; l++)
-        top = a[l] > top ? a[l] : top;
+    for (int l = 1; l < LANES_FLOAT; l++) top = a[l] > top ? a[l] : top;
     return top;
 }
 SPHFSI_INLINE double vtop_double(vdouble a)
 {
     double top = a[0];
-    for (int l = 1; l < LANES_DOUBLE; l++)
-        top = a[l] > top ? a[l] : top;
+    for (int l = 1; l < LANES_DOUBLE; l++) top = a[l] > top ? a[l] : top;
     return top;
 }
 

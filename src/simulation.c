@@ -108,8 +108,7 @@ static double fastest(const struct particles *p)
 {
     double top = 0;
 #pragma omp parallel for schedule(static) reduction(max : top)
-    for (int64_t i = 0; i < p->n; i++)
-        top = max2(top, p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+    for (int64_t i = 0; i < p->n; i++) top = max2(top, p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
     return top;
 }
 
@@ -156,10 +155,11 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     s->state.sorts++;
     const int32_t crowd = fluid_crowding(&s->cells);
     if (crowd > CELL_CAPACITY)
-        return diag_fail(d, ERR_GUARD,
-                         "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some ten "
-                         "belong: the run is unstable; a smaller cfl or another sound_speed may help",
-                         s->state.time, crowd, s->cells.side[0]);
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some ten "
+            "belong: the run is unstable; a smaller cfl or another sound_speed may help",
+            s->state.time, crowd, s->cells.side[0]);
     return ERR_OK;
 }
 
@@ -179,7 +179,8 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
 {
     const struct scene *const scene = s->scene;
     const double reach = (KERNEL_REACH + scene->numerics.skin) * scene->h;
-    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, s->kind, d));
+    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, s->kind,
+                     d));
     TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, d));
     start_fluid(s);
     return ERR_OK;
@@ -204,7 +205,8 @@ static enum err build(struct simulation *s, struct diag *d)
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
     const struct ledger start = simulation_ledger(s);
-    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
+    s->state.energy_start =
+        start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
     s->state.det_low = 1;
     return ERR_OK;
 }
@@ -219,18 +221,14 @@ enum err simulation_create(struct simulation *s, const struct scene *scene, stru
     return e;
 }
 
-void simulation_free(struct simulation *s)
-{
-    arena_free(&s->arena);
-}
+void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 
 /* Work that moving walls have done on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
     const struct particles *const p = &s->kind[KIND_WALL];
     double power = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        power -= p->fx[i] * p->vx[i] + p->fy[i] * p->vy[i];
+    for (int64_t i = 0; i < p->n; i++) power -= p->fx[i] * p->vx[i] + p->fy[i] * p->vy[i];
     s->state.wall_work += s->state.dt * power;
 }
 
@@ -305,11 +303,9 @@ uint64_t simulation_hash(struct simulation *s)
 {
     simulation_refresh(s);
     uint64_t h = 0xcbf29ce484222325u;
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        h = particles_hash(&s->kind[kind], h);
+    for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&s->kind[kind], h);
     const unsigned char *const bytes = (const unsigned char *)&s->state;
-    for (size_t k = 0; k < sizeof s->state; k++)
-        h = (h ^ bytes[k]) * 0x100000001b3u;
+    for (size_t k = 0; k < sizeof s->state; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
     return h;
 }
 

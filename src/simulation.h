@@ -43,15 +43,15 @@ struct simulation {
     struct arena arena;
     struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
     struct cells cells;
-    struct fluid fluid;   /* model and sweeps of fluid, walls and coupling; unused without fluid */
-    struct solid solid;   /* model of the solid; unused without one */
-    unsigned effects;     /* bits of effects.h */
+    struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct solid solid; /* model of the solid; unused without one */
+    unsigned effects;   /* bits of effects.h */
     struct state state;
-    double dt_bound[BOUND_COUNT];     /* bounds found at the last step, s; INFINITY where none */
-    double dt_solid;                  /* stable step of the solid times its safety, s */
-    int substeps;                     /* solid steps in the last fluid step */
+    double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
+    double dt_solid;              /* stable step of the solid times its safety, s */
+    int substeps;                 /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
-    double speed2;                    /* of the fastest particle of any kind, squared, (m/s)^2 */
+    double speed2; /* of the fastest particle of any kind, squared, (m/s)^2 */
     struct guard guard;
 };
 

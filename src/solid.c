@@ -31,8 +31,8 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
     };
 }
 
-enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene, struct particles *p,
-                      struct diag *d)
+enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
+                      struct particles *p, struct diag *d)
 {
     memset(s, 0, sizeof *s);
     s->n_bodies = scene->n_solid;
@@ -57,8 +57,7 @@ SPHFSI_INLINE void store_lanes(double *to, vwide value, int lanes)
         vstore_wide(to, value);
         return;
     }
-    for (int l = 0; l < lanes; l++)
-        to[l] = value[l];
+    for (int l = 0; l < lanes; l++) to[l] = value[l];
 }
 
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i)
@@ -68,7 +67,8 @@ SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i
 }
 
 /* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
-SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s, const struct solid_pack *pack,
+SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s,
+                                                    const struct solid_pack *pack,
                                                     const struct particles *p)
 {
     const vwide ux = vload_wide(&p->ux[pack->i]), uy = vload_wide(&p->uy[pack->i]);
@@ -86,7 +86,8 @@ SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s, const
     return sum;
 }
 
-static void stress_of_pack(const struct solid *s, const struct solid_pack *pack, struct particles *p)
+static void stress_of_pack(const struct solid *s, const struct solid_pack *pack,
+                           struct particles *p)
 {
     const int64_t i = pack->i;
     const struct vtensor2 U = displacement_gradient(s, pack, p);
@@ -109,8 +110,9 @@ struct solid_receiver {
 
 SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64_t i)
 {
-    return (struct solid_receiver){vload_wide(&p->ux[i]), vload_wide(&p->uy[i]), vload_wide(&p->vx[i]),
-                                   vload_wide(&p->vy[i]), load_gradient(p, i)};
+    return (struct solid_receiver){vload_wide(&p->ux[i]), vload_wide(&p->uy[i]),
+                                   vload_wide(&p->vx[i]), vload_wide(&p->vy[i]),
+                                   load_gradient(p, i)};
 }
 
 /* One slot's pairs: neighbours b and geometry. */
@@ -122,8 +124,8 @@ struct solid_pair {
     struct vtensor2 U_b;
 };
 
-SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const struct particles *p, int64_t i,
-                                        const struct solid_receiver *a)
+SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const struct particles *p,
+                                        int64_t i, const struct solid_receiver *a)
 {
     struct solid_pair q = {.slot = slot, .j = i + slot->offset};
     q.X = vload_wide(slot->X);
@@ -137,9 +139,10 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const str
 
 /* What a pack sums over its slots. */
 struct solid_sums {
-    vwide stress_x, stress_y;   /* Pa/m */
-    vwide viscous_x, viscous_y; /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
-    vwide ax, ay;               /* m/s^2 */
+    vwide stress_x, stress_y; /* Pa/m */
+    vwide viscous_x,
+        viscous_y; /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
+    vwide ax, ay;  /* m/s^2 */
 };
 
 /* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
@@ -164,7 +167,8 @@ SPHFSI_INLINE vwide viscous_pressure(const struct solid_pair *q, const struct pa
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. In the symmetric form the mean of both particles'
  * tensors, each with its own gradient, makes it antisymmetric. */
-SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vwide Pi, bool symmetric, struct solid_sums *s)
+SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vwide Pi, bool symmetric,
+                                 struct solid_sums *s)
 {
     if (symmetric) {
         const struct vtensor2 cof = vtensor2_cof(deformation(q->U_b));
@@ -178,8 +182,8 @@ SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vwide Pi, bool symm
 }
 
 /* Eqs. 15-16: e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
-SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct solid_receiver *a, vwide *ex,
-                                   vwide *ey)
+SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct solid_receiver *a,
+                                   vwide *ex, vwide *ey)
 {
     *ex = ((a->U.xx + q->U_b.xx) * q->X + (a->U.xy + q->U_b.xy) * q->Y) * 0.5 - q->ux;
     *ey = ((a->U.yx + q->U_b.yx) * q->X + (a->U.yy + q->U_b.yy) * q->Y) * 0.5 - q->uy;
@@ -187,8 +191,8 @@ SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct soli
 
 /* Over the mass of a: Eq. 17 as printed, a force along x_ab; or the direct part -dE/du_a of the
  * variational form, the sum of k_ab e_ab. */
-SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a, bool variational,
-                                   struct solid_sums *s)
+SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
+                                   bool variational, struct solid_sums *s)
 {
     vwide ex, ey;
     hourglass_error(q, a, &ex, &ey);
@@ -198,7 +202,8 @@ SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct soli
         s->ay = vfma_wide(stiffness, ey, s->ay);
         return;
     }
-    const vwide along = stiffness * vfma_wide(ex, q->x, ey * q->y) / vfma_wide(q->x, q->x, q->y * q->y);
+    const vwide along =
+        stiffness * vfma_wide(ex, q->x, ey * q->y) / vfma_wide(q->x, q->x, q->y * q->y);
     s->ax = vfma_wide(along, q->x, s->ax);
     s->ay = vfma_wide(along, q->y, s->ay);
 }
@@ -206,7 +211,8 @@ SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct soli
 /* The rest of the variational form. With the energy E = sum over pairs of k_ab |e_ab|^2/2, where
  * k_ab = kappa E_ab V_a V_b W_0ab/X_ab^2 as in Eq. 17, e_ab also depends on F_a: dE/dF_a/V_a, the sum of
  * k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
-static void hourglass_stress(const struct solid *s, const struct solid_pack *pack, struct particles *p)
+static void hourglass_stress(const struct solid *s, const struct solid_pack *pack,
+                             struct particles *p)
 {
     const int64_t i = pack->i;
     const struct solid_receiver a = receiver_of(p, i);
@@ -235,7 +241,8 @@ static void hourglass_stress(const struct solid *s, const struct solid_pack *pac
 /* Sums of a pack; `viscous`, `symmetric` and `hourglass` are constants where it is inlined. */
 SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
                                           const struct particles *p, const struct solid_receiver *a,
-                                          bool viscous, bool symmetric, bool hourglass, bool variational)
+                                          bool viscous, bool symmetric, bool hourglass,
+                                          bool variational)
 {
     const double viscosity = s->body[pack->body].viscosity;
     const vwide eta2 = vset_wide(0.01 * s->h * s->h), zero = vset_wide(0);
@@ -246,7 +253,8 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
         if (!viscous && !hourglass) continue;
         struct solid_pair q = pair_of(slot, p, pack->i, a);
         if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
-        if (viscous) viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
+        if (viscous)
+            viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
         if (hourglass) hourglass_force(&q, a, variational, &sums);
     }
     return sums;
@@ -255,18 +263,22 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
 /* Eq. 13a: own part of the stress, P_a times the sum of G_ab, which vanishes inside a lattice; and the
  * viscous force turned by J F^-T. */
 SPHFSI_INLINE void finish_sums(const struct solid_body *body, const struct particles *p, int64_t i,
-                               const struct solid_receiver *a, const struct solid_sums *s, vwide acc[2])
+                               const struct solid_receiver *a, const struct solid_sums *s,
+                               vwide acc[2])
 {
     const struct vtensor2 cof = vtensor2_cof(deformation(a->U));
     const vwide Gx = vload_wide(&p->Gx[i]), Gy = vload_wide(&p->Gy[i]);
     const vwide own_x = vfma_wide(vload_wide(&p->Pxx[i]), Gx, vload_wide(&p->Pxy[i]) * Gy);
     const vwide own_y = vfma_wide(vload_wide(&p->Pyx[i]), Gx, vload_wide(&p->Pyy[i]) * Gy);
     const double inv_density = 1 / body->density;
-    acc[0] = (s->stress_x + own_x) * inv_density + s->ax + (cof.xx * s->viscous_x + cof.xy * s->viscous_y);
-    acc[1] = (s->stress_y + own_y) * inv_density + s->ay + (cof.yx * s->viscous_x + cof.yy * s->viscous_y);
+    acc[0] = (s->stress_x + own_x) * inv_density + s->ax +
+             (cof.xx * s->viscous_x + cof.xy * s->viscous_y);
+    acc[1] = (s->stress_y + own_y) * inv_density + s->ay +
+             (cof.yx * s->viscous_x + cof.yy * s->viscous_y);
 }
 
-static void forces_of_pack(const struct solid *s, const struct solid_pack *pack, struct particles *p)
+static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
+                           struct particles *p)
 {
     const struct solid_body *const body = &s->body[pack->body];
     const int64_t i = pack->i;
@@ -295,8 +307,7 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
 static void stress_loop(const struct solid *s, struct particles *p)
 {
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < s->n_packs; k++)
-        stress_of_pack(s, &s->pack[k], p);
+    for (int64_t k = 0; k < s->n_packs; k++) stress_of_pack(s, &s->pack[k], p);
     if (!s->variational) return;
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < s->n_packs; k++)
@@ -306,8 +317,7 @@ static void stress_loop(const struct solid *s, struct particles *p)
 static void forces_loop(const struct solid *s, struct particles *p)
 {
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < s->n_packs; k++)
-        forces_of_pack(s, &s->pack[k], p);
+    for (int64_t k = 0; k < s->n_packs; k++) forces_of_pack(s, &s->pack[k], p);
 }
 
 static void kick_and_drift(struct particles *p, double kick, double drift)
@@ -347,7 +357,8 @@ void solid_advance(const struct solid *s, struct particles *p, double dt, int n,
     }
 }
 
-void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4], double *det)
+void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
+                  double *det)
 {
     const struct solid_body *const b = &s->body[p->body[i]];
     const struct vtensor2 U = {vset_wide(p->Uxx[i]), vset_wide(p->Uxy[i]), vset_wide(p->Uyx[i]),
@@ -367,7 +378,8 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
 /* Energy of the hourglass force of a pack, J/m, half of it since each pair is met twice. Variational: the
  * sum of k |e|^2/2. The printed force has no potential, since it leaves out how e_ab depends on F: half of
  * force times stretch of the pair, which is the work it takes for small strains. */
-static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pack, const struct particles *p)
+static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pack,
+                              const struct particles *p)
 {
     const struct solid_receiver a = receiver_of(p, pack->i);
     vwide sum = vset_wide(0);
@@ -381,15 +393,16 @@ static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pa
             sum = sum + vload_wide(slot->hourglass) * (ex * ex + ey * ey);
             continue;
         }
-        const vwide x2 = q.x * q.x + q.y * q.y, x = vsqrt_wide(x2), X = vsqrt_wide(q.X * q.X + q.Y * q.Y);
+        const vwide x2 = q.x * q.x + q.y * q.y, x = vsqrt_wide(x2),
+                    X = vsqrt_wide(q.X * q.X + q.Y * q.Y);
         const vwide stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
         sum = sum - vload_wide(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;
     }
     return sum * (0.25 * s->body[pack->body].mass);
 }
 
-void solid_energy(const struct solid *s, const struct particles *p, double *elastic, double *hourglass,
-                  double *det_low)
+void solid_energy(const struct solid *s, const struct particles *p, double *elastic,
+                  double *hourglass, double *det_low)
 {
     *elastic = *hourglass = 0;
     *det_low = INFINITY;

@@ -9,22 +9,23 @@
 
 /* Constants of one body, SI. */
 struct solid_body {
-    double lambda, mu;   /* Lame constants */
+    double lambda, mu; /* Lame constants */
     double density, young;
-    double mass;         /* of a particle per depth, rho0 dp^2 */
-    double viscosity;    /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
-    double sound_speed;  /* c_s of Eq. 29 */
-    double kappa;        /* Eq. 17 */
+    double mass;        /* of a particle per depth, rho0 dp^2 */
+    double viscosity;   /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
+    double sound_speed; /* c_s of Eq. 29 */
+    double kappa;       /* Eq. 17 */
     double gravity[2];
     int law, plane, gradient;
-    bool symmetric;      /* viscous force with both particles' tensors */
-    bool variational;    /* hourglass force from an energy */
+    bool symmetric;   /* viscous force with both particles' tensors */
+    bool variational; /* hourglass force from an energy */
 };
 
 /* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
  * weights that are zero where that lane has no such neighbour. */
 struct solid_slot {
-    double Gx[LANES_WIDE], Gy[LANES_WIDE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    double Gx[LANES_WIDE],
+        Gy[LANES_WIDE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
     double Hx[LANES_WIDE], Hy[LANES_WIDE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
     double X[LANES_WIDE], Y[LANES_WIDE];   /* X_ab, m */
     double hourglass[LANES_WIDE];          /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
@@ -45,18 +46,18 @@ struct solid {
     int64_t n_packs, n_slots;
     struct solid_pack *pack;
     struct solid_slot *slot;
-    bool coupled;             /* meets fluid */
-    bool variational;         /* some body has its hourglass force from an energy */
-    double omega_max;         /* largest frequency of the linearised operator, 1/s */
-    double damping_max;       /* largest rate of its viscous part, 1/s */
-    double stable_step;       /* the largest stable step that follows from both, s */
-    double paper_step;        /* Eq. 29, s */
+    bool coupled;       /* meets fluid */
+    bool variational;   /* some body has its hourglass force from an energy */
+    double omega_max;   /* largest frequency of the linearised operator, 1/s */
+    double damping_max; /* largest rate of its viscous part, 1/s */
+    double stable_step; /* the largest stable step that follows from both, s */
+    double paper_step;  /* Eq. 29, s */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
  * set). */
-enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene, struct particles *p,
-                      struct diag *d) SPHFSI_CHECKED;
+enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
+                      struct particles *p, struct diag *d) SPHFSI_CHECKED;
 
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). */
 void solid_stress(const struct solid *s, struct particles *p);
@@ -77,7 +78,7 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
                   double *det);
 
 /* Strain energy and energy of the hourglass force of all particles, J/m; smallest det F. */
-void solid_energy(const struct solid *s, const struct particles *p, double *elastic, double *hourglass,
-                  double *det_low);
+void solid_energy(const struct solid *s, const struct particles *p, double *elastic,
+                  double *hourglass, double *det_low);
 
 #endif

@@ -20,12 +20,12 @@ static void scramble(double *v, int64_t n, uint64_t seed, const double *moves)
 static double norm(const double *x, const double *y, int64_t n)
 {
     double sum = 0;
-    for (int64_t i = 0; i < n; i++)
-        sum += x[i] * x[i] + y[i] * y[i];
+    for (int64_t i = 0; i < n; i++) sum += x[i] * x[i] + y[i] * y[i];
     return sqrt(sum);
 }
 
-static void scale_to(double *x, double *y, const double *from_x, const double *from_y, int64_t n, double factor)
+static void scale_to(double *x, double *y, const double *from_x, const double *from_y, int64_t n,
+                     double factor)
 {
     for (int64_t i = 0; i < n; i++) {
         x[i] = factor * from_x[i];
@@ -36,8 +36,8 @@ static void scale_to(double *x, double *y, const double *from_x, const double *f
 /* Largest factor by which the acceleration of a field exceeds the field. The field is (x, y) of the
  * particles, displacement or velocity; `amplitude` keeps it in the linear range. Power iteration
  * approaches from below, within a percent or two after so many rounds, which solid_safety covers. */
-static double largest_factor(const struct solid *s, struct particles *p, double *x, double *y, double amplitude,
-                             bool both_signs)
+static double largest_factor(const struct solid *s, struct particles *p, double *x, double *y,
+                             double amplitude, bool both_signs)
 {
     enum { ROUNDS = 60 };
     scramble(x, p->n, 1, p->free);
@@ -74,8 +74,7 @@ void solid_find_step(struct solid *s, struct particles *p)
     memcpy(saved, s->body, sizeof saved);
     double *const kept[4] = {p->vx0, p->vy0, p->ux, p->uy};
     scale_to(kept[0], kept[1], p->vx, p->vy, p->n, 1);
-    for (int k = 0; k < s->n_bodies; k++)
-        s->body[k].gravity[0] = s->body[k].gravity[1] = 0;
+    for (int k = 0; k < s->n_bodies; k++) s->body[k].gravity[0] = s->body[k].gravity[1] = 0;
 
     memset(p->vx, 0, (size_t)p->n * sizeof *p->vx);
     memset(p->vy, 0, (size_t)p->n * sizeof *p->vy);

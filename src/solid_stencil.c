@@ -35,8 +35,7 @@ static enum err buckets_create(struct bucket_grid *g, struct arena *a, const str
     g->first = arena_alloc(a, n_buckets, sizeof *g->first, "buckets of the solid", d);
     g->next = arena_alloc(a, (size_t)p->n, sizeof *g->next, "buckets of the solid", d);
     if (!g->first || !g->next) return ERR_MEMORY;
-    for (size_t k = 0; k < n_buckets; k++)
-        g->first[k] = -1;
+    for (size_t k = 0; k < n_buckets; k++) g->first[k] = -1;
     for (int64_t i = p->n - 1; i >= 0; i--) {
         const int bx = (int)((p->X[i] - g->lower[0]) / g->side);
         const int by = (int)((p->Y[i] - g->lower[1]) / g->side);
@@ -61,10 +60,11 @@ static int compare_index(const void *a, const void *b)
 }
 
 /* Neighbours of i in its own body, ascending: bodies are not bonded to each other. -1: too many. */
-static int neighbours_of(const struct bucket_grid *g, const struct particles *p, double reach, double dp,
-                         int64_t i, int32_t *found)
+static int neighbours_of(const struct bucket_grid *g, const struct particles *p, double reach,
+                         double dp, int64_t i, int32_t *found)
 {
-    const int bx = (int)((p->X[i] - g->lower[0]) / g->side), by = (int)((p->Y[i] - g->lower[1]) / g->side);
+    const int bx = (int)((p->X[i] - g->lower[0]) / g->side),
+              by = (int)((p->Y[i] - g->lower[1]) / g->side);
     int n = 0;
     for (int y = by > 0 ? by - 1 : 0; y <= by + 1 && y < g->ny; y++) {
         for (int x = bx > 0 ? bx - 1 : 0; x <= bx + 1 && x < g->nx; x++) {
@@ -91,8 +91,7 @@ static struct solid_slot *slot_for(struct solid_slot *slots, int *n, int64_t off
     memset(slot, 0, sizeof *slot);
     slot->offset = offset;
     /* Lanes without this neighbour divide by their distance all the same: it must not vanish. */
-    for (int l = 0; l < LANES_WIDE; l++)
-        slot->X[l] = 1e6;
+    for (int l = 0; l < LANES_WIDE; l++) slot->X[l] = 1e6;
     return slot;
 }
 
@@ -119,22 +118,19 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
     for (int i = 0; i < n; i++) {
         for (int j = 0; j <= i; j++) {
             double sum = M[i][j];
-            for (int k = 0; k < j; k++)
-                sum -= C[i][k] * C[j][k];
+            for (int k = 0; k < j; k++) sum -= C[i][k] * C[j][k];
             if (i == j && !(sum > 1e-4 * M[i][i])) return false;
             C[i][j] = i == j ? sqrt(sum) : sum / C[j][j];
         }
     }
     for (int i = 0; i < n; i++) {
         double sum = i == row;
-        for (int k = 0; k < i; k++)
-            sum -= C[i][k] * z[k];
+        for (int k = 0; k < i; k++) sum -= C[i][k] * z[k];
         z[i] = sum / C[i][i];
     }
     for (int i = n - 1; i >= 0; i--) {
         double sum = z[i];
-        for (int k = i + 1; k < n; k++)
-            sum -= C[k][i] * z[k];
+        for (int k = i + 1; k < n; k++) sum -= C[k][i] * z[k];
         z[i] = sum / C[i][i];
     }
     return true;
@@ -144,30 +140,31 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
  * rows give the paper's corrected gradient and all five one that is exact for quadratic fields as well
  * (moving least squares). Where the neighbours cannot tell a quadratic field, as across two particles,
  * the linear one stays. false: not even that. */
-static bool find_moments(const struct solid *s, const struct particles *p, int64_t i, const int32_t *found,
-                         int n, bool quadratic, struct gradient_moments *m)
+static bool find_moments(const struct solid *s, const struct particles *p, int64_t i,
+                         const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
 {
     double M[5][5] = {{0}};
     for (int k = 0; k < n; k++) {
         const double x = reference_distance(p->X[found[k]], p->X[i], s->dp) / s->h;
         const double y = reference_distance(p->Y[found[k]], p->Y[i], s->dp) / s->h;
-        const double weight = -square(s->h * s->dp) * kernel_slope(s->h * sqrt(x * x + y * y), s->h);
+        const double weight =
+            -square(s->h * s->dp) * kernel_slope(s->h * sqrt(x * x + y * y), s->h);
         double b[5];
         basis(x, y, b);
         for (int r = 0; r < 5; r++)
-            for (int c = 0; c < 5; c++)
-                M[r][c] += weight * b[r] * b[c];
+            for (int c = 0; c < 5; c++) M[r][c] += weight * b[r] * b[c];
     }
     memset(m, 0, sizeof *m);
-    m->quadratic = quadratic && solve_row(M, 5, 0, m->inverse[0]) && solve_row(M, 5, 1, m->inverse[1]);
+    m->quadratic =
+        quadratic && solve_row(M, 5, 0, m->inverse[0]) && solve_row(M, 5, 1, m->inverse[1]);
     if (m->quadratic) return true;
     memset(m, 0, sizeof *m);
     return solve_row(M, 2, 0, m->inverse[0]) && solve_row(M, 2, 1, m->inverse[1]);
 }
 
 /* G_ab: the weight of u_b - u_a in the gradient at a, for X_ab = (X, Y). */
-static void gradient_weight(const struct solid *s, const struct gradient_moments *m, double X, double Y,
-                            double G[2])
+static void gradient_weight(const struct solid *s, const struct gradient_moments *m, double X,
+                            double Y, double G[2])
 {
     double b[5];
     basis(-X / s->h, -Y / s->h, b);
@@ -180,11 +177,13 @@ static void gradient_weight(const struct solid *s, const struct gradient_moments
 }
 
 /* Fills one lane of a slot with the constants of the pair (i, j). */
-static void slot_set(struct solid_slot *slot, int lane, const struct solid *s, const struct particles *p,
-                     const struct gradient_moments *moments, int64_t i, int64_t j)
+static void slot_set(struct solid_slot *slot, int lane, const struct solid *s,
+                     const struct particles *p, const struct gradient_moments *moments, int64_t i,
+                     int64_t j)
 {
     const struct solid_body *const b = &s->body[p->body[i]];
-    const double X = reference_distance(p->X[i], p->X[j], s->dp), Y = reference_distance(p->Y[i], p->Y[j], s->dp);
+    const double X = reference_distance(p->X[i], p->X[j], s->dp),
+                 Y = reference_distance(p->Y[i], p->Y[j], s->dp);
     const double r2 = X * X + Y * Y, V = s->dp * s->dp;
     double G[2], H[2];
     gradient_weight(s, &moments[i], X, Y, G);
@@ -200,7 +199,8 @@ static void slot_set(struct solid_slot *slot, int lane, const struct solid *s, c
 
 static int compare_slot(const void *a, const void *b)
 {
-    const int64_t x = ((const struct solid_slot *)a)->offset, y = ((const struct solid_slot *)b)->offset;
+    const int64_t x = ((const struct solid_slot *)a)->offset,
+                  y = ((const struct solid_slot *)b)->offset;
     return (x > y) - (x < y);
 }
 
@@ -231,8 +231,7 @@ static uint64_t slots_hash(const struct solid_slot *slots, int n)
 {
     const unsigned char *bytes = (const unsigned char *)slots;
     uint64_t h = 0xcbf29ce484222325u;
-    for (size_t k = 0; k < (size_t)n * sizeof *slots; k++)
-        h = (h ^ bytes[k]) * 0x100000001b3u;
+    for (size_t k = 0; k < (size_t)n * sizeof *slots; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
     return h;
 }
 
@@ -275,8 +274,7 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
                             const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
-    while (sets.size < 2 * (size_t)s->n_packs)
-        sets.size *= 2;
+    while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
     sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
     struct solid_slot *const work =
         arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
@@ -299,23 +297,26 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
 }
 
 /* Moments of every particle, and the neighbours' number checked on the way. */
-static enum err all_moments(const struct solid *s, const struct bucket_grid *g, const struct particles *p,
-                            struct gradient_moments *moments, struct diag *d)
+static enum err all_moments(const struct solid *s, const struct bucket_grid *g,
+                            const struct particles *p, struct gradient_moments *moments,
+                            struct diag *d)
 {
     int32_t found[MAX_NEIGHBOURS];
     for (int64_t i = 0; i < p->n; i++) {
         const int n = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
         if (n < 0)
-            return diag_fail(d, ERR_INPUT,
-                             "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
-                             "are bodies sampled twice, or is h_over_dp too large?",
-                             p->X[i], p->Y[i], MAX_NEIGHBOURS);
+            return diag_fail(
+                d, ERR_INPUT,
+                "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
+                "are bodies sampled twice, or is h_over_dp too large?",
+                p->X[i], p->Y[i], MAX_NEIGHBOURS);
         const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
         if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
-            return diag_fail(d, ERR_INPUT,
-                             "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
-                             "deformation gradient; a body needs at least 2 particles across",
-                             p->X[i], p->Y[i]);
+            return diag_fail(
+                d, ERR_INPUT,
+                "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
+                "deformation gradient; a body needs at least 2 particles across",
+                p->X[i], p->Y[i]);
     }
     return ERR_OK;
 }

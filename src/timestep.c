@@ -21,18 +21,17 @@ static void fluid_bounds(struct simulation *s)
 
 double timestep_choose(struct simulation *s, double t_limit, bool *hits)
 {
-    for (int k = 0; k < BOUND_COUNT; k++)
-        s->dt_bound[k] = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
     if (s->effects & FX_FLUID) fluid_bounds(s);
-    if ((s->effects & FX_SOLID) && !(s->effects & FX_MULTIRATE)) s->dt_bound[BOUND_solid] = s->dt_solid;
+    if ((s->effects & FX_SOLID) && !(s->effects & FX_MULTIRATE))
+        s->dt_bound[BOUND_solid] = s->dt_solid;
     const double fixed = s->scene->numerics.fixed_step;
     if (fixed > 0)
         for (int k = 0; k < BOUND_COUNT; k++)
             s->dt_bound[k] = k == BOUND_fixed ? fixed : (double)INFINITY;
 
     double dt = (double)INFINITY;
-    for (int k = 0; k < BOUND_COUNT; k++)
-        dt = min2(dt, s->dt_bound[k]);
+    for (int k = 0; k < BOUND_COUNT; k++) dt = min2(dt, s->dt_bound[k]);
     /* Two equal steps rather than one full and a sliver. */
     const double left = t_limit - s->state.time;
     if (left < 2 * dt) s->dt_bound[BOUND_output] = left <= dt ? left : 0.5 * left;

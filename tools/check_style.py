@@ -18,8 +18,8 @@ FLOORS = [
     "base simd tensor2 errors",
     "fields particles morton cells smoothing eos",
     "params effects case expr units geometry motion scene",
-    "fluid variants wall solid material interface monitor ledger",
-    "timestep symplectic verlet multirate simulation bounds phases state",
+    "fluid variants solid material",
+    "simulation timestep integrators symplectic verlet coupled monitor ledger bounds phases state",
     "folder json probes snapshot checkpoint report series",
     "sphfsi session explain run api main",
 ]
