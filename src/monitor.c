@@ -97,6 +97,7 @@ static struct finding smallest_det(const struct particles *p)
     struct finding f = {-1, "det F", (double)INFINITY};
     for (int64_t i = 0; i < p->n; i++) {
         const double det = (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i];
+        if (isnan(det)) return (struct finding){i, "det F", det}; /* nothing compares with it */
         if (!(det >= f.value)) f = (struct finding){i, "det F", det};
     }
     return f;
