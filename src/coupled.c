@@ -130,7 +130,8 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double fixed = s->scene->numerics.fixed_step;
     s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
     const double bound = fixed > 0 ? fixed : s->dt_solid;
-    const double left = t_limit - st->time, steps = ceil(left / bound);
+    /* Round-off of the times must not add a step. */
+    const double left = t_limit - st->time, steps = ceil(left / bound - 1e-6);
     const bool hits = steps <= SOLID_BATCH;
     const int n = hits ? (int)max2(1, steps) : SOLID_BATCH;
     /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
