@@ -331,22 +331,30 @@ static void kick_and_drift(struct particles *p, double kick, double drift)
     }
 }
 
+/* Threads that pay: each needs enough packs between two barriers to outweigh them. */
+static int solid_threads(const struct solid *s)
+{
+    enum { PACKS_PER_THREAD = 96 };
+    const int64_t useful = s->n_packs / PACKS_PER_THREAD;
+    return useful < 1 ? 1 : useful < thread_count() ? (int)useful : thread_count();
+}
+
 void solid_stress(const struct solid *s, struct particles *p)
 {
-#pragma omp parallel
+#pragma omp parallel num_threads(solid_threads(s))
     stress_loop(s, p);
 }
 
 void solid_forces(const struct solid *s, struct particles *p)
 {
-#pragma omp parallel
+#pragma omp parallel num_threads(solid_threads(s))
     forces_loop(s, p);
 }
 
 void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     const double first = centred ? 0.5 * dt : 0;
-#pragma omp parallel
+#pragma omp parallel num_threads(solid_threads(s))
     {
         if (centred) kick_and_drift(p, 0, first);
         for (int k = 0; k < n; k++) {
