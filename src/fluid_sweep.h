@@ -275,20 +275,48 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     }
 }
 
-SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT],
-                              const struct cells *c, unsigned fx)
+/* Cells that a thread takes at once. */
+enum { CELLS_AT_ONCE = 16 };
+
+/* A share of the active cells. Stamped outside of any parallel region: the compiler turns the body of a
+ * region into a function of its own before it can see that fx is a constant. */
+typedef void SWEEP(share)(const struct fluid *f, struct particles *p, const struct cells *c,
+                          int32_t first, int32_t end, const struct lane_constants *k,
+                          struct fluid_extremes *top);
+
+#define VARIANT(variant, set)                                                                      \
+    static void SWEEP(share_##variant)(const struct fluid *f, struct particles *p,                 \
+                                       const struct cells *c, int32_t first, int32_t end,          \
+                                       const struct lane_constants *k, struct fluid_extremes *top) \
+    {                                                                                              \
+        const struct lane_constants constants = *k;                                                \
+        for (int32_t m = first; m < end; m++)                                                      \
+            rates_of_cell(f, p, c, c->kind[KIND_FLUID].active[m], &constants, (set), top);         \
+    }
+#include "variants.def"
+VARIANT(any, f->effects &PAIR_EFFECTS)
+#undef VARIANT
+
+static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                       SWEEP(share) * share)
 {
-    const struct cell_list *list = &c->kind[KIND_FLUID];
+    const int32_t n_active = c->kind[KIND_FLUID].n_active;
+    const int32_t shares = (n_active + CELLS_AT_ONCE - 1) / CELLS_AT_ONCE;
     const struct fluid_constants *const fk = &f->k;
     const double per_c2 = fk->h / square(fk->c0);
-    const struct lane_constants k = {vset((real)(fk->alpha * fk->c0 * fk->rho0)),
-                                     vset((real)(fk->gravity[0] * per_c2)),
-                                     vset((real)(fk->gravity[1] * per_c2)), vset((real)0.01)};
+    const struct lane_constants k = {
+        vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+        vset((real)(fk->gravity[0] * per_c2)),
+        vset((real)(fk->gravity[1] * per_c2)),
+        vset((real)0.01),
+    };
     double acceleration2 = 0, approach = 0;
-#pragma omp parallel for schedule(dynamic, 16) reduction(max : acceleration2, approach)
-    for (int32_t m = 0; m < list->n_active; m++) {
+#pragma omp parallel for schedule(dynamic) reduction(max : acceleration2, approach)
+    for (int32_t m = 0; m < shares; m++) {
+        const int32_t first = m * CELLS_AT_ONCE;
+        const int32_t end = first + CELLS_AT_ONCE < n_active ? first + CELLS_AT_ONCE : n_active;
         struct fluid_extremes top = {acceleration2, approach};
-        rates_of_cell(f, &kinds[KIND_FLUID], c, list->active[m], &k, fx, &top);
+        share(f, &kinds[KIND_FLUID], c, first, end, &k, &top);
         acceleration2 = top.acceleration2;
         approach = top.approach;
     }
@@ -299,16 +327,11 @@ SPHFSI_INLINE void rates_body(struct fluid *f, struct particles kinds[KIND_COUNT
     static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT], \
                                        const struct cells *c)                                \
     {                                                                                        \
-        rates_body(f, kinds, c, (set));                                                      \
+        all_shares(f, kinds, c, SWEEP(share_##variant));                                     \
     }
 #include "variants.def"
+VARIANT(any, ANY_EFFECTS)
 #undef VARIANT
-
-static void SWEEP(rates_any)(struct fluid *f, struct particles kinds[KIND_COUNT],
-                             const struct cells *c)
-{
-    rates_body(f, kinds, c, f->effects & PAIR_EFFECTS);
-}
 
 #define SWEEPS_ROW(variant, set)                                                        \
     {                                                                                   \
