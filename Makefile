@@ -5,6 +5,7 @@
 #   make test            build and run the tests           (FILTER=cells for some of them)
 #   make test-sanitize   the quick tests under ASan and UBSan
 #   make bench           build and run bench/*.c
+#   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
 #   make check | format  style, layers and exported symbols | clang-format in place
 #   make install         to PREFIX (/usr/local), below DESTDIR
@@ -25,7 +26,7 @@ Q       := $(if $(V),,@)
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate check,$(GOALS)),plot))
+  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate results check,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -70,7 +71,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: all help debug sanitize serial test test-sanitize bench gate check format info install \
+.PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -134,8 +135,12 @@ gate: $(PROGRAM)
 	   ./$(PROGRAM) cases/gate.cfg --out $(OUT) $(if $(DP),--set 'dp=$(DP)') $(ARGS); \
 	 fi
 	$(Q)$(PROJECT_PYTHON) tools/plot_m1.py $(OUT) --out $(OUT)/m1.png
-	$(Q)$(PROJECT_PYTHON) tools/plot_fields.py $(OUT)
+	$(Q)$(PROJECT_PYTHON) tools/plot_fields.py $(OUT) --time 0.08 0.16 0.24 0.36 \
+	  --window -0.01 0.45 -0.01 0.17
 	@echo "pictures:"; ls $(OUT)/*.png | sed 's/^/  /'
+
+results: $(PROGRAM)
+	$(Q)$(PROJECT_PYTHON) tools/results.py $(ARGS)
 
 check: $(LIB)
 	@$(PROJECT_PYTHON) tools/check_style.py --library $(LIB)
