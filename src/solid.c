@@ -31,6 +31,14 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
     };
 }
 
+/* Threads that pay: each needs enough packs between two barriers to outweigh them. */
+static int useful_threads(const struct solid *s)
+{
+    enum { PACKS_PER_THREAD = 96 };
+    const int64_t useful = s->n_packs / PACKS_PER_THREAD;
+    return useful < 1 ? 1 : useful < thread_count() ? (int)useful : thread_count();
+}
+
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
                       struct particles *p, struct diag *d)
 {
@@ -47,7 +55,9 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         s->variational |= s->body[k].variational;
         s->paper_step = min2(s->paper_step, 0.6 * s->h / s->body[k].sound_speed); /* Eq. 29 */
     }
-    return solid_stencil_create(s, a, p, d);
+    TRY(solid_stencil_create(s, a, p, d));
+    s->threads = useful_threads(s);
+    return ERR_OK;
 }
 
 /* Writes the first `lanes` lanes only: the rest belongs to the next pack. */
@@ -331,30 +341,22 @@ static void kick_and_drift(struct particles *p, double kick, double drift)
     }
 }
 
-/* Threads that pay: each needs enough packs between two barriers to outweigh them. */
-static int solid_threads(const struct solid *s)
-{
-    enum { PACKS_PER_THREAD = 96 };
-    const int64_t useful = s->n_packs / PACKS_PER_THREAD;
-    return useful < 1 ? 1 : useful < thread_count() ? (int)useful : thread_count();
-}
-
 void solid_stress(const struct solid *s, struct particles *p)
 {
-#pragma omp parallel num_threads(solid_threads(s))
+#pragma omp parallel num_threads(s->threads)
     stress_loop(s, p);
 }
 
 void solid_forces(const struct solid *s, struct particles *p)
 {
-#pragma omp parallel num_threads(solid_threads(s))
+#pragma omp parallel num_threads(s->threads)
     forces_loop(s, p);
 }
 
 void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     const double first = centred ? 0.5 * dt : 0;
-#pragma omp parallel num_threads(solid_threads(s))
+#pragma omp parallel num_threads(s->threads)
     {
         if (centred) kick_and_drift(p, 0, first);
         for (int k = 0; k < n; k++) {

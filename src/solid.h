@@ -44,6 +44,7 @@ struct solid {
     struct solid_body *body;
     double h, dp;
     int64_t n_packs, n_slots;
+    int threads; /* that its loops use */
     struct solid_pack *pack;
     struct solid_slot *slot;
     bool coupled;       /* meets fluid */
