@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: MIT
+ * What a step costs: ns per fluid particle and force evaluation by phase, ns per solid particle and
+ * step, and the machine's own rates to hold them against. Prints CSV, asserts nothing.
+ *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
+#include "simd.h"
+#include "simulation.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+enum { MAX_REPS = 99 };
+
+struct bench {
+    FILE *out;
+    int reps, all_threads;
+    double sample[PHASE_COUNT + 1][MAX_REPS]; /* of the run at hand; the last row is their sum */
+};
+
+/* --- output --- */
+
+static int compare_double(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void print_row(const struct bench *b, const char *what, const char *variant, int64_t n,
+                      int threads, const char *part, const char *unit, double *sample)
+{
+    qsort(sample, (size_t)b->reps, sizeof *sample, compare_double);
+    const double median = 0.5 * (sample[(b->reps - 1) / 2] + sample[b->reps / 2]);
+    fprintf(b->out, "%s,%s,%lld,%d,%s,%s,%.4g,%.4g,%.4g\n", what, variant, (long long)n, threads,
+            part, unit, median, sample[0], sample[b->reps - 1]);
+    fflush(b->out);
+}
+
+static void print_machine(const struct bench *b)
+{
+    char line[256] = "", cpu[256] = "unknown processor";
+    FILE *const info = fopen("/proc/cpuinfo", "r");
+    while (info && fgets(line, sizeof line, info)) {
+        if (strncmp(line, "model name", 10) != 0 || !strchr(line, ':')) continue;
+        line[strcspn(line, "\n")] = '\0';
+        strcpy(cpu, strchr(line, ':') + 1);
+        break;
+    }
+    if (info) fclose(info);
+#ifdef __clang__
+    const char *const compiler = "";
+#else
+    const char *const compiler = "gcc ";
+#endif
+    double load[1] = {-1};
+    if (getloadavg(load, 1) < 1) load[0] = -1;
+    fprintf(
+        b->out,
+        "# %s, %d threads, load %.1f before the start; vectors of %d float, %d double, %d wide\n",
+        cpu + (cpu[0] == ' '), b->all_threads, load[0], LANES_FLOAT, LANES_DOUBLE, LANES_WIDE);
+    fprintf(b->out, "# %s%s\n", compiler, __VERSION__);
+    fprintf(b->out, "what,variant,particles,threads,part,unit,median,min,max\n");
+}
+
+static void set_threads(int n)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(n);
+#else
+    (void)n;
+#endif
+}
+
+/* --- the machine --- */
+
+/* Chains of fma, as many as hide its latency and still fit sixteen registers. */
+enum { CHAINS = 10, ROUNDS = 2000000 };
+
+static double run_float(void)
+{
+    vfloat x[CHAINS];
+    for (int c = 0; c < CHAINS; c++) x[c] = vset_float((float)c);
+    const vfloat a = vset_float(0.999f), b = vset_float(0.001f);
+    for (int k = 0; k < ROUNDS; k++)
+        for (int c = 0; c < CHAINS; c++) x[c] = vfma_float(x[c], a, b);
+    double sum = 0;
+    for (int c = 0; c < CHAINS; c++) sum += (double)vsum_float(x[c]);
+    return sum;
+}
+
+static double run_wide(void)
+{
+    vwide x[CHAINS];
+    for (int c = 0; c < CHAINS; c++) x[c] = vset_wide(c);
+    const vwide a = vset_wide(0.999), b = vset_wide(0.001);
+    for (int k = 0; k < ROUNDS; k++)
+        for (int c = 0; c < CHAINS; c++) x[c] = vfma_wide(x[c], a, b);
+    double sum = 0;
+    for (int c = 0; c < CHAINS; c++) sum += x[c][0];
+    return sum;
+}
+
+static void bench_fma(struct bench *b, int threads, const char *name, double (*run)(void),
+                      int lanes)
+{
+    double sum = 0;
+    for (int r = -1; r < b->reps; r++) { /* round -1 wakes the clock up */
+        const double start = wall_clock();
+#pragma omp parallel num_threads(threads) reduction(+ : sum)
+        sum += run();
+        const double seconds = wall_clock() - start;
+        if (r >= 0) b->sample[0][r] = 1e-9 * threads * (double)CHAINS * ROUNDS * lanes / seconds;
+    }
+    if (isnan(sum)) puts("# the chains are not to be optimised away");
+    print_row(b, "machine", "fma", 0, threads, name, "1e9/s", b->sample[0]);
+}
+
+/* Arrays that no cache holds; each thread copies, and has touched first, a share of its own. */
+static void bench_copy(struct bench *b, int threads)
+{
+    const size_t n = (size_t)1 << 27;
+    char *const from = malloc(n), *const to = malloc(n);
+    for (int r = -1; from && to && r < b->reps; r++) {
+        const double start = wall_clock();
+#pragma omp parallel for schedule(static) num_threads(threads)
+        for (int k = 0; k < threads; k++) {
+            const size_t begin = n * (size_t)k / (size_t)threads,
+                         end = n * (size_t)(k + 1) / (size_t)threads;
+            if (r < 0) memset(from + begin, 1, end - begin);
+            memcpy(to + begin, from + begin, end - begin);
+        }
+        if (r >= 0) b->sample[0][r] = 2e-9 * (double)n / (wall_clock() - start);
+    }
+    if (from && to)
+        print_row(b, "machine", "copy", 0, threads, "read + write", "GB/s", b->sample[0]);
+    free(from);
+    free(to);
+}
+
+/* --- simulations --- */
+
+struct sim {
+    struct scene scene;
+    struct simulation s;
+    struct diag diag;
+};
+
+static bool sim_open(struct sim *x, const char *text)
+{
+    memset(x, 0, sizeof *x);
+    if (scene_parse(&x->scene, text, "bench.cfg", 0, NULL, &x->diag)) {
+        fprintf(stderr, "%s\n", x->diag.text);
+        return false;
+    }
+    if (simulation_create(&x->s, &x->scene, &x->diag)) {
+        fprintf(stderr, "%s\n", x->diag.text);
+        scene_free(&x->scene);
+        return false;
+    }
+    return true;
+}
+
+static void sim_close(struct sim *x)
+{
+    simulation_free(&x->s);
+    scene_free(&x->scene);
+}
+
+/* A tank with a swirl of a twentieth of the speed of sound, so that sorting comes up as in a flow. */
+static void fluid_case(char *text, size_t size, double n, bool rich, const char *precision)
+{
+    snprintf(text, size,
+             "dp = %.17g\nend_time = 1e6\ngravity = 0, -9.81\nintegrator = symplectic\n"
+             "precision = %s\n"
+             "[fluid water]\nshape = box 0, 0, 1, 1\nsound_speed = 50\nsurface = 1\n"
+             "artificial_viscosity = %g\ndensity_diffusion = %g\n"
+             "velocity = 2.5*sin(3.14159*x)*cos(3.14159*y), -2.5*cos(3.14159*x)*sin(3.14159*y)\n"
+             "[wall tank]\nshape = polyline thickness -%.17g: 0, 1.2; 0, 0; 1, 0; 1, 1.2\n",
+             1 / sqrt(n), precision, rich ? 0.05 : 0.0, rich ? 0.1 : 0.0, 4 / sqrt(n));
+}
+
+/* One repetition of `steps` steps; false where a guard has stopped it. */
+static bool time_steps(struct bench *b, struct sim *x, int rep, int steps)
+{
+    double before[PHASE_COUNT];
+    memcpy(before, x->s.phase_seconds, sizeof before);
+    const int64_t evaluations = x->s.state.evaluations;
+    for (int k = 0; k < steps; k++) {
+        if (!simulation_step(&x->s, 1e6, &x->diag)) continue;
+        fprintf(stderr, "%s\n", x->diag.text);
+        return false;
+    }
+    if (rep < 0) return true;
+    const double per =
+        1e9 / (double)(x->s.state.evaluations - evaluations) / (double)x->s.kind[KIND_FLUID].n;
+    b->sample[PHASE_COUNT][rep] = 0;
+    for (int p = 0; p < PHASE_COUNT; p++) {
+        b->sample[p][rep] = per * (x->s.phase_seconds[p] - before[p]);
+        b->sample[PHASE_COUNT][rep] += b->sample[p][rep];
+    }
+    return true;
+}
+
+static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
+{
+    static const enum phase parts[] = {PHASE_sort, PHASE_lanes, PHASE_wall, PHASE_fluid,
+                                       PHASE_update};
+    char text[1024];
+    struct sim x;
+    fluid_case(text, sizeof text, n, rich, precision);
+    if (!sim_open(&x, text)) return;
+    const int steps = (int)max2(4, 5e5 / n);
+    bool sound = true;
+    for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r, steps);
+    const int64_t count = x.s.kind[KIND_FLUID].n;
+    const char *const variant = x.s.fluid.sweeps->name;
+    for (size_t k = 0; sound && k < COUNT_OF(parts); k++)
+        print_row(b, "fluid", variant, count, threads, phase_names[parts[k]],
+                  "ns/particle/evaluation", b->sample[parts[k]]);
+    if (sound)
+        print_row(b, "fluid", variant, count, threads, "all", "ns/particle/evaluation",
+                  b->sample[PHASE_COUNT]);
+    sim_close(&x);
+}
+
+/* A swinging plate, 20 particles across. */
+static void bench_solid(struct bench *b, bool paper, int threads)
+{
+    enum { STEPS = 200 };
+    char text[1024];
+    struct sim x;
+    snprintf(text, sizeof text,
+             "dp = 1 mm\nend_time = 1\n"
+             "[solid plate]\nshape = box 0, 0, 0.22, 0.02\nclamp = box 0, 0, 0.02, 0.02\n"
+             "density = 1000\nyoung = 2e6\npoisson = 0.3975\nvelocity = 0, 0.5*x/(0.22 m)\n%s",
+             paper ? "gradient = linear\nhourglass_form = printed\n" : "");
+    if (!sim_open(&x, text)) return;
+    struct particles *const p = &x.s.kind[KIND_SOLID];
+    for (int r = -1; r < b->reps; r++) {
+        const double start = wall_clock();
+        solid_advance(&x.s.solid, p, x.s.dt_solid, STEPS, false);
+        if (r >= 0) b->sample[0][r] = 1e9 * (wall_clock() - start) / STEPS / (double)p->n;
+    }
+    print_row(b, "solid", paper ? "paper" : "default", p->n, threads, "step", "ns/particle/step",
+              b->sample[0]);
+    sim_close(&x);
+}
+
+static void bench_all(struct bench *b, int threads, double largest)
+{
+    set_threads(threads);
+    bench_fma(b, threads, "float", run_float, LANES_FLOAT);
+    bench_fma(b, threads, "wide", run_wide, LANES_WIDE);
+    bench_copy(b, threads);
+    bench_solid(b, false, threads);
+    bench_solid(b, true, threads);
+    for (double n = 1e4; n <= largest; n *= 10) {
+        for (int rich = 0; rich < 2; rich++) {
+            bench_fluid(b, n, rich, "mixed", threads);
+            bench_fluid(b, n, rich, "double", threads);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    struct bench b = {.out = stdout, .reps = 5, .all_threads = thread_count()};
+    double largest = 1e5;
+    for (int k = 1; k < argc; k++) {
+        const bool more = k + 1 < argc;
+        if (strcmp(argv[k], "--large") == 0) {
+            largest = 1e6;
+        } else if (more && strcmp(argv[k], "--reps") == 0) {
+            b.reps = (int)max2(1, min2(MAX_REPS, atof(argv[++k])));
+        } else if (more && strcmp(argv[k], "--out") == 0) {
+            b.out = fopen(argv[++k], "w");
+            if (!b.out) return perror(argv[k]), 1;
+        } else {
+            fprintf(stderr, "usage: %s [--large] [--reps N] [--out FILE]\n", argv[0]);
+            return 1;
+        }
+    }
+    print_machine(&b);
+    bench_all(&b, 1, largest);
+    if (b.all_threads > 1) bench_all(&b, b.all_threads, largest);
+    if (b.out != stdout) fclose(b.out);
+    return 0;
+}
