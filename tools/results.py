@@ -131,7 +131,8 @@ Written by `make results` (`tools/results.py`); nothing here is typed by hand. P
 ## Elastic gate (Sec. 3.3)
 
 Horizontal displacement of the free end. Measured (Antoci et al. 2007): peak 46.4 mm at 0.16 s, 37.3 mm at
-0.36 s; RMS is over its nine points. Plane strain and hourglass coefficient 50, as in the paper, unless said otherwise.
+0.36 s; RMS is over its nine points. Plane strain and hourglass coefficient 50, as in the paper, unless said
+otherwise.
 
 | run | peak (mm) | at (s) | at 0.36 s (mm) | RMS (mm) | fluid steps | solid steps | seconds (threads) |
 |---|---|---|---|---|---|---|---|
