@@ -78,6 +78,7 @@ static void test_every_variant_is_compared(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_mixed);
     RUN_TEST(test_double);

@@ -107,6 +107,7 @@ static void test_tiny_densities_keep_their_digits(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_dam_break_is_the_same_flow);
     RUN_TEST(test_far_from_the_origin);

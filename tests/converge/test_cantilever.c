@@ -113,6 +113,7 @@ static void test_printed_form_agrees_with_the_prototype(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_period_and_amplitude_converge);
     RUN_TEST(test_printed_form_agrees_with_the_prototype);

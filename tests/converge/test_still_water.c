@@ -106,7 +106,7 @@ static void test_pressure_within_two_percent(void)
 }
 
 /* Let go without pressure the water bounces like a spring and comes to rest: a hundredth of the
- * kinetic energy after 2.5 s; none of it appears from nowhere. */
+ * kinetic energy after 1.8 s; none of it appears from nowhere. */
 static void test_kinetic_energy_decays(void)
 {
     rig_open(&rig, tank, NULL);
@@ -115,7 +115,7 @@ static void test_kinetic_energy_decays(void)
         rig_run(&rig, t);
         early = fmax(early, simulation_ledger(&rig.sim).kinetic);
     }
-    for (double t = 2.5; t < 2.8; t += 0.01) {
+    for (double t = 1.8; t < 2; t += 0.01) {
         rig_run(&rig, t);
         const struct ledger row = simulation_ledger(&rig.sim);
         late = fmax(late, row.kinetic);
@@ -129,6 +129,7 @@ static void test_kinetic_energy_decays(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_hydrostatic_pressure);
     RUN_TEST(test_pressure_within_two_percent);

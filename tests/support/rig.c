@@ -6,6 +6,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 enum { MAX_SETS = 16 };
 
@@ -65,6 +68,13 @@ void rig_evaluate(struct rig *r)
 {
     double seconds[3] = {0};
     fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
+}
+
+void rig_one_thread(void)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(1);
+#endif
 }
 
 double noise(uint64_t *state)

@@ -29,6 +29,10 @@ void rig_sort(struct rig *r);
 /* One evaluation of the fluid's rates, the walls' pressures and the fluid's force on solids. */
 void rig_evaluate(struct rig *r);
 
+/* Tests of small scenes run beside each other, and a barrier of threads that share a core costs more
+ * than the work: one thread from here on. */
+void rig_one_thread(void);
+
 /* The next of a fixed sequence of numbers, evenly spread over [-1, 1). */
 double noise(uint64_t *state);
 

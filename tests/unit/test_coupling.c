@@ -186,6 +186,7 @@ static void test_no_force_out_of_touch(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_pair_by_hand);
     RUN_TEST(test_forces_balance_in_double);

@@ -248,6 +248,7 @@ static void test_bound_scales_as_it_must(void)
 
 int main(void)
 {
+    rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_bounds_by_hand);
     RUN_TEST(test_steps_before_a_limit_are_equal);
