@@ -212,7 +212,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     struct sim x;
     fluid_case(text, sizeof text, n, rich, precision);
     if (!sim_open(&x, text)) return;
-    const int steps = (int)max2(4, 5e5 / n);
+    const int steps = (int)max2(10, 5e5 / n);
     bool sound = true;
     for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r, steps);
     const int64_t count = x.s.kind[KIND_FLUID].n;
