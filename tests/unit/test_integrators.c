@@ -1,0 +1,307 @@
+/* SPDX-License-Identifier: MIT
+ * One step of each integrator against Eqs. 22-27 written out, with the rates taken from the sweeps;
+ * and motions that the schemes hold exactly. */
+#include "integrators.h"
+
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char gate[] =
+    "dp = 1 cm\nend_time = 1\ngravity = 0.3, -9.81\nprecision = double\n"
+    "[numerics]\nskin = 1\nfixed_step = 1e-5\n"
+    "[fluid water]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nsurface = 0.1\n"
+    "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
+    "[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.4, 0\n"
+    "[solid gate]\nshape = box 0.1, 0, 0.13, 0.15\nclamp = box 0.1, 0.12, 0.13, 0.15\n"
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+
+enum { MOST = 128 };
+struct memory {
+    double x[MOST], y[MOST], u[MOST], v[MOST], d[MOST], ax[MOST], ay[MOST], rate[MOST];
+};
+
+static struct rig rig;
+static struct particles *fluid, *solid;
+static struct memory f0, f1, s0, s1;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void open(const char *integrator, const char *rate)
+{
+    rig_open(&rig, gate, integrator, rate, NULL);
+    fluid = &rig.sim.kind[KIND_FLUID];
+    solid = &rig.sim.kind[KIND_SOLID];
+    TEST_ASSERT_TRUE(fluid->n <= MOST && solid->n <= MOST);
+    uint64_t seed = 31;
+    for (int64_t i = 0; i < fluid->n; i++) {
+        fluid->vx[i] = 0.1 * noise(&seed);
+        fluid->vy[i] = 0.1 * noise(&seed);
+        fluid->dens[i] += 0.01 * noise(&seed);
+        if (!fluid->vx_old) continue;
+        fluid->vx_old[i] = fluid->vx[i];
+        fluid->vy_old[i] = fluid->vy[i];
+        fluid->dens_old[i] = fluid->dens[i];
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        solid->ux[i] = solid->free[i] * 1e-5 * noise(&seed);
+        solid->uy[i] = solid->free[i] * 1e-5 * noise(&seed);
+        solid->vx[i] = solid->wx[i] = solid->free[i] * 0.1 * noise(&seed);
+        solid->vy[i] = solid->wy[i] = solid->free[i] * 0.1 * noise(&seed);
+    }
+    place_solid(solid);
+}
+
+/* State and rates as they stand. */
+static void take_fluid(struct memory *m)
+{
+    const size_t bytes = (size_t)fluid->n * sizeof(double);
+    memcpy(m->x, fluid->x, bytes);
+    memcpy(m->y, fluid->y, bytes);
+    memcpy(m->u, fluid->vx, bytes);
+    memcpy(m->v, fluid->vy, bytes);
+    memcpy(m->d, fluid->dens, bytes);
+    memcpy(m->ax, fluid->ax, bytes);
+    memcpy(m->ay, fluid->ay, bytes);
+    memcpy(m->rate, fluid->ddens, bytes);
+}
+
+static void put_fluid(const struct memory *m)
+{
+    const size_t bytes = (size_t)fluid->n * sizeof(double);
+    memcpy(fluid->x, m->x, bytes);
+    memcpy(fluid->y, m->y, bytes);
+    memcpy(fluid->vx, m->u, bytes);
+    memcpy(fluid->vy, m->v, bytes);
+    memcpy(fluid->dens, m->d, bytes);
+}
+
+/* x, y of a solid's memory are displacements; ax, ay its acceleration. */
+static void take_solid(struct memory *m)
+{
+    const size_t bytes = (size_t)solid->n * sizeof(double);
+    memcpy(m->x, solid->ux, bytes);
+    memcpy(m->y, solid->uy, bytes);
+    memcpy(m->u, solid->vx, bytes);
+    memcpy(m->v, solid->vy, bytes);
+    memcpy(m->ax, solid->sx, bytes);
+    memcpy(m->ay, solid->sy, bytes);
+}
+
+static void put_solid(const struct memory *m)
+{
+    const size_t bytes = (size_t)solid->n * sizeof(double);
+    memcpy(solid->ux, m->x, bytes);
+    memcpy(solid->uy, m->y, bytes);
+    memcpy(solid->vx, m->u, bytes);
+    memcpy(solid->vy, m->v, bytes);
+}
+
+static void rates(void)
+{
+    rig_evaluate(&rig);
+    solid_stress(&rig.sim.solid, solid);
+    solid_forces(&rig.sim.solid, solid);
+}
+
+/* Positions are held to 1e-16 m, velocities and densities to 1e-16 of some tenths; rates are the same
+ * numbers, so that only the last digits of the sums may differ. */
+static void compare(const struct memory *f, const struct memory *s)
+{
+    for (int64_t i = 0; i < fluid->n; i++) {
+        assert_near(1e-15, f->x[i], fluid->x[i], "x of the fluid");
+        assert_near(1e-15, f->y[i], fluid->y[i], "y of the fluid");
+        assert_near(1e-14, f->u[i], fluid->vx[i], "vx of the fluid");
+        assert_near(1e-14, f->v[i], fluid->vy[i], "vy of the fluid");
+        assert_near(1e-15, f->d[i], fluid->dens[i], "dens of the fluid");
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        assert_near(1e-16, s->x[i], solid->ux[i], "ux of the solid");
+        assert_near(1e-16, s->y[i], solid->uy[i], "uy of the solid");
+        assert_near(1e-12, s->u[i], solid->vx[i], "vx of the solid");
+        assert_near(1e-12, s->v[i], solid->vy[i], "vy of the solid");
+        assert_near(1e-16, solid->X[i] + s->x[i], solid->x[i], "x of the solid");
+    }
+}
+
+/* Eqs. 22-24 for fluid and solid at one rate. */
+static void test_symplectic_step(void)
+{
+    open("integrator=symplectic", "numerics.multirate=off");
+    const double dt = 1e-5;
+    rates();
+    take_fluid(&f0);
+    take_solid(&s0);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        fluid->x[i] += 0.5 * dt * f0.u[i];
+        fluid->y[i] += 0.5 * dt * f0.v[i];
+        fluid->vx[i] += 0.5 * dt * f0.ax[i];
+        fluid->vy[i] += 0.5 * dt * f0.ay[i];
+        fluid->dens[i] += 0.5 * dt * f0.rate[i];
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        solid->ux[i] += 0.5 * dt * s0.u[i];
+        solid->uy[i] += 0.5 * dt * s0.v[i];
+        solid->wx[i] = solid->vx[i] += 0.5 * dt * s0.ax[i];
+        solid->wy[i] = solid->vy[i] += 0.5 * dt * s0.ay[i];
+    }
+    place_solid(solid);
+    rates();
+    take_fluid(&f1);
+    take_solid(&s1);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        /* Eq. 24b with rho = rho0 (1 + d): eps = -(drho/rho) dt at the half step. */
+        const double eps = -f1.rate[i] / (1 + f1.d[i]) * dt;
+        f1.d[i] = (1 + f0.d[i]) * (2 - eps) / (2 + eps) - 1;
+        f1.u[i] = f0.u[i] + dt * f1.ax[i];
+        f1.v[i] = f0.v[i] + dt * f1.ay[i];
+        f1.x[i] = f0.x[i] + 0.5 * dt * (f1.u[i] + f0.u[i]);
+        f1.y[i] = f0.y[i] + 0.5 * dt * (f1.v[i] + f0.v[i]);
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        s1.u[i] = s0.u[i] + dt * s1.ax[i];
+        s1.v[i] = s0.v[i] + dt * s1.ay[i];
+        s1.x[i] = s0.x[i] + 0.5 * dt * (s1.u[i] + s0.u[i]);
+        s1.y[i] = s0.y[i] + 0.5 * dt * (s1.v[i] + s0.v[i]);
+        solid->wx[i] = s0.u[i];
+        solid->wy[i] = s0.v[i];
+    }
+    put_fluid(&f0);
+    put_solid(&s0);
+    place_solid(solid);
+    rig_steps(&rig, 1, 1);
+    TEST_ASSERT_TRUE(rig.sim.state.dt == dt);
+    compare(&f1, &s1);
+}
+
+/* Eqs. 26 and 27 in the first step, Eq. 25 in the second, whose dt is half as long. */
+static void test_verlet_steps(void)
+{
+    open("integrator=verlet", "numerics.multirate=off");
+    const double dt[2] = {1e-5, 0.5e-5};
+    take_fluid(&f0);
+    struct memory *before = &f0, *now = &f1;
+    for (int step = 0; step < 2; step++) {
+        rates();
+        take_fluid(now);
+        take_solid(&s1);
+        static struct memory next;
+        next = *now;
+        for (int64_t i = 0; i < fluid->n; i++) {
+            const double kick = step ? dt[0] + dt[1] : dt[0];
+            next.x[i] = now->x[i] + dt[step] * now->u[i] + 0.5 * dt[step] * dt[step] * now->ax[i];
+            next.y[i] = now->y[i] + dt[step] * now->v[i] + 0.5 * dt[step] * dt[step] * now->ay[i];
+            next.u[i] = (step ? before->u[i] : now->u[i]) + kick * now->ax[i];
+            next.v[i] = (step ? before->v[i] : now->v[i]) + kick * now->ay[i];
+            next.d[i] = (step ? before->d[i] : now->d[i]) + kick * now->rate[i];
+        }
+        for (int64_t i = 0; i < solid->n; i++) {
+            s1.u[i] += dt[step] * s1.ax[i];
+            s1.v[i] += dt[step] * s1.ay[i];
+            s1.x[i] += dt[step] * s1.u[i];
+            s1.y[i] += dt[step] * s1.v[i];
+        }
+        *before = *now;
+        rig_steps(&rig, 1, step ? rig.sim.state.time + dt[1] : 1);
+        TEST_ASSERT_TRUE(fabs(rig.sim.state.dt - dt[step]) < 1e-20);
+        compare(&next, &s1);
+    }
+}
+
+/* With sub-steps the fluid sees the structure's mean velocity over its step, and an acceleration that
+ * follows the mean over about h/c0. */
+static void see_substeps(const char *integrator)
+{
+    open(integrator, "numerics.multirate=on");
+    rig.sim.dt_solid = 0.3e-5;
+    for (int step = 0; step < 3; step++) {
+        take_solid(&s0);
+        static double ax[MOST], ay[MOST];
+        memcpy(ax, solid->ax, (size_t)solid->n * sizeof *ax);
+        memcpy(ay, solid->ay, (size_t)solid->n * sizeof *ay);
+        rig_steps(&rig, 1, 1);
+        const double dt = rig.sim.state.dt, weight = dt / (dt + 0.0135 / 20);
+        TEST_ASSERT_EQUAL_INT(4, rig.sim.substeps);
+        for (int64_t i = 0; i < solid->n; i++) {
+            assert_near(1e-10, (solid->ux[i] - s0.x[i]) / dt, solid->wx[i], "wx");
+            assert_near(1e-10, (solid->uy[i] - s0.y[i]) / dt, solid->wy[i], "wy");
+            const double mean_x = (solid->vx[i] - s0.u[i]) / dt,
+                         mean_y = (solid->vy[i] - s0.v[i]) / dt;
+            const double tolerance = 1e-11 * (1 + fabs(mean_x) + fabs(mean_y));
+            assert_near(tolerance, ax[i] + weight * (mean_x - ax[i]), solid->ax[i], "ax");
+            assert_near(tolerance, ay[i] + weight * (mean_y - ay[i]), solid->ay[i], "ay");
+        }
+    }
+}
+
+static void test_fluid_sees_the_mean_of_substeps(void)
+{
+    see_substeps("integrator=symplectic");
+    see_substeps("integrator=verlet");
+}
+
+/* Four sub-steps of Eq. 27 are four steps of Eq. 27 with the fluid's force held. */
+static void test_substeps_are_steps_with_the_force_held(void)
+{
+    open("integrator=verlet", "numerics.multirate=on");
+    rig.sim.dt_solid = 0.3e-5;
+    rates();
+    take_solid(&s0);
+    const double dt = 1e-5 / 4;
+    for (int k = 0; k < 4; k++) {
+        solid_stress(&rig.sim.solid, solid);
+        solid_forces(&rig.sim.solid, solid);
+        for (int64_t i = 0; i < solid->n; i++) {
+            solid->vx[i] += dt * solid->sx[i];
+            solid->vy[i] += dt * solid->sy[i];
+            solid->ux[i] += dt * solid->vx[i];
+            solid->uy[i] += dt * solid->vy[i];
+        }
+    }
+    take_solid(&s1);
+    put_solid(&s0);
+    rig_steps(&rig, 1, 1);
+    TEST_ASSERT_EQUAL_INT(4, rig.sim.substeps);
+    for (int64_t i = 0; i < solid->n; i++) {
+        assert_near(1e-17, s1.x[i], solid->ux[i], "ux");
+        assert_near(1e-13, s1.u[i], solid->vx[i], "vx");
+    }
+}
+
+/* A block of fluid without pressure falls: v = g t and y = g t^2/2 are exact for both schemes, whatever
+ * the steps; here they vary as output times cut them. */
+static void test_free_fall_with_uneven_steps(void)
+{
+    static const char drop[] = "dp = 1 cm\nend_time = 1\ngravity = 0, -10\nprecision = double\n"
+                               "[fluid water]\nshape = box 0, 0.1, 0.05, 0.15\nsound_speed = 20\n"
+                               "density_diffusion = 0.1\n[domain]\nlower = -1, -1\nupper = 1, 1\n";
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, drop, k ? "integrator=verlet" : "integrator=symplectic", NULL);
+        fluid = &rig.sim.kind[KIND_FLUID];
+        for (double t = 0.0003; t < 0.02; t += 0.0003) rig_run(&rig, t);
+        const double t = rig.sim.state.time;
+        TEST_ASSERT_TRUE(rig.sim.state.dt_max > 1.2 * rig.sim.state.dt_min);
+        for (int64_t i = 0; i < fluid->n; i++) {
+            const double start = 0.105 + 0.01 * (double)(fluid->id[i] / 5);
+            assert_near(1e-13, -10 * t, fluid->vy[i], "vy");
+            assert_near(1e-13, -5 * t * t, fluid->y[i] - start, "fall");
+            assert_near(1e-13, 0, fluid->vx[i], "vx");
+            assert_near(1e-13, 0, fluid->dens[i], "dens");
+        }
+    }
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_symplectic_step);
+    RUN_TEST(test_verlet_steps);
+    RUN_TEST(test_fluid_sees_the_mean_of_substeps);
+    RUN_TEST(test_substeps_are_steps_with_the_force_held);
+    RUN_TEST(test_free_fall_with_uneven_steps);
+    return UNITY_END();
+}
