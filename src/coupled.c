@@ -11,7 +11,7 @@ double phase_add(struct simulation *s, enum phase phase, double since)
     return now;
 }
 
-static void move_walls(struct simulation *s, double time)
+void move_walls(struct simulation *s, double time)
 {
     const struct scene *const scene = s->scene;
     struct particles *const p = &s->kind[KIND_WALL];
@@ -136,6 +136,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     const int n = hits ? (int)max2(1, steps) : SOLID_BATCH;
     /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
     const double dt = hits ? left / n : bound;
+    if (dt < bound) s->dt_bound[BOUND_output] = dt;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
         for (int k = 0; k < n; k++) solid_symplectic(s, dt);
     } else {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid.h"
 
+#include <math.h>
 #include <string.h>
 
 static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
@@ -21,6 +22,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .alpha = fluid->artificial_viscosity,
         .delta = fluid->density_diffusion,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
+        .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
     };
 }
 

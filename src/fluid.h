@@ -13,6 +13,7 @@ struct fluid_constants {
     double alpha; /* Eq. 7 */
     double delta; /* Eq. 6 */
     double gravity[2];
+    double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };
 
 /* Largest values over all fluid particles of the last evaluation; order-free maxima. */

@@ -23,6 +23,9 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred);
 /* Weight of the newest acceleration in the mean that the fluid sees of the structure. */
 double acceleration_weight(const struct simulation *s, double dt);
 
+/* Puts moving walls where they are at a time, with their velocity and acceleration. */
+void move_walls(struct simulation *s, double time);
+
 /* x = X + u for the solid. */
 void place_solid(struct particles *p);
 

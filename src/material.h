@@ -109,7 +109,10 @@ SPHFSI_INLINE vwide material_energy(const struct solid_body *b, struct vtensor2 
     }
     const struct vtensor2 S = hooke(e, plane_lambda(b), b->mu);
     const vwide W = (S.xx * e.xx + S.yy * e.yy + S.xy * e.xy + S.yx * e.yx) * 0.5;
-    return b->law == LAW_PAPER ? W * J : W;
+    if (b->law != LAW_PAPER) return W;
+    if (b->plane == PLANE_STRAIN) return W * J;
+    const vwide eps_zz = (e.xx + e.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
+    return W * J / vsqrt_wide(1.0 - 2.0 * eps_zz);
 }
 
 /* What happens across the plane: the stretch of the thickness and the Cauchy stress sigma_zz, Pa, of

@@ -60,6 +60,8 @@ struct scene_section_common {
 enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
+enum suction { SUCTION_OFF, SUCTION_ON };
+enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };

@@ -128,11 +128,11 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
 }
 
 /* Particles of the structure that have lost touch with the fluid are not visited any more. */
-static void forget_touch(struct particles *solid)
+static void forget_touch(struct particles *p)
 {
-    memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
-    memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
-    memset(solid->p, 0, (size_t)solid->n * sizeof *solid->p);
+    memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
+    memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
+    memset(p->p, 0, (size_t)p->n * sizeof *p->p);
 }
 
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
@@ -150,6 +150,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
         cells_sort(&s->cells, KIND_SOLID, solid);
         forget_touch(solid);
     }
+    if (s->effects & FX_MOTION) forget_touch(&s->kind[KIND_WALL]);
     fluid_find_near(&s->fluid, &s->cells);
     s->state.drift = 0;
     s->state.sorts++;
@@ -200,6 +201,7 @@ static enum err build(struct simulation *s, struct diag *d)
         solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
         s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step;
     }
+    if (s->effects & FX_MOTION) move_walls(s, 0);
     choose_rate(s);
     set_guards(s);
     find_speed(s);
@@ -260,6 +262,8 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     else
         verlet_step(s, t_limit);
     clock = wall_clock();
+    /* So that the state does not depend on whether anybody looks at it between two steps. */
+    if (s->effects & FX_MOTION) move_walls(s, s->state.time);
     find_speed(s);
     s->state.drift += s->state.dt * sqrt(max2(speed2_before, s->speed2));
     if (s->effects & FX_MOTION) add_wall_work(s);
@@ -277,6 +281,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
         if (s->effects & FX_COUPLING) forget_touch(&s->kind[KIND_SOLID]);
+        if (s->effects & FX_MOTION) forget_touch(&s->kind[KIND_WALL]);
         if (fluid_crowding(&s->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);

@@ -71,7 +71,7 @@ void solid_forces(const struct solid *s, struct particles *p);
 void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred);
 
 /* Largest frequency and damping rate of the operator, by power iteration on the force routine around
- * the undeformed state, and the stable step that follows. Uses and restores u and v. */
+ * the undeformed state, and the stable step that follows. Leaves u at zero and v as it was. */
 void solid_find_step(struct solid *s, struct particles *p);
 
 /* Cauchy stress (xx, yy, xy, zz), Pa, and det F of a particle from its displacement gradient. */

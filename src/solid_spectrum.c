@@ -85,8 +85,9 @@ void solid_find_step(struct solid *s, struct particles *p)
 
     scale_to(p->vx, p->vy, kept[0], kept[1], p->n, 1);
     memcpy(s->body, saved, sizeof saved);
-    /* Both integrators amplify an oscillation of frequency w, damped explicitly at the rate m, unless
-     * (w dt)^2 + 2 m dt < 4. */
+    /* An oscillation of frequency w, damped explicitly at the rate m, does not grow while
+     * (w dt)^2 + 2 m dt < 4: just that for semi-implicit Euler, a little less than the limit for the
+     * predictor-corrector (docs/theory.md). */
     const double w2 = square(s->omega_max), m = s->damping_max;
     s->stable_step = w2 > 0 ? (sqrt(m * m + 4 * w2) - m) / w2 : (double)INFINITY;
 }

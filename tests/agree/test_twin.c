@@ -144,6 +144,7 @@ static void agree_for_all_effects(const char *precision, double tolerance)
     const char *const diffusion[] = {"water.density_diffusion=0", "water.density_diffusion=0.1"};
     for (int v = 0; v < 2; v++)
         for (int d = 0; d < 2; d++) agree(precision, viscosity[v], diffusion[d], tolerance);
+    agree(precision, "water.artificial_viscosity=0.05", "numerics.suction=on", tolerance);
     agree(precision, "water.diffusion_form=fourtakas", "water.density_diffusion=0.5", tolerance);
     agree(precision, "numerics.h_over_dp=2", "numerics.skin=0", tolerance);
 }

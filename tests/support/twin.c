@@ -37,7 +37,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
 {
     const struct scene *const scene = s->scene;
     const struct scene_fluid *const f = &scene->fluid[0];
-    *t = (struct twin){.h = scene->numerics.h_over_dp * scene->top.dp,
+    *t = (struct twin){.suction = scene->numerics.suction == SUCTION_ON,
+                       .h = scene->numerics.h_over_dp * scene->top.dp,
                        .mass = f->density * scene->top.dp * scene->top.dp,
                        .c0 = f->sound_speed,
                        .rho0 = f->density,
@@ -83,6 +84,7 @@ static void extrapolate(const struct twin *t, struct twin_point *s)
     }
     s->weight = sum_w / kernel(0, t->h);
     s->p = sum_w > 0 ? sum / sum_w : 0;
+    if (!t->suction && s->p < 0) s->p = 0;
     s->size_p = sum_w > 0 ? size / sum_w : 0;
     s->rho = tait_inverse(t, s->p);
 }

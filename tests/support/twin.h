@@ -19,6 +19,7 @@ struct twin_point {
 
 struct twin {
     double h, mass, c0, rho0, alpha, delta, g[2];
+    bool suction;     /* walls and structures may pull */
     bool hydrostatic; /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];
     struct twin_point *point[KIND_COUNT];

@@ -1,0 +1,68 @@
+/* SPDX-License-Identifier: MIT
+ * Looking at a run must not change it: ledgers, hashes and checkpoints between two steps, and output
+ * times that nearly meet. */
+#include "rig.h"
+
+#include "unity.h"
+
+#include <math.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* A piston that speeds up, so that where the wall stands depends on the time it is asked for. */
+static const char piston[] = "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\n"
+                             "[fluid water]\nshape = box 0, 0, 0.3, 0.2\nsound_speed = 20\n"
+                             "artificial_viscosity = 0.1\nsurface = 0.2\n"
+                             "[wall tank]\nshape = box -0.1, -0.04, 0.6, 0\n"
+                             "[wall piston]\nshape = box -0.04, 0, 0, 0.3\nmotion = push\n"
+                             "[motion push]\nkind = polynomial\npoly_x = 0.1, 4\n"
+                             "[domain]\nlower = -0.3, -0.2\nupper = 0.8, 0.6\n";
+
+static uint64_t hash_after(const char *integrator, bool look)
+{
+    struct rig rig = {0};
+    rig_open(&rig, piston, integrator, NULL);
+    struct diag d = {0};
+    for (int k = 0; k < 200; k++) {
+        TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_step(&rig.sim, 1, &d));
+        if (look) simulation_ledger(&rig.sim);
+    }
+    TEST_ASSERT_TRUE(rig.sim.state.sorts > 2);
+    const uint64_t hash = simulation_hash(&rig.sim);
+    rig_close(&rig);
+    return hash;
+}
+
+static void test_ledgers_leave_no_trace(void)
+{
+    TEST_ASSERT_EQUAL_HEX64(hash_after("integrator=symplectic", false),
+                            hash_after("integrator=symplectic", true));
+    TEST_ASSERT_EQUAL_HEX64(hash_after("integrator=verlet", false),
+                            hash_after("integrator=verlet", true));
+}
+
+/* Two output times a breath apart make a tiny step, which is no collapse. */
+static void test_output_times_that_nearly_meet(void)
+{
+    static const char block[] =
+        "dp = 1 cm\nend_time = 1\n"
+        "[solid bar]\nshape = box 0, 0, 0.2, 0.1\nclamp = box 0, 0, 0.04, 0.1\n"
+        "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n";
+    struct rig rig = {0};
+    rig_open(&rig, block, NULL);
+    struct diag d = {0};
+    const double times[] = {1e-3, 1e-3 + 1e-12, 2e-3};
+    for (int k = 0; k < 3; k++)
+        while (rig.sim.state.time < times[k])
+            TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, simulation_step(&rig.sim, times[k], &d), d.text);
+    rig_close(&rig);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_ledgers_leave_no_trace);
+    RUN_TEST(test_output_times_that_nearly_meet);
+    return UNITY_END();
+}
