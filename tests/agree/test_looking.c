@@ -16,7 +16,7 @@ static const char piston[] = "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\
                              "artificial_viscosity = 0.1\nsurface = 0.2\n"
                              "[wall tank]\nshape = box -0.1, -0.04, 0.6, 0\n"
                              "[wall piston]\nshape = box -0.04, 0, 0, 0.3\nmotion = push\n"
-                             "[motion push]\nkind = polynomial\npoly_x = 0.1, 4\n"
+                             "[motion push]\nkind = polynomial\npoly_x = 0.5, 15\n"
                              "[domain]\nlower = -0.3, -0.2\nupper = 0.8, 0.6\n";
 
 static uint64_t hash_after(const char *integrator, bool look)
@@ -24,7 +24,7 @@ static uint64_t hash_after(const char *integrator, bool look)
     struct rig rig = {0};
     rig_open(&rig, piston, integrator, NULL);
     struct diag d = {0};
-    for (int k = 0; k < 200; k++) {
+    for (int k = 0; k < 500; k++) {
         TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_step(&rig.sim, 1, &d));
         if (look) simulation_ledger(&rig.sim);
     }
