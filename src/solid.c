@@ -52,6 +52,13 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
         s->body[k] = body_of(scene, &scene->solid[k], s->h);
+        if (s->body[k].gradient == GRADIENT_QUADRATIC && s->body[k].kappa > 0 &&
+            !s->body[k].variational)
+            diag_warn(d,
+                      "[solid %s] hourglass_form = printed with gradient = quadratic has growing "
+                      "modes at "
+                      "any time step; take hourglass_form = variational, or gradient = linear",
+                      scene->solid[k].common.name);
         s->variational |= s->body[k].variational;
         s->paper_step = min2(s->paper_step, 0.6 * s->h / s->body[k].sound_speed); /* Eq. 29 */
     }
@@ -425,7 +432,7 @@ void solid_energy(const struct solid *s, const struct particles *p, double *elas
         for (int l = 0; l < pack->lanes; l++) {
             *elastic += stored[l] * square(s->dp);
             *hourglass += locked[l];
-            *det_low = min2(*det_low, det[l]);
+            if (!(det[l] >= *det_low)) *det_low = det[l];
         }
     }
 }

@@ -35,7 +35,7 @@ static void scale_to(double *x, double *y, const double *from_x, const double *f
 
 /* Largest factor by which the acceleration of a field exceeds the field. The field is (x, y) of the
  * particles, displacement or velocity; `amplitude` keeps it in the linear range. Power iteration
- * approaches from below, within a percent or two after so many rounds, which solid_safety covers. */
+ * approaches from below: 0.3 % are missing after so many rounds at kappa = 50; one percent is added. */
 static double largest_factor(const struct solid *s, struct particles *p, double *x, double *y,
                              double amplitude, bool both_signs)
 {
@@ -63,7 +63,7 @@ static double largest_factor(const struct solid *s, struct particles *p, double 
         factor = norm(p->sx, p->sy, p->n) / amplitude;
         scale_to(x, y, p->sx, p->sy, p->n, 1);
     }
-    return factor;
+    return 1.01 * factor;
 }
 
 void solid_find_step(struct solid *s, struct particles *p)

@@ -32,11 +32,11 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
 
     double dt = (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT; k++) dt = min2(dt, s->dt_bound[k]);
-    /* Two equal steps rather than one full and a sliver. */
+    /* Two equal steps rather than one full and a sliver; round-off of the time makes no sliver either. */
     const double left = t_limit - s->state.time;
-    if (left < 2 * dt) s->dt_bound[BOUND_output] = left <= dt ? left : 0.5 * left;
-    *hits = left <= dt;
-    return min2(dt, s->dt_bound[BOUND_output]);
+    *hits = left <= dt * (1 + 1e-9);
+    if (left < 2 * dt && left != dt) s->dt_bound[BOUND_output] = *hits ? left : 0.5 * left;
+    return *hits ? left : min2(dt, s->dt_bound[BOUND_output]);
 }
 
 int timestep_substeps(const struct simulation *s, double dt)
