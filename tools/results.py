@@ -125,6 +125,7 @@ def draw_all():
 REPORT = """# Results
 
 Written by `make results` (`tools/results.py`); nothing here is typed by hand. Program {version}, {machine}.
+Seconds are the clock's, whatever else the machine was doing; `make bench` measures speed.
 
 ## Elastic gate (Sec. 3.3)
 
