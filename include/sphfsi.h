@@ -77,9 +77,11 @@ struct sphfsi_options {
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 
     /* Of sphfsi_run only. */
-    const char *out;          /**< folder of the run; NULL: runs/<name of the case> */
+    const char *out;          /**< folder of the run; NULL: runs/<name of the case>[-fork] */
     int restart;              /**< 1: continue the run in that folder */
     const char *restart_file; /**< checkpoint to continue from; NULL: the newest valid one */
+    const char *fork; /**< checkpoint, or folder of a run, that a new run with other physics starts
+                           from; NULL: from the case. What the state is made of may not change. */
     struct sphfsi_requests *requests;                                 /**< may be NULL */
     void (*progress)(void *context, const struct sphfsi_progress *p); /**< may be NULL */
     double progress_interval; /**< s, least wall time between calls; 0: 0.25 */
@@ -153,6 +155,11 @@ SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 /** Says, line by line through the message callback, what would be simulated and what it would cost.
  * Writes nothing. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
+
+/** Says, line by line through the message callback of the options (all else in them may be zero),
+ * what a checkpoint holds. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
+SPHFSI_API enum sphfsi_status sphfsi_inspect(const char *file,
+                                             const struct sphfsi_options *options);
 
 #ifdef __cplusplus
 }

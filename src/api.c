@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The library's face: the public header in terms of the floors below. */
 #include "explain.h"
+#include "inspect.h"
 #include "params.h"
 #include "run.h"
 
@@ -169,4 +170,10 @@ enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
     }
     free(x);
     return result(&d, e);
+}
+
+enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    return result(&d, inspect_file(file, options, &d));
 }

@@ -49,6 +49,9 @@ _Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) 
                    sizeof(struct file_footer) == 16,
                "docs/formats.md gives these sizes");
 
+/* What only walls that move have. */
+enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
+
 static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
 
 /* FNV-1a, 64 bits: every step is invertible, so a changed byte always changes the sum. */
@@ -194,7 +197,7 @@ static size_t payload_bytes(const struct block *b)
 
 /* --- store --- */
 
-static void seal(struct image *m)
+void checkpoint_seal(struct image *m)
 {
     struct block b;
     for (size_t at = sizeof(struct file_header); block_at(m, at, &b); at = block_end(&b)) {
@@ -263,7 +266,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[FOLDER_
     struct beside out;
     char name[NAME_TEXT];
     const struct image_info info = checkpoint_info(m);
-    seal(m);
+    checkpoint_seal(m);
     name_of(name, info.steps);
     TRY(beside_open(&out, folder, name, d));
     /* A short write shows in ferror, which beside_commit looks at. */
@@ -298,11 +301,18 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     memcpy(&head, m->bytes, sizeof head);
     if (memcmp(head.magic, magic, sizeof magic) != 0)
         return damaged(d, path, "it does not begin as one");
-    if (head.byte_order != BYTE_ORDER_MARK)
-        return damaged(d, path, "it has another byte order than little-endian");
+    /* Before any sum: another machine or another version may sum, and lie out, otherwise. */
+    if (head.byte_order == __builtin_bswap32(BYTE_ORDER_MARK))
+        return diag_fail(d, ERR_IO,
+                         "%s: was written in big-endian byte order, this program reads "
+                         "little-endian: go on with it on a machine of its own kind",
+                         path);
+    if (head.byte_order != BYTE_ORDER_MARK) return damaged(d, path, "its byte-order mark is none");
     if (head.format != FORMAT)
-        return diag_fail(d, ERR_IO, "%s: has format %u, this program reads format %d", path,
-                         head.format, FORMAT);
+        return diag_fail(d, ERR_IO,
+                         "%s: has format %u, this program reads format %d: go on with it by the "
+                         "version that wrote it (bytes 88 to 135 name it)",
+                         path, head.format, FORMAT);
     if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header) ||
         head.sum != fnv(&head, offsetof(struct file_header, sum)))
         return damaged(d, path, "its header is damaged");
@@ -343,6 +353,13 @@ static enum err check_blocks(const struct image *m, const char *path, struct dia
     return ERR_OK;
 }
 
+enum err checkpoint_check(const struct image *m, const char *name, struct diag *d)
+{
+    TRY(check_header(m, name, d));
+    TRY(check_footer(m, name, d));
+    return check_blocks(m, name, d);
+}
+
 enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
 {
     char *bytes;
@@ -351,9 +368,7 @@ enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
     checkpoint_free(m);
     m->bytes = (unsigned char *)bytes;
     m->size = m->capacity = size;
-    TRY(check_header(m, path, d));
-    TRY(check_footer(m, path, d));
-    return check_blocks(m, path, d);
+    return checkpoint_check(m, path, d);
 }
 
 enum err checkpoint_newest(struct image *m, const char *folder, char path[FOLDER_PATH],
@@ -393,6 +408,28 @@ struct image_info checkpoint_info(const struct image *m)
     return info;
 }
 
+bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info)
+{
+    static const char *const others[] = {"run", "case"};
+    static const char *const types[ITEM_COUNT] = {"double", "int64", "int32", "byte"};
+    struct block b;
+    if (*at == 0) *at = sizeof(struct file_header);
+    if (!block_at(m, *at, &b)) return false;
+    const unsigned owner = b.head.owner;
+    *info = (struct block_info){
+        .owner = owner < KIND_COUNT    ? kind_names[owner]
+                 : owner <= OWNER_CASE ? others[owner - KIND_COUNT]
+                                       : "unknown",
+        .name = (const char *)m->bytes + b.at,
+        .type = types[b.head.item],
+        .count = (int64_t)b.head.count,
+        .item_bytes = item_size[b.head.item],
+        .data = m->bytes + b.payload,
+    };
+    *at = block_end(&b);
+    return true;
+}
+
 /* --- apply --- */
 
 static enum err take(const struct image *m, const char *name, unsigned owner, enum item item,
@@ -412,8 +449,22 @@ static enum err take(const struct image *m, const char *name, unsigned owner, en
     return ERR_OK;
 }
 
+/* A wall that the run of the checkpoint left at rest, and a fork moves: its blocks are not there. */
+static bool take_rest(const struct image *m, struct particles *p, const struct field_info *info)
+{
+    struct block b;
+    if (find_block(m, info->name, KIND_WALL, &b)) return false;
+    void *const data = field_array(p, info);
+    const void *place = data == p->X ? p->x : data == p->Y ? p->y : NULL;
+    if (place)
+        memcpy(data, place, (size_t)p->n * info->size);
+    else
+        memset(data, 0, (size_t)p->n * info->size);
+    return true;
+}
+
 static enum err take_particles(const struct image *m, struct particles *p, enum kind kind,
-                               int64_t n, struct diag *d)
+                               int64_t n, bool fork, struct diag *d)
 {
     if (n < 0 || n > p->capacity)
         return diag_fail(d, ERR_INPUT,
@@ -423,23 +474,60 @@ static enum err take_particles(const struct image *m, struct particles *p, enum 
     for (int f = 0; f < field_count; f++) {
         const struct field_info *info = &field_table[f];
         void *data = field_array(p, info);
-        if (data && info->keep == KEEP_STATE)
+        if (!data || info->keep != KEEP_STATE) continue;
+        if (!(fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)))
             TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
     return ERR_OK;
 }
 
-enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+/* Numbers that others use as an index. The sums vouch for the bytes, not for who wrote them. */
+static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
+{
+    const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
+    const struct particles *p = &s->kind[kind];
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i] < 0 || p->body[i] >= bodies[kind])
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " belongs to section %d, the case "
+                             "has 0 to %d",
+                             kind_names[kind], i, p->body[i], bodies[kind] - 1);
+    return ERR_OK;
+}
+
+static enum err check_cells(const struct simulation *s, enum kind kind, struct diag *d)
+{
+    const struct particles *p = &s->kind[kind];
+    const int64_t cells = (int64_t)s->cells.nx * s->cells.ny;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->cell[i] < -1 || p->cell[i] >= cells)
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " is in cell %d, the case has -1 "
+                             "(outside) to %" PRId64,
+                             kind_names[kind], i, p->cell[i], cells - 1);
+    return ERR_OK;
+}
+
+enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
 {
     const struct image_info info = checkpoint_info(m);
-    for (int k = 0; k < KIND_COUNT; k++)
-        TRY(take_particles(m, &s->kind[k], (enum kind)k, info.count[k], d));
+    for (int k = 0; k < KIND_COUNT; k++) {
+        TRY(take_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
+        TRY(check_bodies(s, (enum kind)k, d));
+    }
     struct state *const st = &s->state;
 #define STATE(type, name, unit, meaning) \
     TRY(take(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
 #include "state.def"
 #undef STATE
-    TRY(take(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d));
+    return take(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
+}
+
+enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+{
+    TRY(checkpoint_load(m, s, false, d));
+    if (s->effects & FX_FLUID)
+        for (int k = 0; k < KIND_COUNT; k++) TRY(check_cells(s, (enum kind)k, d));
     return simulation_resume(s, d);
 }
 

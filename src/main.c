@@ -16,19 +16,23 @@ static const char usage[] =
     "  --set KEY=VALUE   value in effect over the case: dp=1mm, \"solid gate.young=12MPa\"; "
     "repeatable\n"
     "  --restart [FILE]  go on from the newest valid checkpoint of the run, or from FILE\n"
+    "  --fork FILE       start a new run, with other physics, from the checkpoint (or a run's "
+    "newest)\n"
+    "  --inspect FILE    say what a checkpoint holds\n"
     "  --explain         say what would be simulated and what it would cost; run nothing\n"
     "  --quiet           no progress, warnings only\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
-static const char *const option_names[] = {"--out",   "--threads", "--until",
-                                           "--set",   "--restart", "--explain",
-                                           "--quiet", "--version", "--help"};
+static const char *const option_names[] = {"--out",     "--threads", "--until", "--set",
+                                           "--restart", "--explain", "--fork",  "--inspect",
+                                           "--quiet",   "--version", "--help"};
 enum { OPTION_COUNT = sizeof option_names / sizeof option_names[0] };
 
 struct command {
     struct sphfsi_options options;
+    const char *inspect;
     int explain, quiet, done; /* done: nothing more to do */
     int terminal, line_open;  /* a progress line stands on the terminal */
     double last_share, last_line;
@@ -151,6 +155,10 @@ static int apply(struct command *c, const char *option, const char *operand)
     } else if (strcmp(option, "--restart") == 0) {
         o->restart = 1;
         o->restart_file = operand;
+    } else if (strcmp(option, "--fork") == 0) {
+        o->fork = operand;
+    } else if (strcmp(option, "--inspect") == 0) {
+        c->inspect = operand;
     } else if (strcmp(option, "--explain") == 0) {
         c->explain = 1;
     } else if (strcmp(option, "--quiet") == 0) {
@@ -166,7 +174,8 @@ static int apply(struct command *c, const char *option, const char *operand)
 /* 1: the option takes an operand; 2: it may have one; 0: none. */
 static int operands(const char *option)
 {
-    static const char *const needing[] = {"--out", "--threads", "--until", "--set"};
+    static const char *const needing[] = {"--out", "--threads", "--until",
+                                          "--set", "--fork",    "--inspect"};
     for (size_t k = 0; k < sizeof needing / sizeof needing[0]; k++)
         if (strcmp(option, needing[k]) == 0) return 1;
     return strcmp(option, "--restart") == 0 ? 2 : 0;
@@ -217,7 +226,7 @@ static int parse(struct command *c, int argc, char **argv)
         }
         if (apply(c, option, operand)) return 1;
     }
-    if (!c->done && !c->options.case_path) {
+    if (!c->done && !c->inspect && !c->options.case_path) {
         fputs(usage, stderr);
         return complain("%s%s", "no case is given", "");
     }
@@ -231,9 +240,10 @@ static int execute(struct command *c)
     c->options.progress = c->quiet ? NULL : on_progress;
     c->options.context = c;
     c->options.requests = &requests;
-    if (!c->explain) install_signals();
-    const enum sphfsi_status status =
-        c->explain ? sphfsi_explain(&c->options) : sphfsi_run(&c->options);
+    if (!c->explain && !c->inspect) install_signals();
+    const enum sphfsi_status status = c->inspect   ? sphfsi_inspect(c->inspect, &c->options)
+                                      : c->explain ? sphfsi_explain(&c->options)
+                                                   : sphfsi_run(&c->options);
     clear_line(c);
     if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
     return sphfsi_exit_status(status, requests.stop);

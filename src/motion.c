@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { MAX_ROWS = 1000000 };
 
@@ -130,6 +131,11 @@ enum err motion_load(struct scene *s, struct diag *d)
         scene_place(s, m->common.line, place);
         if (!scene_file(s, m->file, path, sizeof path))
             return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, m->file);
+        /* Opening a pipe would wait for whoever writes to it. */
+        struct stat info;
+        if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+            return diag_fail(d, ERR_INPUT, "%s: [motion %s] file = %s is not a regular file", place,
+                             m->common.name, m->file);
         FILE *file = fopen(path, "r");
         if (!file)
             return diag_fail(d, ERR_INPUT, "%s: [motion %s] file = %s cannot be opened: %s", place,

@@ -4,12 +4,14 @@
 #include "checkpoint.h"
 #include "probes.h"
 #include "report.h"
+#include "run_change.h"
 #include "series.h"
 #include "snapshot.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum output { OUT_PROBES, OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
@@ -75,10 +77,11 @@ static void set_intervals(struct run *r, double time)
         struct due *u = &r->due[k];
         u->interval = interval[k];
         u->k = u->interval > 0 ? (int64_t)(time / u->interval) : 0;
-        while (time > 0 && due_time(u) <= time) u->k++;
+        /* A run that goes on has written what is due now; one that begins has not. */
+        while (r->options->restart && due_time(u) <= time) u->k++;
     }
-    /* The state at time zero is the case itself. */
-    if (time == 0) r->due[OUT_CHECKPOINT].k = 1;
+    /* The state at the beginning is the case itself, or the checkpoint that is forked. */
+    r->due[OUT_CHECKPOINT].k += !r->options->restart;
 }
 
 static double next_time(const struct run *r)
@@ -136,12 +139,26 @@ static enum err write_checkpoint(struct run *r)
     return write_summary(r, "running", "", r->diag);
 }
 
+/* A full disk need not end a run whose user wants its rows more than its pictures; the next snapshot
+ * is tried again. The file with the name stays as it was. */
+static enum err write_snapshot(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_write(&r->snapshots, r->s, &why);
+    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
+        return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
+    r->record.snapshots_missed++;
+    diag_warn(&why, "the snapshot at %.6g s is left out, the run goes on: %s", r->s->state.time,
+              why.text);
+    return ERR_OK;
+}
+
 static enum err write_output(struct run *r, enum output what)
 {
     switch (what) {
     case OUT_PROBES: return write_probes(r);
     case OUT_LEDGER: return write_ledger(r);
-    case OUT_SNAPSHOT: return snapshots_write(&r->snapshots, r->s, r->diag);
+    case OUT_SNAPSHOT: return write_snapshot(r);
     case OUT_CHECKPOINT: return write_checkpoint(r);
     case OUT_COUNT: break;
     }
@@ -272,7 +289,8 @@ static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_
     if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
     const size_t length = strlen(name);
     const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
-    snprintf(path, FOLDER_PATH, "runs/%.*s", (int)(cfg ? length - 4 : length), name);
+    snprintf(path, FOLDER_PATH, "runs/%.*s%s", (int)(cfg ? length - 4 : length), name,
+             o->fork ? "-fork" : "");
     return ERR_OK;
 }
 
@@ -328,54 +346,15 @@ static enum err start_again(struct run *r, const char *header)
     return ERR_OK;
 }
 
-/* A place in the text of an effective case: the line at hand and the section it stands in. */
-struct place {
-    const char *next, *line;
-    int length;
-    char section[SCENE_NAME + 32];
-};
-
-/* The end of a run and how often it writes may change at a restart; all else is another case. */
-static bool matters(const struct place *p)
-{
-    if (p->length == 0 || p->line[0] == '#') return false;
-    if (!p->section[0]) return strncmp(p->line, "end_time", 8) != 0;
-    return strcmp(p->section, "[output]") != 0;
-}
-
-/* Goes to the next line that matters; an empty one stands for the end. */
-static void go_on(struct place *p)
-{
-    do {
-        p->line = p->next;
-        p->length = (int)strcspn(p->line, "\n");
-        p->next += p->length + (p->line[p->length] == '\n');
-        if (p->line[0] == '[') snprintf(p->section, sizeof p->section, "%.*s", p->length, p->line);
-    } while (!matters(p) && *p->next);
-    if (!matters(p)) p->length = 0;
-}
-
-static enum err compare_cases(const char *then, const char *now, struct diag *d)
-{
-    struct place a = {.next = then}, b = {.next = now};
-    do {
-        go_on(&a);
-        go_on(&b);
-        if (a.length != b.length || memcmp(a.line, b.line, (size_t)a.length) != 0)
-            return diag_fail(d, ERR_INPUT,
-                             "restart: the case has changed since the checkpoint: %s '%.*s' is now "
-                             "'%.*s'; only end_time, [output] and the threads may change",
-                             a.section[0] ? a.section : "at the top",
-                             a.length < 200 ? a.length : 200, a.line,
-                             b.length < 200 ? b.length : 200, b.line);
-    } while (a.length > 0);
-    return ERR_OK;
-}
-
+/* A fork's may be a file or the folder of a run. */
 static enum err find_checkpoint(struct run *r)
 {
-    const char *file = r->options->restart_file;
+    const struct sphfsi_options *o = r->options;
+    const char *file = o->fork ? o->fork : o->restart_file;
+    struct stat info;
     if (!file) return checkpoint_newest(&r->image, r->folder.path, r->restarted_from, r->diag);
+    if (o->fork && stat(file, &info) == 0 && S_ISDIR(info.st_mode))
+        return checkpoint_newest(&r->image, file, r->restarted_from, r->diag);
     snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
     return checkpoint_read(&r->image, file, r->diag);
 }
@@ -388,15 +367,19 @@ static enum err load_checkpoint(struct run *r)
         return ERR_INPUT;
     }
     const struct image_info info = checkpoint_info(&r->image);
-    TRY(compare_cases(info.case_text, r->case_text, r->diag));
+    const bool fork = r->options->fork != NULL;
+    const char *what = fork ? "fork" : "restart";
+    TRY(fork ? change_for_fork(info.case_text, r->case_text, r->diag)
+             : change_for_restart(info.case_text, r->case_text, r->diag));
     if (strcmp(info.version, SPHFSI_VERSION) != 0)
         diag_warn(r->diag, "%s was written by version %s, this is %s: the bits may differ",
                   r->restarted_from, info.version, SPHFSI_VERSION);
-    TRY(checkpoint_apply(&r->image, r->s, r->diag));
+    TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
+             : checkpoint_apply(&r->image, r->s, r->diag));
     if (r->s->state.time > r->session.scene.top.end_time)
-        return diag_fail(r->diag, ERR_INPUT, "restart: %s is at %.6g s, beyond the end at %.6g s",
+        return diag_fail(r->diag, ERR_INPUT, "%s: %s is at %.6g s, beyond the end at %.6g s", what,
                          r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
-    session_say(r->options, "restart from %s at %.6g s, step %lld", r->restarted_from,
+    session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
                 r->s->state.time, (long long)r->s->state.steps);
     return ERR_OK;
 }
@@ -406,7 +389,7 @@ static enum err begin(struct run *r, const char *header)
 {
     char part[FOLDER_PATH];
     TRY(write_case(r, part));
-    const enum err e = r->options->restart ? load_checkpoint(r) : ERR_OK;
+    const enum err e = r->options->restart || r->options->fork ? load_checkpoint(r) : ERR_OK;
     if (e) {
         unlink(part);
         return e;
@@ -416,7 +399,8 @@ static enum err begin(struct run *r, const char *header)
     const double time = r->s->state.time;
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
-    r->record.restarted_from = r->restarted_from;
+    r->record.restarted_from = r->options->fork ? "" : r->restarted_from;
+    r->record.forked_from = r->options->fork ? r->restarted_from : "";
     r->record.threads = thread_count();
     r->record.start_time = time;
     r->record.start_particle_steps = r->s->state.particle_steps;
@@ -466,6 +450,9 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
 {
     char path[FOLDER_PATH];
     const enum folder_use use = o->restart ? FOLDER_CONTINUE : FOLDER_FRESH;
+    if (o->restart && o->fork)
+        return diag_fail(d, ERR_INPUT,
+                         "options: a restart continues a run, a fork starts one: choose one");
     TRY(default_folder(o, path, d));
     TRY(folder_check(path, use, d)); /* before the work of building the simulation */
     struct run *r = calloc(1, sizeof *r);

@@ -21,7 +21,7 @@ FLOORS = [
     "fluid variants solid material",
     "simulation timestep integrators symplectic verlet coupled monitor ledger bounds phases state",
     "folder json probes snapshot checkpoint report series",
-    "sphfsi session explain run api main",
+    "sphfsi session explain inspect run api main",
 ]
 FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
 

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# What a checkpoint says of itself, runs that fork from one, and what is refused by name.
+set -u
+sphfsi=${SPHFSI:-./sphfsi}
+case=tests/fault/tiny.cfg
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+failures=0
+
+fail() {
+    echo "FAILED: $1"
+    sed 's/^/    /' "$dir/output"
+    failures=$((failures + 1))
+}
+
+# expect STATUS WORDS ARGUMENTS...: the program ends so and says so.
+expect() {
+    local status=$1 words=$2
+    shift 2
+    "$sphfsi" "$@" >"$dir/output" 2>&1
+    local got=$?
+    [ $got = "$status" ] || fail "$*: exit status $got instead of $status"
+    grep -q -- "$words" "$dir/output" || fail "$*: does not say '$words'"
+}
+
+run=$dir/run
+expect 0 'simulated' "$case" --threads 1 --out "$run"
+ckpt=$(ls "$run"/*.ckpt)
+
+# --- inspect ---
+expect 0 'a sound checkpoint' --inspect "$ckpt"
+for words in 'time 0.02 s, 200 steps' 'fluid *100 particles' 'run *drift' 'solid *ux *45 double' \
+    'case *case' 'dp = 0.01 m'; do
+    grep -q -- "$words" "$dir/output" || fail "--inspect does not say '$words'"
+done
+expect 1 'not a sound checkpoint' --inspect "$case"
+expect 1 'nowhere.ckpt' --inspect "$dir/nowhere.ckpt"
+expect 1 'operand is missing' --inspect
+
+# --- other formats, byte orders, versions: put at their place in the header ---
+patched() {
+    cp "$ckpt" "$dir/patched.ckpt"
+    printf "$2" | dd of="$dir/patched.ckpt" bs=1 seek="$1" conv=notrunc status=none
+}
+patched 8 '\x02\0\0\0'
+expect 1 'has format 2, this program reads format 1' --inspect "$dir/patched.ckpt"
+expect 1 'has format 2' "$case" --out "$run" --restart "$dir/patched.ckpt"
+patched 8 '\0\0\0\0'
+expect 1 'has format 0' --inspect "$dir/patched.ckpt"
+patched 8 '\0\0\0\x01\x01\x02\x03\x04'
+expect 1 'big-endian byte order' --inspect "$dir/patched.ckpt"
+expect 1 'big-endian byte order' "$case" --out "$run" --restart "$dir/patched.ckpt"
+expect 1 "the checkpoint has 'dp = 0.01 m'.*'dp = 0.005 m'" "$case" --out "$run" --restart \
+    --set dp=5mm
+expect 1 'has changed.*integrator' "$case" --out "$run" --restart --set integrator=verlet
+
+# --- fork: another material ---
+go=(--threads 1 --until 0.03)
+expect 0 "fork from $ckpt" "$case" --fork "$ckpt" --out "$dir/stiff" "${go[@]}" --set gate.young=4e6
+grep -q "\"forked_from\": \"$ckpt\"" "$dir/stiff/summary.json" || fail "summary: no forked_from"
+grep -q '"start_time": 0.02' "$dir/stiff/summary.json" || fail "summary: start_time"
+[ "$(sed -n 2p "$dir/stiff/probes.csv")" = "$(tail -n 1 "$run/probes.csv")" ] ||
+    fail "the first row of the fork is not the last one before it"
+[ "$(wc -l <"$dir/stiff/probes.csv")" = 102 ] || fail "rows of the fork's probes.csv"
+hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
+
+# A fork that changes nothing but where it begins goes the same way, by the folder's newest one.
+expect 0 'simulated' "$case" --threads 1 --until 0.03 --out "$dir/whole"
+expect 0 'fork from' "$case" --fork "$run" --out "$dir/same" "${go[@]}"
+tail -n 1 "$dir/whole/probes.csv" "$dir/same/probes.csv" "$dir/stiff/probes.csv" |
+    awk -F, '/^0/ { x[n++] = $2 }
+             END { a = x[1] / x[0] - 1; b = x[2] / x[0] - 1
+                   exit !(a * a < 1e-12 && b * b > 1e-4) }' ||
+    fail "the fork with the same physics went another way, or the stiffer one did not"
+# It is a run like another: a restart in it changes no bit.
+expect 0 'simulated' "$case" --fork "$ckpt" --out "$dir/cut" --threads 1 --until 0.025 \
+    --set gate.young=4e6
+expect 0 'restart from' "$case" --out "$dir/cut" --restart "${go[@]}" --set gate.young=4e6
+[ "$(hash "$dir/cut")" = "$(hash "$dir/stiff")" ] || fail "a restart in a fork changes bits"
+
+# --- fork: a wall that begins to move; one that would jump ---
+cp "$case" "$dir/moving.cfg"
+sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nvelocity = 0.1, 0\nstart = 0.02 s\n\n&/' \
+    "$dir/moving.cfg"
+expect 0 'fork from' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/moving" "${go[@]}"
+expect 1 'would make it jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" "${go[@]}" \
+    --set push.start=0
+
+# --- fork: what the state is made of may not change ---
+for set in dp=5mm integrator=verlet water.sound_speed=30 gate.density=1200 numerics.h_over_dp=1.4 \
+    'tank.shape=box -0.05, 0, 0, 0.15'; do
+    expect 1 'fork: the' "$case" --fork "$ckpt" --out "$dir/none" --set "$set"
+done
+expect 1 'choose one' "$case" --fork "$ckpt" --restart --out "$run"
+expect 1 'not overwritten' "$case" --fork "$ckpt" --out "$run"
+expect 1 'nowhere.ckpt' "$case" --fork "$dir/nowhere.ckpt" --out "$dir/none"
+
+[ $failures = 0 ] || exit 1
