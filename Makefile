@@ -4,6 +4,9 @@
 #   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
 #   make test            build and run the tests           (FILTER=cells for some of them)
 #   make test-sanitize   the quick tests under ASan and UBSan
+#   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
+#   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
+#   make reliability     run the rehearsals and write docs/reliability.md
 #   make bench           build and run bench/*.c
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
@@ -71,7 +74,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
+.PHONY: all help debug sanitize serial test test-sanitize faults fuzz reliability bench gate results check format info install \
         dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -122,6 +125,16 @@ test: $(PROGRAM) $(TESTS)
 
 test-sanitize:
 	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
+
+faults: $(PROGRAM)
+	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' KILLS=50 FULL_STEPS=40; \
+	 for t in kill full fork; do bash tests/fault/test_$$t.sh; done; bash tests/agree/test_restart_cases.sh
+
+fuzz:
+	@tools/fuzz.sh $(ARGS)
+
+reliability: $(PROGRAM)
+	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
 bench: $(BENCHES)
 	@set -e; for b in $(BENCHES); do echo "== $$b"; $$b $(ARGS); done

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* memfd_create */
+#include "fuzz.h"
+
+#include "checkpoint.h"
+#include "expr.h"
+#include "scene.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static char *text_of(const uint8_t *data, size_t size)
+{
+    char *text = malloc(size + 1);
+    if (!text) abort();
+    if (size) memcpy(text, data, size);
+    text[size] = '\0';
+    return text;
+}
+
+/* A failure must have a sentence and leave nothing; a success must have no failure. */
+static void judge(enum err e, const struct diag *d)
+{
+    if (e != d->code || (e && strlen(d->text) < 10)) abort();
+}
+
+int fuzz_case(const uint8_t *data, size_t size)
+{
+    struct scene s;
+    struct diag d = {.code = ERR_OK};
+    char *text = text_of(data, size);
+    const enum err e = scene_parse(&s, text, "x.cfg", 0, NULL, &d);
+    judge(e, &d);
+    if (e && s.arena.blocks) abort();
+    if (!e) scene_free(&s);
+    free(text);
+    return 0;
+}
+
+static bool find_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY])
+{
+    (void)context, (void)why;
+    *q = (struct quantity){.value = 0.5};
+    return strcmp(name, "H") == 0;
+}
+
+int fuzz_expr(const uint8_t *data, size_t size)
+{
+    const struct expr_names names = {.find = find_name, .in_space = true};
+    struct arena a = {0};
+    struct diag d = {.code = ERR_OK};
+    struct expr *e;
+    struct dim dim;
+    struct quantity q;
+    char why[EXPR_WHY] = "", *text = text_of(data, size);
+    const struct slice slice = {text, size};
+    if (expr_compile(&e, slice, &names, &dim, &a, why, &d) == ERR_OK)
+        scene_expr_at(e, 0.25, -3);
+    else if (!why[0])
+        abort();
+    why[0] = '\0';
+    if (!expr_value(slice, &(struct expr_names){.find = find_name}, &q, why) && !why[0]) abort();
+    arena_free(&a);
+    free(text);
+    return 0;
+}
+
+static const char table_case[] =
+    "dp = 1 cm\nend_time = 1\n[wall w]\nshape = box 0, 0, 0.03, 0.03\nmotion = m\n"
+    "[fluid f]\nshape = box 0.03, 0, 0.05, 0.02\nsound_speed = 10\n"
+    "[motion m]\nkind = table\nfile = ";
+
+/* The table is a file of its own in memory, so that nothing is written to a disk. */
+int fuzz_motion(const uint8_t *data, size_t size)
+{
+    static int fd = -1;
+    static struct scene s;
+    if (fd < 0) fd = memfd_create("table", 0);
+    if (fd < 0 || ftruncate(fd, 0) != 0 || pwrite(fd, data, size, 0) != (ssize_t)size) return 0;
+    char text[sizeof table_case + 64];
+    snprintf(text, sizeof text, "%s/proc/self/fd/%d\n", table_case, fd);
+    struct diag d = {.code = ERR_OK};
+    const enum err e = scene_parse(&s, text, "x.cfg", 0, NULL, &d);
+    judge(e, &d);
+    if (e) return 0;
+    for (int k = -1; k < 12; k++) {
+        const struct motion_state m = motion_at(&s, 0, 0.1 * k);
+        if (!isfinite(m.d[0]) || !isfinite(m.d[1])) abort();
+    }
+    scene_free(&s);
+    return 0;
+}
+
+/* --- checkpoints --- */
+
+static const char small_case[] =
+    "dp = 1 cm\nend_time = 0.02 s\ngravity = 0, -9.81\n[fluid water]\nshape = box 0, 0, 0.03, "
+    "0.02\n"
+    "sound_speed = 20\nsurface = 0.02\n[wall tank]\nshape = box 0, -0.02, 0.04, 0\n[solid gate]\n"
+    "shape = box 0.03, 0, 0.06, 0.03\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n";
+
+static struct scene small_scene;
+
+static void open_small(struct simulation *s)
+{
+    struct diag d = {.code = ERR_OK};
+    if (!small_scene.top.dp && scene_parse(&small_scene, small_case, "x.cfg", 0, NULL, &d)) abort();
+    if (simulation_create(s, &small_scene, &d)) abort();
+}
+
+int fuzz_write_checkpoint(const char *path, int steps)
+{
+    struct simulation s;
+    struct image m = {0};
+    struct diag d = {.code = ERR_OK};
+    open_small(&s);
+    for (int k = 0; k < steps; k++)
+        if (simulation_step(&s, 1, &d)) abort();
+    if (checkpoint_capture(&m, &s, small_case, "0", &d)) abort();
+    checkpoint_seal(&m);
+    FILE *file = fopen(path, "wb");
+    const bool written = file && fwrite(m.bytes, 1, m.size, file) == m.size;
+    const bool closed = file && fclose(file) == 0;
+    checkpoint_free(&m);
+    simulation_free(&s);
+    return !(written && closed);
+}
+
+/* First as it is, then with the sums, the length and the magic put right: whoever wrote them, the
+ * reader must not fall over what the blocks say. A state that is taken must bear a step. */
+int fuzz_checkpoint(const uint8_t *data, size_t size)
+{
+    struct image m = {malloc(size + 1), size, size};
+    struct diag d = {.code = ERR_OK};
+    if (!m.bytes) abort();
+    if (size) memcpy(m.bytes, data, size);
+    judge(checkpoint_check(&m, "x.ckpt", &d), &d);
+    d.code = ERR_OK;
+    if (size < 160) {
+        checkpoint_free(&m);
+        return 0;
+    }
+    const uint64_t length = size;
+    memcpy(m.bytes, "SPHFSICK", 8);
+    memcpy(m.bytes + 32, &length, sizeof length);
+    checkpoint_seal(&m);
+    enum err e = checkpoint_check(&m, "x.ckpt", &d);
+    judge(e, &d);
+    if (!e) {
+        struct simulation s;
+        open_small(&s);
+        checkpoint_info(&m);
+        e = checkpoint_apply(&m, &s, &d);
+        judge(e, &d);
+        if (!e) judge(simulation_step(&s, s.state.time + 1e-5, &d), &d);
+        simulation_free(&s);
+    }
+    checkpoint_free(&m);
+    return 0;
+}
