@@ -74,7 +74,8 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: all help debug sanitize serial test test-sanitize faults fuzz reliability bench gate results check format info install \
+.PHONY: faults fuzz reliability
+.PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:

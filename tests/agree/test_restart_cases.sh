@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every shipped case, made coarse and short: cut in the middle and continued, it ends with the bits and rows of the run that was not cut; by both integrators.
+# Every shipped case, made coarse and short: cut in the middle and continued, it ends with the bits
+# and rows of the run that was not cut; by both integrators, and Verlet at a single rate as well.
 set -u
 sphfsi=${SPHFSI:-./sphfsi}
 # In memory where that is possible: hundreds of synced files say nothing here.
