@@ -29,7 +29,7 @@ Q       := $(if $(V),,@)
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate results check,$(GOALS)),plot))
+  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate results,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)

@@ -9,10 +9,14 @@ struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
     double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
     double step_limit;  /* s: a step below this has collapsed */
-    bool warned_speed;
+    bool warned_speed, warned_energy;
 };
 
 struct simulation;
+struct ledger;
+
+/* Warns once where a ledger shows that energy has come from nowhere. */
+void monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d);
 
 /* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time, quantity
  * and likely cause; warns once where trouble is near. */

@@ -104,6 +104,7 @@ static enum err write_probes(struct run *r)
 static enum err write_ledger(struct run *r)
 {
     r->record.last = simulation_ledger(r->s);
+    monitor_energy(r->s, &r->record.last, r->diag);
     const double row[] = {
 #define LEDGER(name, unit, meaning) r->record.last.name,
         LEDGER_COLUMNS(LEDGER)

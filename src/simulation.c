@@ -86,12 +86,20 @@ static void start_solid(struct simulation *s)
 }
 
 /* Sub-steps pay where the solid's step is the smaller one. */
-static void choose_rate(struct simulation *s)
+static enum err choose_rate(struct simulation *s, struct diag *d)
 {
-    if (!(s->effects & FX_COUPLING)) return;
+    if (!(s->effects & FX_COUPLING)) return ERR_OK;
+    const double ratio = timestep_fluid_limit(s) / s->dt_solid;
+    if (!(ratio <= SUBSTEPS_MOST))
+        return diag_fail(
+            d, ERR_INPUT,
+            "the solid's stable step, %.3g s, goes %.3g times into the fluid's, and at most %d are "
+            "taken: young is too high or density too low beside the fluid's sound_speed",
+            s->dt_solid, ratio, SUBSTEPS_MOST);
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
+    return ERR_OK;
 }
 
 static void set_guards(struct simulation *s)
@@ -130,9 +138,13 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
 /* Particles of the structure that have lost touch with the fluid are not visited any more. */
 static void forget_touch(struct particles *p)
 {
-    memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
-    memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
-    memset(p->p, 0, (size_t)p->n * sizeof *p->p);
+    const size_t bytes = (size_t)p->n * sizeof *p->p;
+    if (p->fx) {
+        memset(p->fx, 0, bytes);
+        memset(p->fy, 0, bytes);
+    }
+    memset(p->p, 0, bytes);
+    memset(p->dens, 0, bytes);
 }
 
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
@@ -150,12 +162,13 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
         cells_sort(&s->cells, KIND_SOLID, solid);
         forget_touch(solid);
     }
-    if (s->effects & FX_MOTION) forget_touch(&s->kind[KIND_WALL]);
+    if (s->effects & FX_WALL) forget_touch(&s->kind[KIND_WALL]);
     fluid_find_near(&s->fluid, &s->cells);
     s->state.drift = 0;
     s->state.sorts++;
     const int32_t crowd = fluid_crowding(&s->cells);
-    if (crowd > CELL_CAPACITY)
+    s->crowded = crowd > CELL_CAPACITY;
+    if (s->crowded)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some ten "
@@ -187,8 +200,18 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Says once what a scene may expect and will not get. */
+static void warn_of_contact(const struct simulation *s, struct diag *d)
+{
+    int loose = 0;
+    for (int k = 0; k < s->scene->n_solid; k++) loose += s->scene->solid[k].clamp.n == 0;
+    if (s->scene->n_solid > 1 || (loose && s->scene->n_wall > 0))
+        diag_warn(d, "contact is not simulated: solids pass through each other and through walls");
+}
+
 static enum err build(struct simulation *s, struct diag *d)
 {
+    warn_of_contact(s, d);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         TRY(fill_kind(s, (enum kind)kind, id, d));
@@ -202,7 +225,7 @@ static enum err build(struct simulation *s, struct diag *d)
         s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step;
     }
     if (s->effects & FX_MOTION) move_walls(s, 0);
-    choose_rate(s);
+    TRY(choose_rate(s, d));
     set_guards(s);
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
@@ -281,7 +304,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
         if (s->effects & FX_COUPLING) forget_touch(&s->kind[KIND_SOLID]);
-        if (s->effects & FX_MOTION) forget_touch(&s->kind[KIND_WALL]);
+        if (s->effects & FX_WALL) forget_touch(&s->kind[KIND_WALL]);
         if (fluid_crowding(&s->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
@@ -292,7 +315,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
 
 void simulation_refresh(struct simulation *s)
 {
-    if (s->effects & FX_FLUID) {
+    if ((s->effects & FX_FLUID) && !s->crowded) {
         const double seconds[3] = {s->phase_seconds[PHASE_lanes], s->phase_seconds[PHASE_wall],
                                    s->phase_seconds[PHASE_fluid]};
         evaluate_fluid(s, s->state.time);

@@ -52,6 +52,7 @@ struct simulation {
     int substeps;                 /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
     double speed2; /* of the fastest particle of any kind, squared, (m/s)^2 */
+    bool crowded;  /* cells hold more than the sweeps can take: nothing is evaluated */
     struct guard guard;
 };
 

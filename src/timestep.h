@@ -13,6 +13,9 @@ double timestep_fluid_limit(const struct simulation *s);
  * where the step ends at t_limit. */
 double timestep_choose(struct simulation *s, double t_limit, bool *hits);
 
+/* Most sub-steps of the solid in one step of the fluid that a run may ask for. */
+enum { SUBSTEPS_MOST = 10000 };
+
 /* Solid sub-steps of a fluid step: 1 where each takes the same. */
 int timestep_substeps(const struct simulation *s, double dt);
 

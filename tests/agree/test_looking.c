@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <string.h>
 
 void setUp(void) {}
 void tearDown(void) {}
@@ -59,10 +60,51 @@ static void test_output_times_that_nearly_meet(void)
     rig_close(&rig);
 }
 
+/* Walls that the fluid has left keep nothing of it, least of all across a restart. */
+static void test_walls_forget_the_fluid(void)
+{
+    struct rig rig = {0};
+    rig_open(&rig, piston, NULL);
+    struct particles *const fluid = &rig.sim.kind[KIND_FLUID], *const wall =
+                                                                   &rig.sim.kind[KIND_WALL];
+    double top = 0;
+    for (int64_t i = 0; i < wall->n; i++) top = fmax(top, wall->p[i]);
+    TEST_ASSERT_TRUE(top > 1000);
+    for (int64_t i = 0; i < fluid->n; i++) {
+        fluid->x[i] += 0.3;
+        fluid->y[i] += 0.3;
+    }
+    rig_sort(&rig);
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_resume(&rig.sim, &d));
+    for (int64_t i = 0; i < wall->n; i++) TEST_ASSERT_TRUE(wall->p[i] == 0 && wall->dens[i] == 0);
+    rig_close(&rig);
+}
+
+/* A step of the solid that would go a million times into the fluid's is refused, not counted in an int. */
+static void test_absurd_ratio_of_steps_is_refused(void)
+{
+    static const char plate[] =
+        "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\n"
+        "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
+        "[solid plate]\nshape = box 0, -0.04, 0.2, 0\nclamp = box 0, -0.04, 0.02, 0\n"
+        "density = 1e-6\nyoung = 1e15 Pa\npoisson = 0.3\n";
+    struct scene scene;
+    struct simulation sim;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&scene, plate, "plate.cfg", 0, NULL, &d),
+                                  d.text);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, "times into the fluid's"), d.text);
+    scene_free(&scene);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_ledgers_leave_no_trace);
+    RUN_TEST(test_walls_forget_the_fluid);
+    RUN_TEST(test_absurd_ratio_of_steps_is_refused);
     RUN_TEST(test_output_times_that_nearly_meet);
     return UNITY_END();
 }
