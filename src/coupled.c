@@ -94,34 +94,6 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
 /* Steps of a lone solid that are taken between two looks at its state. */
 enum { SOLID_BATCH = 64 };
 
-static void solid_symplectic(struct simulation *s, double dt)
-{
-    struct particles *const p = &s->kind[KIND_SOLID];
-    solid_stress(&s->solid, p);
-    solid_forces(&s->solid, p);
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->x0[i] = p->ux[i];
-        p->y0[i] = p->uy[i];
-        p->vx0[i] = p->vx[i];
-        p->vy0[i] = p->vy[i];
-        p->ux[i] += 0.5 * dt * p->vx[i]; /* Eq. 22 */
-        p->uy[i] += 0.5 * dt * p->vy[i];
-        p->vx[i] += 0.5 * dt * p->sx[i];
-        p->vy[i] += 0.5 * dt * p->sy[i];
-    }
-    solid_stress(&s->solid, p);
-    solid_forces(&s->solid, p);
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
-        p->vy[i] = p->vy0[i] + dt * p->sy[i];
-        p->ux[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]);
-        p->uy[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
-    }
-    s->state.solid_evaluations += 2;
-}
-
 void solid_only_step(struct simulation *s, double t_limit)
 {
     struct state *const st = &s->state;
@@ -138,7 +110,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double dt = hits ? left / n : bound;
     if (dt < bound) s->dt_bound[BOUND_output] = dt;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
-        for (int k = 0; k < n; k++) solid_symplectic(s, dt);
+        for (int k = 0; k < n; k++) symplectic_solid(s, dt);
     } else {
         solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
         st->solid_evaluations += n;

@@ -7,6 +7,8 @@
 
 /* Eqs. 22-24: predictor-corrector. */
 void symplectic_step(struct simulation *s, double t_limit);
+/* Eqs. 22-23 for a solid alone. */
+void symplectic_solid(struct simulation *s, double dt);
 /* Eqs. 25-27: Verlet for the fluid, semi-implicit Euler for the solid. */
 void verlet_step(struct simulation *s, double t_limit);
 /* A solid alone: many steps at once. */

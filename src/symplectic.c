@@ -43,7 +43,7 @@ static void rates_of_solid(struct simulation *s)
     s->state.solid_evaluations++;
 }
 
-/* Single rate: the solid takes the same two stages as the fluid. */
+/* The solid takes the same two stages as the fluid. */
 static void predict_solid(struct particles *p, double half)
 {
 #pragma omp parallel for schedule(static)
@@ -52,27 +52,30 @@ static void predict_solid(struct particles *p, double half)
         p->y0[i] = p->uy[i];
         p->vx0[i] = p->vx[i];
         p->vy0[i] = p->vy[i];
-        p->ux[i] += half * p->vx[i];
+        p->ux[i] += half * p->vx[i]; /* Eq. 22 */
         p->uy[i] += half * p->vy[i];
         p->vx[i] += half * p->sx[i];
         p->vy[i] += half * p->sy[i];
-        p->x[i] = p->X[i] + p->ux[i];
-        p->y[i] = p->Y[i] + p->uy[i];
-        p->wx[i] = p->vx[i];
-        p->wy[i] = p->vy[i];
     }
 }
 
-static void correct_solid(struct particles *p, double dt, double newest)
+static void correct_solid(struct particles *p, double dt)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        p->vx[i] = p->vx0[i] + dt * p->sx[i];
+        p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
         p->vy[i] = p->vy0[i] + dt * p->sy[i];
         p->ux[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]);
         p->uy[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
-        p->x[i] = p->X[i] + p->ux[i];
-        p->y[i] = p->Y[i] + p->uy[i];
+    }
+}
+
+/* Single rate: place and velocity as the fluid sees them, and its acceleration with the given weight. */
+static void show_solid(struct particles *p, double newest)
+{
+    place_solid(p);
+#pragma omp parallel for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
         p->wx[i] = p->vx[i];
         p->wy[i] = p->vy[i];
         p->ax[i] += newest * (p->sx[i] - p->ax[i]);
@@ -104,7 +107,10 @@ void symplectic_step(struct simulation *s, double t_limit)
     const double dt = timestep_choose(s, t_limit, &hits);
     predict_fluid(fluid, 0.5 * dt);
     if (coupled && multirate) carry_solid(solid, 0.5 * dt);
-    if (coupled && !multirate) predict_solid(solid, 0.5 * dt);
+    if (coupled && !multirate) {
+        predict_solid(solid, 0.5 * dt);
+        show_solid(solid, 0);
+    }
     phase_add(s, PHASE_update, clock);
 
     evaluate_fluid(s, time + 0.5 * dt);
@@ -115,10 +121,20 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     correct_fluid(fluid, dt);
     if (coupled && !multirate) {
-        correct_solid(solid, dt, acceleration_weight(s, dt));
+        correct_solid(solid, dt);
+        show_solid(solid, acceleration_weight(s, dt));
         s->state.solid_substeps++;
         s->substeps = 1;
     }
     timestep_book(s, dt, t_limit, hits);
     phase_add(s, PHASE_update, clock);
+}
+
+void symplectic_solid(struct simulation *s, double dt)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    rates_of_solid(s);
+    predict_solid(p, 0.5 * dt);
+    rates_of_solid(s);
+    correct_solid(p, dt);
 }
