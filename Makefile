@@ -157,7 +157,7 @@ results: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/results.py $(ARGS)
 
 check: $(LIB)
-	@$(PROJECT_PYTHON) tools/check_style.py --library $(LIB)
+	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)
 
 format:
 	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch])

@@ -143,7 +143,7 @@ def check_format(paths):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--library", type=Path, help="library whose exported symbols to check")
+    parser.add_argument("--archive", type=Path, help="library whose exported symbols to check")
     args = parser.parse_args()
 
     code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases")
@@ -158,8 +158,8 @@ def main():
             check_sizes(path, lines)
     check_flags()
     check_format([path for path in code if path.suffix in (".c", ".h")])
-    if args.library:
-        check_symbols(args.library.resolve())
+    if args.archive:
+        check_symbols(args.archive.resolve())
     print(f"style: {errors} error{'s' * (errors != 1)}")
     return errors > 0
 
