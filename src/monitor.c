@@ -64,6 +64,7 @@ static bool fluid_sound(struct simulation *s)
     }
     s->state.dens_low = min2(s->state.dens_low, low);
     s->state.dens_high = max2(s->state.dens_high, high);
+    s->fluid_speed2 = speed2;
     s->state.speed_high = max2(s->state.speed_high, sqrt(speed2));
     return !bad;
 }

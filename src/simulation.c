@@ -122,7 +122,7 @@ static double fastest(const struct particles *p)
 
 static void find_speed(struct simulation *s)
 {
-    s->speed2 = fastest(&s->kind[KIND_FLUID]);
+    s->speed2 = s->fluid_speed2;
     if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
     if (s->effects & FX_MOTION) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_WALL]));
 }
@@ -227,6 +227,7 @@ static enum err build(struct simulation *s, struct diag *d)
     if (s->effects & FX_MOTION) move_walls(s, 0);
     TRY(choose_rate(s, d));
     set_guards(s);
+    s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
     const struct ledger start = simulation_ledger(s);
@@ -287,11 +288,11 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     clock = wall_clock();
     /* So that the state does not depend on whether anybody looks at it between two steps. */
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
+    const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
     find_speed(s);
     s->state.drift += s->state.dt * sqrt(max2(speed2_before, s->speed2));
     if (s->effects & FX_MOTION) add_wall_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
-    const enum err e = monitor_check(s, d);
     phase_add(s, PHASE_update, clock);
     return e;
 }
@@ -309,6 +310,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
     }
+    s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);
     return ERR_OK;
 }
