@@ -51,9 +51,9 @@ struct simulation {
     double dt_solid;              /* stable step of the solid times its safety, s */
     int substeps;                 /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
-    double fluid_speed2;              /* of the fastest fluid particle, squared, (m/s)^2 */
-    double speed2; /* of the fastest particle of any kind, squared, (m/s)^2 */
-    bool crowded;  /* cells hold more than the sweeps can take: nothing is evaluated */
+    double fluid_speed2; /* of the fastest fluid particle, squared, (m/s)^2 */
+    double speed2;       /* of the fastest particle of any kind, squared, (m/s)^2 */
+    bool crowded;        /* cells hold more than the sweeps can take: nothing is evaluated */
     struct guard guard;
 };
 
