@@ -69,9 +69,48 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                                                                                   : ERR_MEMORY;
 }
 
+enum err cells_join(struct cells *c, int axis, struct diag *d)
+{
+    const int n = axis ? c->ny : c->nx;
+    if (n < 3)
+        return diag_fail(
+            d, ERR_INPUT,
+            "[domain] is periodic in %c and %.6g m wide there, %.3g times the reach of "
+            "%.3g m: at least 3 times is needed, lest a particle meets another twice",
+            "xy"[axis], n * c -> side[axis], (double)n, c -> side[axis]);
+    c->joined[axis] = true;
+    return ERR_OK;
+}
+
+/* Place along an axis in cells, brought between joined sides. */
+static double cells_along(const struct cells *c, int axis, double x)
+{
+    double place = (x - c->lower[axis]) / c->side[axis];
+    if (!c->joined[axis]) return place;
+    const double n = axis ? c->ny : c->nx;
+    place -= n * floor(place / n);
+    return place < n ? place : 0; /* a hair below the lower side rounds to the upper one */
+}
+
+/* Fluid beyond joined sides comes in again opposite. */
+static int64_t carry_over(const struct cells *c, int axis, double *x, int64_t n)
+{
+    const double lower = c->lower[axis], period = c->side[axis] * (axis ? c->ny : c->nx);
+    int64_t laps = 0;
+#pragma omp parallel for schedule(static) reduction(+ : laps)
+    for (int64_t k = 0; k < n; k++) {
+        const double lap = floor((x[k] - lower) / period);
+        if (lap == 0 || !isfinite(lap)) continue;
+        x[k] = max2(lower, x[k] - lap * period);
+        if (!(x[k] < lower + period)) x[k] = lower;
+        laps += (int64_t)lap;
+    }
+    return laps;
+}
+
 static int32_t cell_of(const struct cells *c, double x, double y)
 {
-    const double fx = (x - c->lower[0]) / c->side[0], fy = (y - c->lower[1]) / c->side[1];
+    const double fx = cells_along(c, 0, x), fy = cells_along(c, 1, y);
     if (!(fx >= 0 && fx < c->nx && fy >= 0 && fy < c->ny)) return OUTSIDE;
     return (int32_t)fy * c->nx + (int32_t)fx;
 }
@@ -174,6 +213,8 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     struct cell_list *list = &c->kind[kind];
     const int64_t n = p->n;
     if (n == 0) return 0;
+    for (int axis = 0; axis < 2 && kind == KIND_FLUID; axis++)
+        c->crossed[axis] = c->joined[axis] ? carry_over(c, axis, axis ? p->y : p->x, n) : 0;
     int64_t outside = 0;
 #pragma omp parallel for schedule(static) reduction(+ : outside)
     for (int64_t k = 0; k < n; k++) {

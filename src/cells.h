@@ -21,6 +21,9 @@ enum { CELLS_SORT_DIGIT_BITS = 11 };
 struct cells {
     double lower[2], side[2]; /* m */
     int nx, ny;
+    bool joined[2]; /* the opposite sides in x, in y are one: periodic */
+    int64_t crossed
+        [2]; /* times that fluid left through an upper side, less a lower, at the last sort */
     struct cell_list kind[KIND_COUNT];
     uint64_t *pair_a, *pair_b; /* sorting scratch, (Morton key, particle) in one word */
     int64_t (*histogram)[1 << CELLS_SORT_DIGIT_BITS]; /* [sort_threads] */
@@ -35,6 +38,9 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                       const double upper[2], double reach, const struct particles kinds[KIND_COUNT],
                       struct diag *d) SPHFSI_CHECKED;
 
+/* Joins the opposite sides along an axis; a cell must not meet another one twice: three of them. */
+enum err cells_join(struct cells *c, int axis, struct diag *d) SPHFSI_CHECKED;
+
 /* Sorts the particles of one kind into cells, by Morton key and then id; the fluid itself is
  * permuted. Particles outside the grid come last and are left out: their number is returned, and
  * p->n counts them still (they are at p->n - lost ... p->n - 1 of a fluid). Non-finite positions
@@ -46,6 +52,28 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p);
 
 SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
 SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }
+
+/* The cell at (cx, cy), up to one step beyond the grid through joined sides; -1: there is none. */
+SPHFSI_INLINE int32_t cell_at(const struct cells *c, int cx, int cy)
+{
+    if (cx < 0 || cx >= c->nx) {
+        if (!c->joined[0]) return -1;
+        cx += cx < 0 ? c->nx : -c->nx;
+    }
+    if (cy < 0 || cy >= c->ny) {
+        if (!c->joined[1]) return -1;
+        cy += cy < 0 ? c->ny : -c->ny;
+    }
+    return cy * c->nx + cx;
+}
+
+/* A difference of positions along an axis, the short way round through joined sides. */
+SPHFSI_INLINE double cells_short_way(const struct cells *c, int axis, double difference)
+{
+    if (!c->joined[axis]) return difference;
+    const double period = c->side[axis] * (axis ? c->ny : c->nx);
+    return difference - period * __builtin_floor(difference / period + 0.5);
+}
 
 /* Centre of a cell. */
 SPHFSI_INLINE double cell_centre_x(const struct cells *c, int32_t cell)

@@ -16,6 +16,7 @@ static unsigned fluid_effects(const struct scene *s)
     if (f->artificial_viscosity > 0) fx |= FX_VISCOSITY;
     if (f->density_diffusion > 0) fx |= FX_DIFFUSION;
     if (f->density_diffusion > 0 && f->diffusion_form == DIFFUSION_FOURTAKAS) fx |= FX_FOURTAKAS;
+    if (s->domain.periodic != PERIODIC_NONE) fx |= FX_PERIODIC;
     if (s->n_wall > 0) fx |= FX_WALL;
     for (int k = 0; k < s->n_wall; k++)
         if (s->wall[k].motion[0]) fx |= FX_MOTION;

@@ -61,9 +61,12 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
 static bool fluid_around(const struct cells *c, int32_t cell)
 {
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
-    for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < c->ny; y++)
-        for (int x = cx > 0 ? cx - 1 : 0; x <= cx + 1 && x < c->nx; x++)
-            if (c->kind[KIND_FLUID].count[y * c->nx + x]) return true;
+    for (int y = cy - 1; y <= cy + 1; y++) {
+        for (int x = cx - 1; x <= cx + 1; x++) {
+            const int32_t other = cell_at(c, x, y);
+            if (other >= 0 && c->kind[KIND_FLUID].count[other]) return true;
+        }
+    }
     return false;
 }
 

@@ -52,9 +52,8 @@ static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
     const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
     for (int dy = -1; dy <= 1; dy++) {
         for (int dx = -1; dx <= 1; dx++) {
-            if (cx + dx < 0 || cx + dx >= c->nx || cy + dy < 0 || cy + dy >= c->ny) continue;
-            const int32_t other = (cy + dy) * c->nx + cx + dx;
-            if (list->count[other] == 0) continue;
+            const int32_t other = cell_at(c, cx + dx, cy + dy);
+            if (other < 0 || list->count[other] == 0) continue;
             n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
                             (real)(dx * side_x), (real)(dy * side_y));
         }
@@ -150,14 +149,16 @@ static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
 
 /* One wall or solid particle i at place `place` of the cell order. */
 static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place,
-                         int32_t i, double centre_x, double centre_y,
+                         int32_t i, const struct cells *c, int32_t cell,
                          const struct SWEEP(tile) * tile)
 {
     const double inv_h = 1 / f->k.h;
+    const double from_centre_x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
+    const double from_centre_y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
     const bool solid = kind == KIND_SOLID;
     const double *const u = solid ? p->wx : p->vx, *const v = solid ? p->wy : p->vy;
     real *const *const out = (real *const *)(const void *)f->lanes[kind].field;
-    const real x = (real)((p->x[i] - centre_x) * inv_h), y = (real)((p->y[i] - centre_y) * inv_h);
+    const real x = (real)(from_centre_x * inv_h), y = (real)(from_centre_y * inv_h);
     p->p[i] = extrapolated_pressure(f, tile, x, y, p->ax ? p->ax[i] : 0, p->ax ? p->ay[i] : 0);
     p->dens[i] = eos_dens(p->p[i], f->k.rho0, f->k.c0);
     out[LANE_X][place] = x;
@@ -185,9 +186,8 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
         const int32_t cell = f->near_fluid[kind][k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
         tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
-        const double centre_x = cell_centre_x(c, cell), centre_y = cell_centre_y(c, cell);
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
-            dummy_update(f, &kinds[kind], kind, j, list->order[j], centre_x, centre_y, tile);
+            dummy_update(f, &kinds[kind], kind, j, list->order[j], c, cell, tile);
     }
 }
 

@@ -57,6 +57,13 @@ static void default_domain(struct scene *s)
     }
 }
 
+/* The two sides of a periodic domain are one place: a point on the upper one lies on the lower. */
+static bool in_domain(const struct scene *s, int axis, double x)
+{
+    const double upper = s->domain_upper[axis];
+    return x >= s->domain_lower[axis] && (scene_periodic(s, axis) ? x < upper : x <= upper);
+}
+
 static enum err given_domain(struct scene *s, struct diag *d)
 {
     char place[PLACE_TEXT];
@@ -73,12 +80,64 @@ static enum err given_domain(struct scene *s, struct diag *d)
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct scene_points *p = &s->points[kind];
         for (int64_t k = 0; k < p->n; k++) {
-            if (p->x[k] >= s->domain_lower[0] && p->x[k] <= s->domain_upper[0] &&
-                p->y[k] >= s->domain_lower[1] && p->y[k] <= s->domain_upper[1])
-                continue;
+            if (in_domain(s, 0, p->x[k]) && in_domain(s, 1, p->y[k])) continue;
             return diag_fail(d, ERR_INPUT, "%s: [domain] leaves out a %s particle at (%g, %g) m",
                              place, kind_names[kind], p->x[k], p->y[k]);
         }
+    }
+    return ERR_OK;
+}
+
+/* --- periodic sides --- */
+
+/* The lattice must go on through the side without a seam. */
+static enum err check_period(const struct scene *s, int axis, const char *place, struct diag *d)
+{
+    const double period = s->domain.upper[axis] - s->domain.lower[axis];
+    const double n = period / s->top.dp;
+    if (fabs(n - round(n)) <= 1e-6) return ERR_OK;
+    return diag_fail(d, ERR_INPUT,
+                     "%s: [domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
+                     "must be a whole number of them; %.9g m would fit",
+                     place, "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
+}
+
+/* Bodies are bonded within the domain only: one from side to side would be cut there. */
+static enum err check_span(const struct scene *s, int axis, int body, const char *place,
+                           struct diag *d)
+{
+    const struct scene_points *p = &s->points[KIND_SOLID];
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int64_t k = 0; k < p->n; k++) {
+        if (p->body[k] != body) continue;
+        low = min2(low, axis ? p->y[k] : p->x[k]);
+        high = max2(high, axis ? p->y[k] : p->x[k]);
+    }
+    const double gap = s->domain.upper[axis] - s->domain.lower[axis] - (high - low);
+    if (gap >= 2 * s->h) return ERR_OK;
+    return diag_fail(d, ERR_INPUT,
+                     "%s: [domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
+                     "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
+                     "needed",
+                     place, s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
+}
+
+static enum err check_periodic(const struct scene *s, struct diag *d)
+{
+    if (s->domain.periodic == PERIODIC_NONE) return ERR_OK;
+    char place[PLACE_TEXT];
+    scene_place(s, s->domain.common.line, place);
+    if (s->n_fluid == 0)
+        return diag_fail(d, ERR_INPUT,
+                         "%s: [domain] periodic acts on fluid, and the scene has none: it is to go",
+                         place);
+    for (int axis = 0; axis < 2; axis++) {
+        if (!scene_periodic(s, axis)) continue;
+        if (s->domain.lower[axis] >= s->domain.upper[axis])
+            return diag_fail(d, ERR_INPUT, "%s: [domain] periodic needs `lower` and `upper`",
+                             place);
+        TRY(check_period(s, axis, place, d));
+        for (int k = 0; k < s->n_solid; k++) TRY(check_span(s, axis, k, place, d));
     }
     return ERR_OK;
 }
@@ -168,6 +227,7 @@ enum err geometry_extent(struct sampler *g)
 {
     struct scene *s = g->scene;
     const struct scene_domain *dom = &s->domain;
+    TRY(check_periodic(s, g->diag));
     if (dom->lower[0] == dom->upper[0] && dom->lower[1] == dom->upper[1])
         default_domain(s);
     else

@@ -61,6 +61,7 @@ enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
 enum suction { SUCTION_OFF, SUCTION_ON };
+enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
@@ -128,6 +129,12 @@ void scene_free(struct scene *s);
 /* Samples all shapes into s->points and fixes h, c0, rho0 and the domain (geometry.c). Called by
  * scene_read and scene_parse after the sections have been read. */
 enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Whether opposite sides of the domain along an axis are joined. */
+SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
+{
+    return s->domain.periodic >> axis & 1;
+}
 
 /* Value of an expression at a point, and at construction time of the scene (expr.h has the grammar). */
 double scene_expr_at(const struct expr *e, double x, double y);

@@ -135,6 +135,15 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
                       k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
 }
 
+/* What gravity along joined sides gives to fluid that comes in again opposite. */
+static void book_crossings(struct simulation *s)
+{
+    for (int axis = 0; axis < 2; axis++)
+        s->state.carried += s->fluid.k.mass * s->fluid.k.gravity[axis] *
+                            (double)s->cells.crossed[axis] *
+                            (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
+}
+
 /* Particles of the structure that have lost touch with the fluid are not visited any more. */
 static void forget_touch(struct particles *p)
 {
@@ -154,6 +163,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++)
         s->state.lost_energy += energy_of(s, fluid, i);
+    if (s->effects & FX_PERIODIC) book_crossings(s);
     fluid->n -= lost;
     s->state.lost += lost;
     if ((s->effects & FX_WALL) && ((s->effects & FX_MOTION) || s->state.sorts == 0))
@@ -195,6 +205,8 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     const double reach = (KERNEL_REACH + scene->numerics.skin) * scene->h;
     TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, s->kind,
                      d));
+    for (int axis = 0; axis < 2; axis++)
+        if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, d));
     TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, d));
     start_fluid(s);
     return ERR_OK;
@@ -349,10 +361,12 @@ double simulation_pressure_at(const struct simulation *s, double x, double y)
     double sum_w = 0, sum_p = 0;
     for (int ny = cy - 1; ny <= cy + 1; ny++) {
         for (int nx = cx - 1; nx <= cx + 1; nx++) {
-            if (nx < 0 || nx >= s->cells.nx || ny < 0 || ny >= s->cells.ny) continue;
-            const int32_t cell = ny * s->cells.nx + nx;
+            const int32_t cell = cell_at(&s->cells, nx, ny);
+            if (cell < 0) continue;
             for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-                const double w = kernel_w(hypot(p->x[i] - x, p->y[i] - y), h);
+                const double dx = cells_short_way(&s->cells, 0, p->x[i] - x);
+                const double dy = cells_short_way(&s->cells, 1, p->y[i] - y);
+                const double w = kernel_w(hypot(dx, dy), h);
                 sum_w += w;
                 sum_p += w * eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
             }

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A run that stops and goes on gives the same bits as one that does not: state, rows, snapshots;
-# whatever the integrator, with checkpoints in between, and with another number of threads.
+# whatever the scene and the integrator, with checkpoints in between, and with another number of threads.
 set -u
 sphfsi=${SPHFSI:-./sphfsi}
 case=tests/fault/tiny.cfg
@@ -53,5 +53,16 @@ run "${set[@]}" --out "$dir/grid" --set output.checkpoint_interval=0.00333
 run "${set[@]}" --out "$dir/older" --restart "${checkpoints[0]}" \
     --set output.checkpoint_interval=0.00333
 agree "$dir/grid" "$dir/older" "from an older checkpoint"
+
+# Periodic sides: particles go round, and a wall goes through.
+case=tests/fault/channel.cfg
+for integrator in symplectic verlet; do
+    set=(--set integrator=$integrator --threads 1)
+    run "${set[@]}" --out "$dir/round-$integrator"
+    run "${set[@]}" --out "$dir/round-$integrator-cut" --until 0.012
+    run "${set[@]}" --out "$dir/round-$integrator-cut" --restart
+    agree "$dir/round-$integrator" "$dir/round-$integrator-cut" "periodic sides, $integrator"
+done
+grep -q '"fluid_left_domain": 0,' "$dir/round-verlet/summary.json" || fail "fluid was lost"
 
 [ $failures = 0 ] || exit 1

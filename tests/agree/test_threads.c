@@ -105,6 +105,32 @@ static void test_lone_solid(void)
     }
 }
 
+/* Fluid that goes round through periodic sides, over a bed with a wall that drifts through them. */
+static void test_periodic_sides(void)
+{
+    static const char round[] =
+        "dp = 5 mm\nend_time = 1\ngravity = 3, -9.81\n[numerics]\nskin = 0.02\n"
+        "[domain]\nlower = 0, -0.02\nupper = 0.2, 0.2\nperiodic = x\n"
+        "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nminus = box 0.1, 0, 0.12, 0.05\n"
+        "sound_speed = 20\nsurface = 0.1\nartificial_viscosity = 0.05\nvelocity = 1, 0\n"
+        "[wall bed]\nshape = box 0, -0.02, 0.2, 0\n"
+        "[wall sill]\nshape = box 0.1, 0, 0.12, 0.05\nmotion = drift\n"
+        "[motion drift]\nvelocity = 1.5, 0\n";
+    uint64_t expected = 0;
+    const int threads[] = {1, 2, 3, 8};
+    for (int k = 0; k < 4; k++) {
+        use_threads(threads[k]);
+        rig_open(&rig, round, NULL);
+        rig_steps(&rig, 50, 1);
+        const uint64_t hash = simulation_hash(&rig.sim);
+        if (k == 0) expected = hash;
+        TEST_ASSERT_EQUAL_HEX64(expected, hash);
+    }
+    TEST_ASSERT_TRUE(rig.sim.state.sorts > 5);
+    TEST_ASSERT_TRUE(rig.sim.state.carried > 0);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -113,5 +139,6 @@ int main(void)
     RUN_TEST(test_verlet_mixed_with_one_rate);
     RUN_TEST(test_verlet_double_with_substeps);
     RUN_TEST(test_lone_solid);
+    RUN_TEST(test_periodic_sides);
     return UNITY_END();
 }

@@ -232,6 +232,23 @@ static const struct {
     {TOP SOLID "[reference r]\nprobe = M1_dx_m\n", NULL, "bad.cfg:8: [reference r] needs `file`"},
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
+    {TOP FLUID "[domain]\nperiodic = x\n", NULL,
+     "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
+    {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,
+     "bad.cfg:6: [domain] periodic: the period in y, 0.0204 m, is 20.4 times dp = 0.001 m and must "
+     "be "
+     "a whole number of them; 0.02 m would fit"},
+    {TOP SOLID "[domain]\nperiodic = x\nlower = 0, 0\nupper = 0.1, 0.1\n", NULL,
+     "bad.cfg:8: [domain] periodic acts on fluid, and the scene has none: it is to go"},
+    {TOP SOLID
+     "[fluid w]\nshape = box 0, 30 mm, 11 mm, 50 mm\nsound_speed = 20\n[domain]\nperiodic = x\n"
+     "lower = 0, 0\nupper = 11 mm, 0.1\n",
+     NULL,
+     "bad.cfg:11: [domain] periodic: [solid a] and its own image in x are 0.002 m apart, and "
+     "solids "
+     "are not bonded through a periodic side: at least 2 h = 0.0027 m are needed"},
+    {TOP FLUID "[domain]\nperiodic = x\nlower = -1 mm, 0\nupper = 19 mm, 0.1\n", NULL,
+     "bad.cfg:6: [domain] leaves out a fluid particle at (0.0195, 0.0005) m"},
     {TOP SOLID "[domain]\nlower = 5 mm, 0\nupper = 1, 1\n", NULL,
      "bad.cfg:8: [domain] leaves out a solid particle at (0.0005, 0.0005) m"},
     {TOP SOLID, "dp", "--set dp: write key=value or section.key=value"},
