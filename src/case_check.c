@@ -123,6 +123,43 @@ static enum err check_motions(struct reader *r)
     return ERR_OK;
 }
 
+/* What a pair across the interface needs one value of. */
+static enum err check_joint(struct reader *r, const struct scene_solid *a,
+                            const struct scene_solid *b)
+{
+    const struct {
+        const char *key;
+        double mine, its;
+    } same[] = {
+        {"hourglass", a->hourglass, b->hourglass},
+        {"hourglass_form", a->hourglass_form, b->hourglass_form},
+        {"viscosity_form", a->viscosity_form, b->viscosity_form},
+    };
+    for (size_t k = 0; k < COUNT_OF(same); k++)
+        if (same[k].mine != same[k].its)
+            return bad_line(r, a->common.line,
+                            "[solid %s] is joined to [solid %s] and differs in `%s`, of which a "
+                            "bond has one only",
+                            a->common.name, b->common.name, same[k].key);
+    return ERR_OK;
+}
+
+static enum err check_joined(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *a = &s->solid[k];
+        if (!*a->joined) continue;
+        const int other = scene_find_solid(s, a->joined);
+        if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
+        if (other == k)
+            return bad_line(r, a->common.line, "[solid %s] joined = %s: a body is one with itself",
+                            a->common.name, a->joined);
+        TRY(check_joint(r, a, &s->solid[other]));
+    }
+    return ERR_OK;
+}
+
 static enum err check_probes(struct reader *r)
 {
     const struct scene *s = r->scene;
@@ -189,6 +226,7 @@ enum err case_check(struct reader *r)
                         "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
     TRY(check_fluids(r));
     TRY(check_motions(r));
+    TRY(check_joined(r));
     TRY(check_probes(r));
     return check_references(r);
 }

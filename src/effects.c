@@ -30,6 +30,7 @@ static unsigned solid_effects(const struct scene *s)
     for (int k = 0; k < s->n_solid; k++) {
         if (s->solid[k].hourglass > 0) fx |= FX_HOURGLASS;
         if (s->solid[k].artificial_viscosity > 0) fx |= FX_SOLID_VISCOSITY;
+        if (s->solid[k].joined[0]) fx |= FX_JOINED;
     }
     return fx;
 }

@@ -18,6 +18,7 @@ enum group {
     G_SOLID = 1 << 8,       /* solid */
     G_COUPLED = 1 << 9,     /* solid that meets fluid */
     G_FORCE = 1 << 10,      /* solid that meets fluid, moving walls */
+    G_JOINED = 1 << 11,     /* solid, where bodies are joined */
 };
 
 enum keep { KEEP_STATE, KEEP_DERIVED };

@@ -8,17 +8,20 @@
 #include "smoothing.h"
 #include "solid_stencil.h"
 
-static struct solid_body body_of(const struct scene *scene, const struct scene_solid *c, double h)
+static struct solid_body body_of(const struct scene *scene, const struct scene_solid *c)
 {
+    const double dp = scene->top.dp, h = scene->h;
     const double E = c->young, nu = c->poisson;
     const double bulk = E / (3 * (1 - 2 * nu));
     const double on = c->gravity ? 1 : 0;
     return (struct solid_body){
+        .dp = dp,
+        .h = h,
         .lambda = E * nu / ((1 + nu) * (1 - 2 * nu)),
         .mu = E / (2 * (1 + nu)),
         .density = c->density,
         .young = E,
-        .mass = c->density * square(scene->top.dp),
+        .mass = c->density * square(dp),
         .sound_speed = sqrt(bulk / c->density), /* Eq. 29 */
         .viscosity = c->artificial_viscosity * sqrt(bulk / c->density) * h,
         .kappa = c->hourglass,
@@ -29,6 +32,27 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
         .symmetric = c->viscosity_form == VISCOSITY_SYMMETRIC,
         .variational = c->hourglass > 0 && c->hourglass_form == HOURGLASS_VARIATIONAL,
     };
+}
+
+/* Bodies that are joined, directly or by way of others, get the number of the first of them. */
+static void join_bodies(struct solid *s, const struct scene *scene, struct particles *p)
+{
+    for (int k = 0; k < s->n_bodies; k++) s->body[k].bond = k;
+    for (int k = 0; k < s->n_bodies; k++) {
+        if (!scene->solid[k].joined[0]) continue;
+        const int a = s->body[k].bond,
+                  b = s->body[scene_find_solid(scene, scene->solid[k].joined)].bond;
+        for (int j = 0; j < s->n_bodies; j++)
+            if (s->body[j].bond == a || s->body[j].bond == b) s->body[j].bond = a < b ? a : b;
+    }
+    for (int k = 0; k < s->n_bodies; k++)
+        for (int j = 0; j < s->n_bodies; j++)
+            s->body[k].mixed |=
+                s->body[j].bond == s->body[k].bond && s->body[j].density * s->body[j].viscosity !=
+                                                          s->body[k].density * s->body[k].viscosity;
+    if (!p->drag) return;
+    for (int64_t i = 0; i < p->n; i++)
+        p->drag[i] = s->body[p->body[i]].density * s->body[p->body[i]].viscosity;
 }
 
 /* Threads that pay: each needs enough packs between two barriers to outweigh them. */
@@ -44,14 +68,13 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
 {
     memset(s, 0, sizeof *s);
     s->n_bodies = scene->n_solid;
-    s->h = scene->h;
-    s->dp = scene->top.dp;
+    s->dp = INFINITY;
     s->coupled = p->groups & G_COUPLED;
     s->body = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->body, "bodies", d);
     if (!s->body) return ERR_MEMORY;
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
-        s->body[k] = body_of(scene, &scene->solid[k], s->h);
+        s->body[k] = body_of(scene, &scene->solid[k]);
         if (s->body[k].gradient == GRADIENT_QUADRATIC && s->body[k].kappa > 0 &&
             !s->body[k].variational)
             diag_warn(d,
@@ -60,9 +83,19 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
                       "any time step; take hourglass_form = variational, or gradient = linear",
                       scene->solid[k].common.name);
         s->variational |= s->body[k].variational;
-        s->paper_step = min2(s->paper_step, 0.6 * s->h / s->body[k].sound_speed); /* Eq. 29 */
+        s->paper_step =
+            min2(s->paper_step, 0.6 * s->body[k].h / s->body[k].sound_speed); /* Eq. 29 */
+        s->dp = min2(s->dp, s->body[k].dp);
     }
+    join_bodies(s, scene, p);
     TRY(solid_stencil_create(s, a, p, d));
+    for (int k = 0; k < s->n_bodies; k++)
+        if (scene->solid[k].joined[0] && !s->body[k].touches)
+            return diag_fail(d, ERR_INPUT,
+                             "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
+                             "away from it",
+                             scene->solid[k].common.name, scene->solid[k].joined,
+                             KERNEL_REACH * s->body[k].h);
     s->threads = useful_threads(s);
     return ERR_OK;
 }
@@ -175,11 +208,19 @@ SPHFSI_INLINE void stress_force(const struct solid_slot *slot, const struct part
 
 /* Eq. 14b over rho0, for approaching pairs: alpha_s c_s h v.x/(x^2 + 0.01 h^2), m^2/s^2. */
 SPHFSI_INLINE vwide viscous_pressure(const struct solid_pair *q, const struct particles *p,
-                                     const struct solid_receiver *a, double viscosity, vwide eta2)
+                                     const struct solid_receiver *a, vwide viscosity, vwide eta2)
 {
     const vwide vx = a->vx - vload_wide(&p->vx[q->j]), vy = a->vy - vload_wide(&p->vy[q->j]);
     const vwide approach = vmin_wide(vfma_wide(vx, q->x, vy * q->y), vset_wide(0));
     return approach * viscosity / vfma_wide(q->x, q->x, vfma_wide(q->y, q->y, eta2));
+}
+
+/* Of joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that the
+ * pair's Pi is one number. */
+SPHFSI_INLINE vwide mean_viscosity(const struct solid_pair *q, const struct particles *p, int64_t i,
+                                   const struct solid_body *body)
+{
+    return (vload_wide(&p->drag[i]) + vload_wide(&p->drag[q->j])) * (0.5 / body->density);
 }
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. In the symmetric form the mean of both particles'
@@ -255,14 +296,15 @@ static void hourglass_stress(const struct solid *s, const struct solid_pack *pac
     store_lanes(&p->Pyy[i], vload_wide(&p->Pyy[i]) + sum.yy * half, pack->lanes);
 }
 
-/* Sums of a pack; `viscous`, `symmetric` and `hourglass` are constants where it is inlined. */
+/* Sums of a pack; what is a bool is a constant where it is inlined. */
 SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
                                           const struct particles *p, const struct solid_receiver *a,
-                                          bool viscous, bool symmetric, bool hourglass,
+                                          bool viscous, bool mixed, bool symmetric, bool hourglass,
                                           bool variational)
 {
-    const double viscosity = s->body[pack->body].viscosity;
-    const vwide eta2 = vset_wide(0.01 * s->h * s->h), zero = vset_wide(0);
+    const struct solid_body *const body = &s->body[pack->body];
+    const vwide eta2 = vset_wide(0.01 * body->h * body->h), zero = vset_wide(0);
+    const vwide own = vset_wide(body->viscosity);
     struct solid_sums sums = {zero, zero, zero, zero, zero, zero};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
@@ -270,8 +312,10 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
         if (!viscous && !hourglass) continue;
         struct solid_pair q = pair_of(slot, p, pack->i, a);
         if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
-        if (viscous)
+        if (viscous) {
+            const vwide viscosity = mixed ? mean_viscosity(&q, p, pack->i, body) : own;
             viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
+        }
         if (hourglass) hourglass_force(&q, a, variational, &sums);
     }
     return sums;
@@ -300,15 +344,17 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
     const struct solid_body *const body = &s->body[pack->body];
     const int64_t i = pack->i;
     const struct solid_receiver a = receiver_of(p, i);
-    const bool viscous = body->viscosity > 0, hourglass = body->kappa > 0;
+    const bool viscous = body->viscosity > 0 || body->mixed, hourglass = body->kappa > 0;
+    const bool stamped = viscous && hourglass && !body->symmetric && !body->mixed;
     struct solid_sums sums;
     /* The default and the paper's combination are stamped; the others are decided as they go. */
-    if (viscous && hourglass && !body->symmetric && body->variational)
-        sums = sum_slots(s, pack, p, &a, true, false, true, true);
-    else if (viscous && hourglass && !body->symmetric)
-        sums = sum_slots(s, pack, p, &a, true, false, true, false);
+    if (stamped && body->variational)
+        sums = sum_slots(s, pack, p, &a, true, false, false, true, true);
+    else if (stamped)
+        sums = sum_slots(s, pack, p, &a, true, false, false, true, false);
     else
-        sums = sum_slots(s, pack, p, &a, viscous, body->symmetric, hourglass, body->variational);
+        sums = sum_slots(s, pack, p, &a, viscous, body->mixed, body->symmetric, hourglass,
+                         body->variational);
     vwide acc[2];
     finish_sums(body, p, i, &a, &sums, acc);
     if (s->coupled) {
@@ -430,7 +476,7 @@ void solid_energy(const struct solid *s, const struct particles *p, double *elas
         const vwide stored = material_energy(b, U), det = vtensor2_det(deformation(U));
         const vwide locked = b->kappa > 0 ? hourglass_energy(s, pack, p) : vset_wide(0);
         for (int l = 0; l < pack->lanes; l++) {
-            *elastic += stored[l] * square(s->dp);
+            *elastic += stored[l] * square(b->dp);
             *hourglass += locked[l];
             if (!(det[l] >= *det_low)) *det_low = det[l];
         }

@@ -9,6 +9,7 @@
 
 /* Constants of one body, SI. */
 struct solid_body {
+    double dp, h;      /* spacing and smoothing length of its particles */
     double lambda, mu; /* Lame constants */
     double density, young;
     double mass;        /* of a particle per depth, rho0 dp^2 */
@@ -17,8 +18,11 @@ struct solid_body {
     double kappa;       /* Eq. 17 */
     double gravity[2];
     int law, plane, gradient;
+    int bond;         /* bodies joined to each other share this number, that of the first of them */
     bool symmetric;   /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */
+    bool touches;     /* has a neighbour in a body it is joined to */
+    bool mixed;       /* joined to a body of another viscosity: pairs take the mean of both */
 };
 
 /* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
@@ -42,7 +46,7 @@ struct solid_pack {
 struct solid {
     int n_bodies;
     struct solid_body *body;
-    double h, dp;
+    double dp; /* the smallest spacing of any body */
     int64_t n_packs, n_slots;
     int threads; /* that its loops use */
     struct solid_pack *pack;

@@ -59,17 +59,20 @@ static int compare_index(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Neighbours of i in its own body, ascending: bodies are not bonded to each other. -1: too many. */
-static int neighbours_of(const struct bucket_grid *g, const struct particles *p, double reach,
-                         double dp, int64_t i, int32_t *found)
+/* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near, are
+ * not bonded to it. -1: too many. */
+static int neighbours_of(const struct solid *s, const struct bucket_grid *g,
+                         const struct particles *p, int64_t i, int32_t *found)
 {
+    const struct solid_body *const own = &s->body[p->body[i]];
+    const double reach = KERNEL_REACH * own->h, dp = own->dp;
     const int bx = (int)((p->X[i] - g->lower[0]) / g->side),
               by = (int)((p->Y[i] - g->lower[1]) / g->side);
     int n = 0;
     for (int y = by > 0 ? by - 1 : 0; y <= by + 1 && y < g->ny; y++) {
         for (int x = bx > 0 ? bx - 1 : 0; x <= bx + 1 && x < g->nx; x++) {
             for (int32_t j = g->first[y * g->nx + x]; j >= 0; j = g->next[j]) {
-                if (j == i || p->body[j] != p->body[i]) continue;
+                if (j == i || s->body[p->body[j]].bond != own->bond) continue;
                 const double dx = reference_distance(p->X[i], p->X[j], dp);
                 const double dy = reference_distance(p->Y[i], p->Y[j], dp);
                 if (dx * dx + dy * dy >= reach * reach) continue;
@@ -143,12 +146,12 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
 static bool find_moments(const struct solid *s, const struct particles *p, int64_t i,
                          const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
 {
+    const double h = s->body[p->body[i]].h, dp = s->body[p->body[i]].dp;
     double M[5][5] = {{0}};
     for (int k = 0; k < n; k++) {
-        const double x = reference_distance(p->X[found[k]], p->X[i], s->dp) / s->h;
-        const double y = reference_distance(p->Y[found[k]], p->Y[i], s->dp) / s->h;
-        const double weight =
-            -square(s->h * s->dp) * kernel_slope(s->h * sqrt(x * x + y * y), s->h);
+        const double x = reference_distance(p->X[found[k]], p->X[i], dp) / h;
+        const double y = reference_distance(p->Y[found[k]], p->Y[i], dp) / h;
+        const double weight = -square(h * dp) * kernel_slope(h * sqrt(x * x + y * y), h);
         double b[5];
         basis(x, y, b);
         for (int r = 0; r < 5; r++)
@@ -163,12 +166,13 @@ static bool find_moments(const struct solid *s, const struct particles *p, int64
 }
 
 /* G_ab: the weight of u_b - u_a in the gradient at a, for X_ab = (X, Y). */
-static void gradient_weight(const struct solid *s, const struct gradient_moments *m, double X,
-                            double Y, double G[2])
+static void gradient_weight(const struct solid_body *own, const struct gradient_moments *m,
+                            double X, double Y, double G[2])
 {
+    const double h = own->h;
     double b[5];
-    basis(-X / s->h, -Y / s->h, b);
-    const double weight = -square(s->h * s->dp) * kernel_slope(sqrt(X * X + Y * Y), s->h) / s->h;
+    basis(-X / h, -Y / h, b);
+    const double weight = -square(h * own->dp) * kernel_slope(sqrt(X * X + Y * Y), h) / h;
     for (int axis = 0; axis < 2; axis++) {
         G[axis] = 0;
         for (int k = 0; k < (m->quadratic ? 5 : 2); k++)
@@ -181,20 +185,20 @@ static void slot_set(struct solid_slot *slot, int lane, const struct solid *s,
                      const struct particles *p, const struct gradient_moments *moments, int64_t i,
                      int64_t j)
 {
-    const struct solid_body *const b = &s->body[p->body[i]];
-    const double X = reference_distance(p->X[i], p->X[j], s->dp),
-                 Y = reference_distance(p->Y[i], p->Y[j], s->dp);
-    const double r2 = X * X + Y * Y, V = s->dp * s->dp;
+    const struct solid_body *const a = &s->body[p->body[i]], *const b = &s->body[p->body[j]];
+    const double X = reference_distance(p->X[i], p->X[j], a->dp),
+                 Y = reference_distance(p->Y[i], p->Y[j], a->dp);
+    const double r2 = X * X + Y * Y, V = a->dp * a->dp, young = 0.5 * (a->young + b->young);
     double G[2], H[2];
-    gradient_weight(s, &moments[i], X, Y, G);
-    gradient_weight(s, &moments[j], -X, -Y, H);
+    gradient_weight(a, &moments[i], X, Y, G);
+    gradient_weight(b, &moments[j], -X, -Y, H);
     slot->Gx[lane] = G[0];
     slot->Gy[lane] = G[1];
     slot->Hx[lane] = -H[0];
     slot->Hy[lane] = -H[1];
     slot->X[lane] = X;
     slot->Y[lane] = Y;
-    slot->hourglass[lane] = b->kappa * b->young * V * kernel_w(sqrt(r2), s->h) / (r2 * b->density);
+    slot->hourglass[lane] = a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
 }
 
 static int compare_slot(const void *a, const void *b)
@@ -213,7 +217,7 @@ static int pack_slots(const struct solid *s, const struct bucket_grid *g, const 
     int n = 0;
     for (int l = 0; l < pack->lanes; l++) {
         const int64_t i = pack->i + l;
-        const int count = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
+        const int count = neighbours_of(s, g, p, i, found);
         for (int k = 0; k < count; k++)
             slot_set(slot_for(slots, &n, found[k] - i), l, s, p, moments, i, found[k]);
     }
@@ -297,19 +301,20 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
 }
 
 /* Moments of every particle, and the neighbours' number checked on the way. */
-static enum err all_moments(const struct solid *s, const struct bucket_grid *g,
-                            const struct particles *p, struct gradient_moments *moments,
-                            struct diag *d)
+static enum err all_moments(struct solid *s, const struct bucket_grid *g, const struct particles *p,
+                            struct gradient_moments *moments, struct diag *d)
 {
     int32_t found[MAX_NEIGHBOURS];
     for (int64_t i = 0; i < p->n; i++) {
-        const int n = neighbours_of(g, p, KERNEL_REACH * s->h, s->dp, i, found);
+        const int n = neighbours_of(s, g, p, i, found);
         if (n < 0)
             return diag_fail(
                 d, ERR_INPUT,
                 "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
                 "are bodies sampled twice, or is h_over_dp too large?",
                 p->X[i], p->Y[i], MAX_NEIGHBOURS);
+        for (int k = 0; k < n; k++)
+            if (p->body[found[k]] != p->body[i]) s->body[p->body[i]].touches = true;
         const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
         if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
             return diag_fail(
@@ -345,9 +350,11 @@ enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles
 
     struct arena scratch = {.limit = a->limit};
     struct bucket_grid grid;
+    double reach = 0;
+    for (int k = 0; k < s->n_bodies; k++) reach = max2(reach, KERNEL_REACH * s->body[k].h);
     struct gradient_moments *const moments =
         arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
-    enum err e = moments ? buckets_create(&grid, &scratch, p, KERNEL_REACH * s->h, d) : ERR_MEMORY;
+    enum err e = moments ? buckets_create(&grid, &scratch, p, reach, d) : ERR_MEMORY;
     if (!e) e = all_moments(s, &grid, p, moments, d);
     if (!e) e = store_slots(s, a, &scratch, &grid, p, moments, d);
     arena_free(&scratch);

@@ -19,6 +19,7 @@ static const char scene[] =
     "[solid plug]\nshape = circle 0.25, 0.02, 0.045\n"
     "density = 2700\nyoung = 5e6\npoisson = 0.25\ngradient = linear\n";
 
+static const char *text = scene;
 static struct rig rig;
 static struct twin_solid twin;
 
@@ -67,7 +68,7 @@ static void compare_stress(const struct particles *p)
 
 static void compare(const char *set, const char *another, const char *third)
 {
-    rig_open(&rig, scene, set, another, third, NULL);
+    rig_open(&rig, text, set, another, third, NULL);
     struct particles *const p = &rig.sim.kind[KIND_SOLID];
     deform(p);
     solid_stress(&rig.sim.solid, p);
@@ -121,6 +122,23 @@ static void test_viscosity_forms(void)
     compare("bar.artificial_viscosity=0", "plug.artificial_viscosity=0", "bar.hourglass=0");
 }
 
+/* Two materials bonded to each other. */
+static void test_joined_bodies(void)
+{
+    static const char pair[] =
+        "dp = 1 cm\nend_time = 1\n"
+        "[solid bar]\nshape = box 0, 0, 0.15, 0.05\nclamp = box 0, 0, 0.02, 0.05\n"
+        "density = 1100\nyoung = 2e6\npoisson = 0.4\ngradient = linear\n"
+        "[solid plug]\nlike = bar\nshape = box 0.15, -0.02, 0.25, 0.06\njoined = bar\n"
+        "density = 2700\nyoung = 5e6\npoisson = 0.25\n";
+    text = pair;
+    compare("plug.artificial_viscosity=1", "bar.law=svk", "plug.law=neo_hookean");
+    compare("bar.hourglass_form=printed", "plug.hourglass_form=printed", "bar.law=svk");
+    compare("bar.viscosity_form=symmetric", "bar.artificial_viscosity=0",
+            "plug.artificial_viscosity=1");
+    text = scene;
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -128,5 +146,6 @@ int main(void)
     RUN_TEST(test_laws_in_plane_stress);
     RUN_TEST(test_hourglass_forms);
     RUN_TEST(test_viscosity_forms);
+    RUN_TEST(test_joined_bodies);
     return UNITY_END();
 }

@@ -157,12 +157,19 @@ struct reference {
     double X[2], r, gradient[2];
 };
 
+/* One body, or one joined to the other. */
+static bool bonded(const struct twin_solid *t, int a, int b)
+{
+    return a == b || strcmp(t->body[a].joined, t->body[b].common.name) == 0 ||
+           strcmp(t->body[b].joined, t->body[a].common.name) == 0;
+}
+
 static bool neighbours(const struct twin_solid *t, const struct twin_solid_point *a,
                        const struct twin_solid_point *b, struct reference *q)
 {
     *q = (struct reference){.X = {a->X - b->X, a->Y - b->Y}};
     q->r = sqrt(q->X[0] * q->X[0] + q->X[1] * q->X[1]);
-    if (a == b || a->body != b->body || q->r >= 2 * t->h) return false;
+    if (a == b || !bonded(t, a->body, b->body) || q->r >= 2 * t->h) return false;
     for (int i = 0; i < 2; i++) q->gradient[i] = kernel_derivative(q->r, t->h) * q->X[i] / q->r;
     return true;
 }
@@ -204,10 +211,11 @@ static void error_vector(const struct twin_solid_point *a, const struct twin_sol
 
 /* kappa V_b E_ab W_0ab/X_ab^2: the factor of Eq. 17 over V_a. */
 static double spring(const struct twin_solid *t, const struct twin_solid_point *a,
-                     const struct reference *q)
+                     const struct twin_solid_point *b, const struct reference *q)
 {
     const struct scene_solid *const body = &t->body[a->body];
-    return body->hourglass * t->dp * t->dp * body->young * kernel(q->r, t->h) / (q->r * q->r);
+    const double young = 0.5 * (body->young + t->body[b->body].young);
+    return body->hourglass * t->dp * t->dp * young * kernel(q->r, t->h) / (q->r * q->r);
 }
 
 /* Where the hourglass force is the derivative of the sum over pairs of V_a V_b k |e|^2/2, its share of
@@ -220,7 +228,7 @@ static struct twin_mat hourglass_share(const struct twin_solid *t, const struct 
         if (!neighbours(t, a, &t->point[n], &q)) continue;
         double e[2];
         error_vector(a, &t->point[n], &q, e);
-        const double k = spring(t, a, &q);
+        const double k = spring(t, a, &t->point[n], &q);
         for (int i = 0; i < 2; i++)
             for (int j = 0; j < 2; j++) share.m[i][j] += 0.5 * k * e[i] * q.X[j];
     }
@@ -231,13 +239,16 @@ static struct twin_mat hourglass_share(const struct twin_solid *t, const struct 
 static double viscous_pressure(const struct twin_solid *t, const struct twin_solid_point *a,
                                const struct twin_solid_point *b)
 {
-    const struct scene_solid *const body = &t->body[a->body];
     const double x = a->x - b->x, y = a->y - b->y;
     const double vx = (a->u - b->u) * x + (a->v - b->v) * y;
-    const double c = sqrt(body->young / (3 * (1 - 2 * body->poisson)) / body->density);
     if (vx >= 0) return 0;
-    return body->artificial_viscosity * c * t->h * body->density * vx /
-           (x * x + y * y + 0.01 * t->h * t->h);
+    double mean = 0; /* of alpha c rho0 */
+    for (int k = 0; k < 2; k++) {
+        const struct scene_solid *const body = &t->body[k ? a->body : b->body];
+        const double c = sqrt(body->young / (3 * (1 - 2 * body->poisson)) / body->density);
+        mean += 0.5 * body->artificial_viscosity * c * body->density;
+    }
+    return mean * t->h * vx / (x * x + y * y + 0.01 * t->h * t->h);
 }
 
 /* J F^-T of a particle. */
@@ -263,7 +274,7 @@ static void force_of_pair(const struct twin_solid *t, struct twin_solid_point *a
     const double x[2] = {a->x - b->x, a->y - b->y}, x2 = x[0] * x[0] + x[1] * x[1];
     double e[2], f[2];
     error_vector(a, b, q, e);
-    const double k = spring(t, a, q), along = k * (e[0] * x[0] + e[1] * x[1]) / x2;
+    const double k = spring(t, a, b, q), along = k * (e[0] * x[0] + e[1] * x[1]) / x2;
     const bool printed = body->hourglass_form == HOURGLASS_PRINTED;
     for (int i = 0; i < 2; i++) {
         f[i] = V * (sum.m[i][0] * q->gradient[0] + sum.m[i][1] * q->gradient[1]);
