@@ -79,6 +79,7 @@ static void set_defaults(void *section, enum section_id id)
         case PARAM_CHOICE: *(int *)(void *)place = (int)p->number_default[0]; break;
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
         case PARAM_FIELD_EXPR:
+        case PARAM_TIME_EXPR:
         case PARAM_SHAPES:
         case PARAM_NUMBERS: break; /* absent */
         }

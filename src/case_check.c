@@ -193,9 +193,16 @@ static enum err check_references(struct reader *r)
     for (int k = 0; k < s->n_reference; k++) {
         const struct scene_reference *ref = &s->reference[k];
         const int line = ref->common.line;
-        if (!*ref->probe || !*ref->file)
+        const bool formula = ref->formula.e[0] != NULL;
+        if (!*ref->probe || (!*ref->file && !formula))
             return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
-                            *ref->probe ? "file" : "probe");
+                            *ref->probe ? "file` or `formula" : "probe");
+        if (*ref->file && formula)
+            return bad_line(r, line, "[reference %s] has both `file` and `formula`; one is to go",
+                            ref->common.name);
+        if (!(ref->from < ref->until))
+            return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
+                            ref->common.name, ref->from, ref->until);
         bool found = false;
         for (int p = 0; p < s->n_probe; p++) {
             const char *name = s->probe[p].common.name;
@@ -207,13 +214,6 @@ static enum err check_references(struct reader *r)
                             "[reference %s] probe = %.80s: no probe has such a column; a "
                             "column is PROBE_QUANTITY_UNIT, such as M1_dx_m",
                             ref->common.name, ref->probe);
-        char path[4096 + SCENE_TEXT];
-        FILE *file = scene_file(s, ref->file, path, sizeof path) ? fopen(path, "r") : NULL;
-        if (!file)
-            warn(r, line, "[reference %s] file = %.200s cannot be opened", ref->common.name,
-                 ref->file);
-        else
-            fclose(file);
     }
     return ERR_OK;
 }

@@ -103,7 +103,7 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
                  MAX_CONSTANT_DEPTH);
         return false;
     }
-    const struct expr_names names = {r, find_name, false};
+    const struct expr_names names = {r, find_name, EXPR_FIXED};
     char inner[EXPR_WHY];
     c->state = CONSTANT_BUSY;
     r->depth++;
@@ -154,7 +154,7 @@ enum err case_all_constants(struct reader *r)
     if (!s->constant) return ERR_MEMORY;
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *e = r->constants[k].entry;
-        const struct expr_names names = {r, find_name, false};
+        const struct expr_names names = {r, find_name, EXPR_FIXED};
         struct quantity q;
         char why[EXPR_WHY];
         /* Once more from its text, so that the message names what is wrong right here. */
@@ -186,7 +186,7 @@ static enum err check_dim(struct reader *r, const struct entry *e, const struct 
 enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
                      double *value)
 {
-    const struct expr_names names = {r, find_name, false};
+    const struct expr_names names = {r, find_name, EXPR_FIXED};
     struct quantity q;
     char why[EXPR_WHY];
     if (!expr_value(text, &names, &q, why)) return bad_value(r, e, "%s", why);
@@ -307,7 +307,8 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
         return bad_value(r, e, "%s expected, with commas between them; there %s %d",
                          p->count == 1 ? "one expression is" : "two expressions are",
                          n == 1 ? "is" : "are", n);
-    const struct expr_names names = {r, find_name, true};
+    const struct expr_names names = {r, find_name,
+                                     p->type == PARAM_TIME_EXPR ? EXPR_IN_TIME : EXPR_IN_SPACE};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         struct dim dim;
@@ -331,7 +332,8 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_CHOICE: return read_choice(r, e, p, place);
     case PARAM_TEXT: return read_text(r, e, place);
     case PARAM_VECTOR: return read_vector(r, e, p, place);
-    case PARAM_FIELD_EXPR: return read_field(r, e, p, place);
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: return read_field(r, e, p, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
     case PARAM_NUMBERS: return read_numbers(r, e, p, place);
     }

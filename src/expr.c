@@ -303,8 +303,12 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
 static bool parse_constant(struct compiler *c, const char *name, struct dim *dim)
 {
     if (strcmp(name, "pi") == 0) return push(c, OP_NUMBER, 3.14159265358979323846);
+    if (strcmp(name, "t") == 0 && c->names->scope == EXPR_IN_TIME) {
+        dim->kind = DIM_ANY;
+        return push(c, OP_X, 0); /* evaluated at x = t */
+    }
     if (strcmp(name, "x") == 0 || strcmp(name, "y") == 0) {
-        if (!c->names->in_space)
+        if (c->names->scope != EXPR_IN_SPACE)
             return say(c, "`%s` has a value only where a key takes an expression in x and y", name);
         dim->kind = DIM_ANY;
         return push(c, name[0] == 'x' ? OP_X : OP_Y, 0);
@@ -426,9 +430,9 @@ static bool parse_all(struct compiler *c, struct dim *dim)
 bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
                 char why[EXPR_WHY])
 {
-    struct expr_names no_space = *names;
-    no_space.in_space = false;
-    struct compiler c = {.rest = text, .names = &no_space, .why = why};
+    struct expr_names fixed = *names;
+    fixed.scope = EXPR_FIXED;
+    struct compiler c = {.rest = text, .names = &fixed, .why = why};
     if (!parse_all(&c, &result->dim)) return false;
     result->value = c.op[0].value;
     return true;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Arithmetic of case files: numbers with units, named constants, functions, and, where a value may
- * vary in space, the coordinates x and y in metres.
+ * vary in space or time, the coordinates x and y in metres or the time t in seconds.
  *
  *   sum     = product { (+|-) product }
  *   product = factor { (*|/) factor }
@@ -22,7 +22,7 @@
 enum dim_kind {
     DIM_PLAIN, /* no unit given: fits everywhere */
     DIM_KNOWN, /* powers of metre, kilogram, second */
-    DIM_ANY    /* depends on x or y: not tracked, fits everywhere */
+    DIM_ANY    /* depends on x, y or t: not tracked, fits everywhere */
 };
 
 struct dim {
@@ -43,12 +43,14 @@ struct slice {
 
 enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 
+enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME }; /* none; x and y; t */
+
 /* What names mean: `find` returns true and the quantity, or false; then it has written why, or
  * nothing if the name is simply unknown. */
 struct expr_names {
     void *context;
     bool (*find)(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
-    bool in_space; /* x and y are known */
+    enum expr_scope scope; /* which coordinates are known besides */
 };
 
 /* Compiled: evaluated at many points. */

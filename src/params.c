@@ -40,6 +40,8 @@ const struct param param_table[PARAM_COUNT] = {
     {ROW(section, VECTOR, key, meaning), .unit = unit_, .number_default = {dx, dy}},
 #define FIELD_EXPR(section, key, count_, unit_, meaning) \
     {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
+#define TIME_EXPR(section, key, unit_, meaning) \
+    {ROW(section, TIME_EXPR, key, meaning), .unit = unit_, .count = 1},
 #define SHAPES(section, key, meaning) {ROW(section, SHAPES, key, meaning), .unit = "m"},
 #define NUMBERS(section, key, unit_, meaning) {ROW(section, NUMBERS, key, meaning), .unit = unit_},
 #include "params.def"

@@ -28,6 +28,7 @@ enum param_type {
     PARAM_TEXT,
     PARAM_VECTOR,
     PARAM_FIELD_EXPR,
+    PARAM_TIME_EXPR,
     PARAM_SHAPES,
     PARAM_NUMBERS
 };
@@ -43,7 +44,7 @@ struct param {
     bool needed;
     double low, high;
     bool low_open, high_open; /* the bound itself is excluded */
-    int count;                /* expressions of a FIELD_EXPR */
+    int count;                /* expressions of a FIELD_EXPR or TIME_EXPR */
     size_t offset;            /* in the section's struct */
 };
 /* The number of keys in all. */
@@ -55,6 +56,7 @@ enum {
 #define TEXT(section, key, def, meaning) ONE(section, key)
 #define VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
 #define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
+#define TIME_EXPR(section, key, unit, meaning) ONE(section, key)
 #define SHAPES(section, key, meaning) ONE(section, key)
 #define NUMBERS(section, key, unit, meaning) ONE(section, key)
 #include "params.def"

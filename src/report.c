@@ -47,7 +47,8 @@ static void write_value(struct json *j, const struct param *p, const void *value
         break;
     case PARAM_TEXT: json_text(j, p->key, value); break;
     case PARAM_VECTOR: json_numbers(j, p->key, value, 2); break;
-    case PARAM_FIELD_EXPR: write_expressions(j, p, value); break;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: write_expressions(j, p, value); break;
     case PARAM_SHAPES: write_shapes(j, p->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;
@@ -249,6 +250,7 @@ enum err report_summary(const char *folder, struct simulation *s, const struct r
     char hash[17];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(s));
     json_text(&j, "state_hash", hash);
+    if (r->score) references_write(&j, r->references, r->score);
     write_derived(&j, s->scene);
     write_parameters(&j, s->scene);
     json_close(&j, '}');

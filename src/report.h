@@ -3,6 +3,7 @@
 #ifndef SPHFSI_REPORT_H
 #define SPHFSI_REPORT_H
 
+#include "reference.h"
 #include "simulation.h"
 
 /* What a summary says besides the simulation itself. */
@@ -18,6 +19,8 @@ struct record {
     double start_time;   /* s, simulated, at which this process began */
     int64_t start_particle_steps;
     struct ledger first, last; /* at time zero and now */
+    const struct references *references;
+    const struct score *score; /* of each reference; NULL: not compared (yet) */
 };
 
 /* Writes summary.json to the folder of the run: complete or not at all. */

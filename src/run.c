@@ -31,6 +31,8 @@ struct run {
     struct folder folder;
     struct arena arena;
     struct probes probes;
+    struct references references;
+    struct score *score; /* of each reference */
     struct series probe_rows, ledger_rows;
     struct snapshots snapshots;
     struct image image; /* state that was sound, for the guard */
@@ -111,6 +113,19 @@ static enum err write_ledger(struct run *r)
 #undef LEDGER
     };
     return series_row(&r->ledger_rows, row, r->diag);
+}
+
+/* How far the probes are off their references; that it cannot be told is no failure of the run. */
+static void compare(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    r->record.references = &r->references;
+    r->record.score = NULL;
+    if (r->references.n == 0) return;
+    if (references_score(&r->references, r->probe_rows.path, r->score, &why))
+        diag_warn(&why, "the references were not compared: %s", why.text);
+    else
+        r->record.score = r->score;
 }
 
 static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
@@ -409,6 +424,25 @@ static enum err begin(struct run *r, const char *header)
     return ERR_OK;
 }
 
+/* What it cost by phase, and how far off it was. */
+static void say_close(const struct run *r)
+{
+    char text[1024] = "";
+    size_t at = 0;
+    double all = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) all += r->s->phase_seconds[k];
+    for (int k = 0; k < PHASE_COUNT && all > 0; k++)
+        if (r->s->phase_seconds[k] >= 0.005 * all)
+            at += (size_t)snprintf(text + at, sizeof text - at, "%s%s %.0f %%", at ? ", " : "",
+                                   phase_names[k], 100 * r->s->phase_seconds[k] / all);
+    session_say(r->options, "%.3g million particle steps a second: %s",
+                1e-6 * report_rate(r->s, &r->record), text);
+    for (int k = 0; k < r->references.n && r->record.score; k++) {
+        reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
+        session_say(r->options, "%s", text);
+    }
+}
+
 static enum err carry_out(struct run *r)
 {
     const enum err failed = advance(r);
@@ -416,11 +450,13 @@ static enum err carry_out(struct run *r)
         leave_state(r, failed);
         return failed;
     }
+    compare(r);
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
+    say_close(r);
     if (r->session.scene.n_probe > 0)
         session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
     return ERR_OK;
@@ -442,6 +478,9 @@ static enum err run_session(struct run *r, const char *path, enum folder_use use
     TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
     const char *header = probes_header(&r->session.scene, &r->arena, r->diag);
     if (!header) return ERR_MEMORY;
+    TRY(references_open(&r->references, &r->session.scene, header, &r->arena, r->diag));
+    r->score = arena_alloc(&r->arena, (size_t)r->references.n, sizeof *r->score, "scores", r->diag);
+    if (!r->score) return ERR_MEMORY;
     TRY(folder_open(&r->folder, path, use, r->diag));
     TRY(begin(r, header));
     return carry_out(r);

@@ -29,7 +29,7 @@ struct number_list {
     double *value;
 };
 
-/* Up to two expressions in x and y; see expr.h. NULL: not given. */
+/* Up to two expressions in x and y, or one in t; see expr.h. NULL: not given. */
 struct expr;
 struct scene_expr {
     struct expr *e[2];
@@ -51,6 +51,7 @@ struct scene_section_common {
 #define TEXT(section, key, def, meaning) char key[SCENE_TEXT];
 #define VECTOR(section, key, dx, dy, unit, meaning) double key[2];
 #define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
+#define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
 #define SHAPES(section, key, meaning) struct shape_list key;
 #define NUMBERS(section, key, unit, meaning) struct number_list key;
 #include "params.def"
@@ -136,7 +137,7 @@ SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
     return s->domain.periodic >> axis & 1;
 }
 
-/* Value of an expression at a point, and at construction time of the scene (expr.h has the grammar). */
+/* Value of an expression at a point; of one in t at x = t (expr.h has the grammar). */
 double scene_expr_at(const struct expr *e, double x, double y);
 
 /* Writes the effective case, every value and default spelled out in SI units; parsing it again gives

@@ -20,7 +20,7 @@ FLOORS = [
     "params effects case expr units geometry motion scene",
     "fluid variants solid material",
     "simulation timestep integrators symplectic verlet coupled monitor ledger bounds phases state",
-    "folder json probes snapshot checkpoint report series",
+    "folder json probes reference snapshot checkpoint report series",
     "sphfsi session explain inspect run api main",
 ]
 FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}

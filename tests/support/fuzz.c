@@ -50,7 +50,7 @@ static bool find_name(void *context, const char *name, struct quantity *q, char 
 
 int fuzz_expr(const uint8_t *data, size_t size)
 {
-    const struct expr_names names = {.find = find_name, .in_space = true};
+    const struct expr_names names = {.find = find_name, .scope = EXPR_IN_SPACE};
     struct arena a = {0};
     struct diag d = {.code = ERR_OK};
     struct expr *e;

@@ -229,7 +229,8 @@ static const struct {
     {TOP SOLID "[reference r]\nprobe = M1_dx_m\nfile = a.csv\n", NULL,
      "bad.cfg:8: [reference r] probe = M1_dx_m: no probe has such a column; a column is "
      "PROBE_QUANTITY_UNIT, such as M1_dx_m"},
-    {TOP SOLID "[reference r]\nprobe = M1_dx_m\n", NULL, "bad.cfg:8: [reference r] needs `file`"},
+    {TOP SOLID "[reference r]\nprobe = M1_dx_m\n", NULL,
+     "bad.cfg:8: [reference r] needs `file` or `formula`"},
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
     {TOP FLUID "[domain]\nperiodic = x\n", NULL,
