@@ -156,6 +156,10 @@ SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
  * Writes nothing. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
 
+/** Writes the case in effect, every default spelled out, to a file ("/dev/stdout" is one). */
+SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
+                                               const char *path);
+
 /** Says, line by line through the message callback of the options (all else in them may be zero),
  * what a checkpoint holds. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
 SPHFSI_API enum sphfsi_status sphfsi_inspect(const char *file,

@@ -172,6 +172,21 @@ enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
     return result(&d, e);
 }
 
+enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
+{
+    struct diag d = session_diag(options);
+    struct session *x = calloc(1, sizeof *x);
+    if (!x)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "case: no memory for %zu bytes", sizeof *x));
+    enum err e = session_read(x, options, &d);
+    if (!e) {
+        e = scene_write(&x->scene, path, &d);
+        scene_free(&x->scene);
+    }
+    free(x);
+    return result(&d, e);
+}
+
 enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
 {
     struct diag d = session_diag(options);

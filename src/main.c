@@ -20,21 +20,22 @@ static const char usage[] =
     "newest)\n"
     "  --inspect FILE    say what a checkpoint holds\n"
     "  --explain         say what would be simulated and what it would cost; run nothing\n"
+    "  --effective       print the case in effect, every default spelled out; run nothing\n"
     "  --quiet           no progress, warnings only\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
-static const char *const option_names[] = {"--out",     "--threads", "--until", "--set",
-                                           "--restart", "--explain", "--fork",  "--inspect",
-                                           "--quiet",   "--version", "--help"};
+static const char *const option_names[] = {"--out",       "--threads", "--until",   "--set",
+                                           "--restart",   "--explain", "--fork",    "--inspect",
+                                           "--effective", "--quiet",   "--version", "--help"};
 enum { OPTION_COUNT = sizeof option_names / sizeof option_names[0] };
 
 struct command {
     struct sphfsi_options options;
     const char *inspect;
-    int explain, quiet, done; /* done: nothing more to do */
-    int terminal, line_open;  /* a progress line stands on the terminal */
+    int explain, effective, quiet, done; /* done: nothing more to do */
+    int terminal, line_open;             /* a progress line stands on the terminal */
     double last_share, last_line;
 };
 
@@ -161,6 +162,8 @@ static int apply(struct command *c, const char *option, const char *operand)
         c->inspect = operand;
     } else if (strcmp(option, "--explain") == 0) {
         c->explain = 1;
+    } else if (strcmp(option, "--effective") == 0) {
+        c->effective = 1;
     } else if (strcmp(option, "--quiet") == 0) {
         c->quiet = 1;
     } else {
@@ -240,10 +243,11 @@ static int execute(struct command *c)
     c->options.progress = c->quiet ? NULL : on_progress;
     c->options.context = c;
     c->options.requests = &requests;
-    if (!c->explain && !c->inspect) install_signals();
-    const enum sphfsi_status status = c->inspect   ? sphfsi_inspect(c->inspect, &c->options)
-                                      : c->explain ? sphfsi_explain(&c->options)
-                                                   : sphfsi_run(&c->options);
+    if (!c->explain && !c->inspect && !c->effective) install_signals();
+    const enum sphfsi_status status = c->inspect     ? sphfsi_inspect(c->inspect, &c->options)
+                                      : c->effective ? sphfsi_effective(&c->options, "/dev/stdout")
+                                      : c->explain   ? sphfsi_explain(&c->options)
+                                                     : sphfsi_run(&c->options);
     clear_line(c);
     if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
     return sphfsi_exit_status(status, requests.stop);
