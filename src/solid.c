@@ -345,12 +345,12 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
     const int64_t i = pack->i;
     const struct solid_receiver a = receiver_of(p, i);
     const bool viscous = body->viscosity > 0 || body->mixed, hourglass = body->kappa > 0;
-    const bool stamped = viscous && hourglass && !body->symmetric && !body->mixed;
+    const bool stamped = viscous && hourglass && !body->mixed;
     struct solid_sums sums;
     /* The default and the paper's combination are stamped; the others are decided as they go. */
-    if (stamped && body->variational)
-        sums = sum_slots(s, pack, p, &a, true, false, false, true, true);
-    else if (stamped)
+    if (stamped && body->symmetric && body->variational)
+        sums = sum_slots(s, pack, p, &a, true, false, true, true, true);
+    else if (stamped && !body->symmetric && !body->variational)
         sums = sum_slots(s, pack, p, &a, true, false, false, true, false);
     else
         sums = sum_slots(s, pack, p, &a, viscous, body->mixed, body->symmetric, hourglass,
