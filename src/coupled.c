@@ -92,7 +92,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
 }
 
 /* Steps of a lone solid that are taken between two looks at its state. */
-enum { SOLID_BATCH = 64 };
+enum { SOLID_BATCH = LOOK_INTERVAL };
 
 void solid_only_step(struct simulation *s, double t_limit)
 {

@@ -8,9 +8,6 @@
 /* Speed over c0 at which a warning says that weak compressibility is being lost. */
 #define SPEED_WARNING 0.3
 
-/* Solid states are looked at every so many steps: det F needs a pass of its own. */
-enum { DET_INTERVAL = 64 };
-
 struct finding {
     int64_t at; /* -1: nothing found */
     const char *quantity;
@@ -138,7 +135,7 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "beside its body it is faster than ten times the speed of sound: the solid is "
             "unstable (a smaller solid_safety may help), or far too soft for its load",
             d);
-    if (s->state.steps % DET_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
+    if (s->state.steps % LOOK_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);
     if (!(det.value > 0))

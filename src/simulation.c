@@ -234,7 +234,8 @@ static enum err build(struct simulation *s, struct diag *d)
         TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
         start_solid(s);
         solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
-        s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step;
+        s->state.solid_stiffening = s->state.solid_slowing = 1;
+        timestep_set_solid(s);
     }
     if (s->effects & FX_MOTION) move_walls(s, 0);
     TRY(choose_rate(s, d));
@@ -287,7 +288,9 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     if (!(s->effects & FX_FLUID)) {
         solid_only_step(s, t_limit);
         find_speed(s);
-        return monitor_check(s, d);
+        TRY(monitor_check(s, d));
+        timestep_recheck_solid(s);
+        return ERR_OK;
     }
     double clock = wall_clock();
     if (sorting_due(s)) TRY(sort_particles(s, d));
@@ -305,6 +308,8 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     s->state.drift += s->state.dt * sqrt(max2(speed2_before, s->speed2));
     if (s->effects & FX_MOTION) add_wall_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
+    if (!e && (s->effects & FX_SOLID) && s->state.steps % LOOK_INTERVAL == 0)
+        timestep_recheck_solid(s);
     phase_add(s, PHASE_update, clock);
     return e;
 }
@@ -322,6 +327,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
     }
+    if (s->effects & FX_SOLID) timestep_set_solid(s);
     s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);
     return ERR_OK;

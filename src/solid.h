@@ -57,6 +57,7 @@ struct solid {
     double damping_max; /* largest rate of its viscous part, 1/s */
     double stable_step; /* the largest stable step that follows from both, s */
     double paper_step;  /* Eq. 29, s */
+    double *scratch[4]; /* room for the search of the step */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
@@ -74,9 +75,17 @@ void solid_forces(const struct solid *s, struct particles *p);
  * `centred`: half drift, kick, half drift, which is second order in time. */
 void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred);
 
-/* Largest frequency and damping rate of the operator, by power iteration on the force routine around
- * the undeformed state, and the stable step that follows. Leaves u at zero and v as it was. */
+/* Largest frequency and damping rate of the operator linearised about the present deformation, by power
+ * iteration on the force routine, and the stable step that follows, s. Leaves u and v as they were. */
+double solid_stable_step(const struct solid *s, struct particles *p, double *omega,
+                         double *damping);
+
+/* The same about the undeformed state, kept in s. */
 void solid_find_step(struct solid *s, struct particles *p);
+
+/* How much stiffer than undeformed the stiffest particle is to a wave along a principal axis, from
+ * gradients that are up to date. 1 while no particle is stretched or compressed by some 5 %. */
+double solid_stiffening(const struct solid *s, const struct particles *p);
 
 /* Cauchy stress (xx, yy, xy, zz), Pa, and det F of a particle from its displacement gradient. */
 void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "material.h"
 #include "solid.h"
 
 /* Numbers without a pattern that the operator could share, the same on every machine. */
@@ -24,70 +25,169 @@ static double norm(const double *x, const double *y, int64_t n)
     return sqrt(sum);
 }
 
-static void scale_to(double *x, double *y, const double *from_x, const double *from_y, int64_t n,
-                     double factor)
+/* Copies a field of both components. */
+static void keep(double *const to[2], const double *x, const double *y, int64_t n)
+{
+    memcpy(to[0], x, (size_t)n * sizeof *x);
+    memcpy(to[1], y, (size_t)n * sizeof *y);
+}
+
+/* field = base + scaled direction. */
+static void set_field(double *const field[2], double *const base[2], const double *dx,
+                      const double *dy, int64_t n, double factor)
 {
     for (int64_t i = 0; i < n; i++) {
-        x[i] = factor * from_x[i];
-        y[i] = factor * from_y[i];
+        field[0][i] = base[0][i] + factor * dx[i];
+        field[1][i] = base[1][i] + factor * dy[i];
     }
 }
 
-/* Largest factor by which the acceleration of a field exceeds the field. The field is (x, y) of the
- * particles, displacement or velocity; `amplitude` keeps it in the linear range. Power iteration
- * approaches from below: 0.3 % are missing after so many rounds at kappa = 50; one percent is added. */
-static double largest_factor(const struct solid *s, struct particles *p, double *x, double *y,
-                             double amplitude, bool both_signs)
+/* What the operator answers to the direction in (sx, sy), scaled to `amplitude`, that the field departs
+ * from its base with; in (sx, sy) again, as the difference from the answer to the base alone. */
+static void answer(const struct solid *s, struct particles *p, double *const field[2],
+                   double *const base[2], double amplitude, bool both_signs)
+{
+    const double factor = amplitude / norm(p->sx, p->sy, p->n);
+    double *const other[2] = {p->x0, p->y0};
+    const double *const rest[2] = {s->scratch[2], s->scratch[3]};
+    if (both_signs) {
+        /* The viscous force acts on approaching pairs only: the other half of the pairs answers to the
+         * opposite field. */
+        set_field(field, base, p->sx, p->sy, p->n, -factor);
+        keep(other, p->sx, p->sy, p->n);
+        solid_forces(s, p);
+        set_field(field, base, other[0], other[1], p->n, factor);
+        keep(other, p->sx, p->sy, p->n);
+    } else {
+        set_field(field, base, p->sx, p->sy, p->n, factor);
+        solid_stress(s, p);
+    }
+    solid_forces(s, p);
+    for (int64_t i = 0; i < p->n; i++) {
+        p->sx[i] -= both_signs ? other[0][i] : rest[0][i];
+        p->sy[i] -= both_signs ? other[1][i] : rest[1][i];
+    }
+}
+
+/* Largest factor by which the answer of the operator exceeds a small change of the field, displacement
+ * or velocity; `amplitude` keeps it in the linear range. Power iteration approaches from below: 0.3 %
+ * are missing after so many rounds at kappa = 50; one percent is added. */
+static double largest_factor(const struct solid *s, struct particles *p, double *const field[2],
+                             double *const base[2], bool both_signs)
 {
     enum { ROUNDS = 60 };
-    scramble(x, p->n, 1, p->free);
-    scramble(y, p->n, 2, p->free);
+    const double amplitude = 1e-6 * s->dp;
     double factor = 0;
+    scramble(p->sx, p->n, 1, p->free);
+    scramble(p->sy, p->n, 2, p->free);
     for (int round = 0; round < ROUNDS; round++) {
-        const double size = norm(x, y, p->n);
+        const double size = norm(p->sx, p->sy, p->n);
         if (!(size > 0)) return 0;
-        scale_to(x, y, x, y, p->n, amplitude / size);
-        solid_stress(s, p);
-        solid_forces(s, p);
-        if (both_signs) {
-            /* The viscous force acts on approaching pairs only: the other half of the pairs answers to
-             * the opposite field. */
-            scale_to(p->x0, p->y0, p->sx, p->sy, p->n, 1);
-            scale_to(x, y, x, y, p->n, -1);
-            solid_forces(s, p);
-            for (int64_t i = 0; i < p->n; i++) {
-                p->sx[i] -= p->x0[i];
-                p->sy[i] -= p->y0[i];
-            }
-        }
+        answer(s, p, field, base, amplitude, both_signs);
         factor = norm(p->sx, p->sy, p->n) / amplitude;
-        scale_to(x, y, p->sx, p->sy, p->n, 1);
     }
     return 1.01 * factor;
 }
 
+/* An oscillation of frequency w, damped explicitly at the rate m, does not grow while
+ * (w dt)^2 + 2 m dt < 4: just that for semi-implicit Euler, a little less than the limit for the
+ * predictor-corrector (docs/theory.md). */
+static double step_of(double omega, double damping)
+{
+    const double w2 = square(omega);
+    return w2 > 0 ? (sqrt(damping * damping + 4 * w2) - damping) / w2 : (double)INFINITY;
+}
+
+double solid_stable_step(const struct solid *s, struct particles *p, double *omega, double *damping)
+{
+    /* Without the fluid's force and gravity, which do not depend on the field. */
+    struct solid bare = *s;
+    struct solid_body body[s->n_bodies];
+    memcpy(body, s->body, sizeof body);
+    for (int k = 0; k < s->n_bodies; k++) body[k].gravity[0] = body[k].gravity[1] = 0;
+    bare.body = body;
+    bare.coupled = false;
+
+    const size_t bytes = (size_t)p->n * sizeof *p->vx;
+    double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};
+    double *const base[2] = {s->scratch[0], s->scratch[1]};
+    double *const rest[2] = {s->scratch[2], s->scratch[3]};
+    double *const kept[2] = {p->vx0, p->vy0};
+    keep(kept, p->vx, p->vy, p->n);
+    memset(p->vx, 0, bytes);
+    memset(p->vy, 0, bytes);
+    solid_stress(&bare, p);
+    solid_forces(&bare, p);
+    keep(rest, p->sx, p->sy, p->n);
+    keep(base, p->ux, p->uy, p->n);
+    *omega = sqrt(largest_factor(&bare, p, u, base, false));
+    keep(u, base[0], base[1], p->n);
+    solid_stress(&bare, p);
+    memset(base[0], 0, bytes);
+    memset(base[1], 0, bytes);
+    *damping = 0;
+    for (int k = 0; k < s->n_bodies; k++)
+        if (s->body[k].viscosity > 0 && *damping == 0)
+            *damping = largest_factor(&bare, p, v, base, true);
+    keep(v, kept[0], kept[1], p->n);
+    return step_of(*omega, *damping);
+}
+
 void solid_find_step(struct solid *s, struct particles *p)
 {
-    struct solid bare = *s;
-    bare.coupled = false;
-    struct solid_body saved[s->n_bodies];
-    memcpy(saved, s->body, sizeof saved);
-    double *const kept[4] = {p->vx0, p->vy0, p->ux, p->uy};
-    scale_to(kept[0], kept[1], p->vx, p->vy, p->n, 1);
-    for (int k = 0; k < s->n_bodies; k++) s->body[k].gravity[0] = s->body[k].gravity[1] = 0;
+    s->stable_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
+}
 
-    memset(p->vx, 0, (size_t)p->n * sizeof *p->vx);
-    memset(p->vy, 0, (size_t)p->n * sizeof *p->vy);
-    s->omega_max = sqrt(largest_factor(&bare, p, p->ux, p->uy, 1e-6 * s->dp, false));
-    memset(p->ux, 0, (size_t)p->n * sizeof *p->ux);
-    memset(p->uy, 0, (size_t)p->n * sizeof *p->uy);
-    s->damping_max = largest_factor(&bare, p, p->vx, p->vy, 1e-6 * s->dp, true);
+static vwide larger(vwide a, vwide b) { return -vmin_wide(-a, -b); }
 
-    scale_to(p->vx, p->vy, kept[0], kept[1], p->n, 1);
-    memcpy(s->body, saved, sizeof saved);
-    /* An oscillation of frequency w, damped explicitly at the rate m, does not grow while
-     * (w dt)^2 + 2 m dt < 4: just that for semi-implicit Euler, a little less than the limit for the
-     * predictor-corrector (docs/theory.md). */
-    const double w2 = square(s->omega_max), m = s->damping_max;
-    s->stable_step = w2 > 0 ? (sqrt(m * m + 4 * w2) - m) / w2 : (double)INFINITY;
+/* The larger of dP_11/dF_11 and dP_22/dF_22 in the principal axes, which is what an axial wave meets, Pa.
+ * From the stretches alone, since the laws are isotropic. */
+static vwide axial_stiffness(const struct solid_body *b, vwide first, vwide second)
+{
+    const double delta = 1e-5;
+    const vwide zero = vset_wide(0);
+    const struct vtensor2 U = {first - 1.0, zero, zero, second - 1.0};
+    struct vtensor2 along = U, across = U;
+    along.xx = along.xx + delta;
+    across.yy = across.yy + delta;
+    const struct vtensor2 P = material_pk1(b, U);
+    return larger(material_pk1(b, along).xx - P.xx, material_pk1(b, across).yy - P.yy) / delta;
+}
+
+/* Principal stretches of a pack; whether one of its lanes is stretched or compressed by some 5 %. */
+static bool stretches(const struct particles *p, const struct solid_pack *pack, vwide *first,
+                      vwide *second)
+{
+    const int64_t i = pack->i;
+    const struct vtensor2 F =
+        deformation((struct vtensor2){vload_wide(&p->Uxx[i]), vload_wide(&p->Uxy[i]),
+                                      vload_wide(&p->Uyx[i]), vload_wide(&p->Uyy[i])});
+    const vwide det = vtensor2_det(F);
+    const vwide trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
+    bool any = false;
+    for (int l = 0; l < pack->lanes; l++)
+        any |= !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
+    if (!any) return false;
+    const vwide sum = vsqrt_wide(larger(trace + 2.0 * det, vset_wide(0)));
+    const vwide difference = vsqrt_wide(larger(trace - 2.0 * det, vset_wide(0)));
+    *first = 0.5 * (sum + difference);
+    *second = 0.5 * (sum - difference);
+    return true;
+}
+
+double solid_stiffening(const struct solid *s, const struct particles *p)
+{
+    double top = 1;
+    double reference[s->n_bodies];
+    for (int k = 0; k < s->n_bodies; k++)
+        reference[k] = axial_stiffness(&s->body[k], vset_wide(1), vset_wide(1))[0];
+#pragma omp parallel for schedule(static) num_threads(s->threads) reduction(max : top)
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        vwide first, second;
+        if (!stretches(p, pack, &first, &second)) continue;
+        const vwide now = axial_stiffness(&s->body[pack->body], first, second);
+        for (int l = 0; l < pack->lanes; l++) top = max2(top, now[l] / reference[pack->body]);
+    }
+    return top;
 }

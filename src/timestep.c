@@ -45,6 +45,30 @@ int timestep_substeps(const struct simulation *s, double dt)
     return (int)max2(1, ceil(dt / s->dt_solid));
 }
 
+void timestep_set_solid(struct simulation *s)
+{
+    s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step * s->state.solid_slowing;
+}
+
+/* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses up what
+ * the default solid_safety of 0.9 leaves: 0.9 sqrt(1.15) = 0.965. A softer solid is not urgent. */
+#define STIFFER 1.15
+#define SOFTER 0.6
+
+void timestep_recheck_solid(struct simulation *s)
+{
+    struct state *const st = &s->state;
+    if (s->scene->numerics.fixed_step > 0) return;
+    const double now = solid_stiffening(&s->solid, &s->kind[KIND_SOLID]);
+    if (now <= STIFFER * st->solid_stiffening && now >= SOFTER * st->solid_stiffening) return;
+    double omega, damping;
+    const double step = solid_stable_step(&s->solid, &s->kind[KIND_SOLID], &omega, &damping);
+    if (!(step > 0)) return; /* not a number: the guards will say why */
+    st->solid_stiffening = now;
+    st->solid_slowing = step / s->solid.stable_step;
+    timestep_set_solid(s);
+}
+
 void timestep_book(struct simulation *s, double dt, double t_limit, bool hits)
 {
     struct state *const st = &s->state;

@@ -19,6 +19,13 @@ enum { SUBSTEPS_MOST = 10000 };
 /* Solid sub-steps of a fluid step: 1 where each takes the same. */
 int timestep_substeps(const struct simulation *s, double dt);
 
+/* Sets the solid's step from its bound about the undeformed state and the slowing in s->state. */
+void timestep_set_solid(struct simulation *s);
+
+/* Finds the solid's bound anew where its stiffness has left the range that the last one holds for. Looks
+ * at gradients that are up to date; the state decides, so that a restart does the same. */
+void timestep_recheck_solid(struct simulation *s);
+
 /* Books a step that has been taken: time, counters, statistics. */
 void timestep_book(struct simulation *s, double dt, double t_limit, bool hits);
 
