@@ -140,7 +140,7 @@ static void stretch(const char *dp, double mean[2], double worst[2])
     /* The exact field is what it starts from; what the discrete bar makes of it is found by letting it
      * go and stopping it again. */
     for (int k = 0; k < 200; k++) {
-        rig_steps(&rig, 1, 1);
+        rig_steps(&rig, 4, 1);
         for (int64_t i = 0; i < p->n; i++) p->vx[i] = p->vy[i] = 0;
     }
     solid_stress(&rig.sim.solid, p);
