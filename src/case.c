@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* --- messages --- */
 
@@ -286,6 +287,11 @@ static enum err read_file(FILE *file, const char *path, char **text, struct diag
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d)
 {
+    /* Opening a pipe would wait for whoever writes to it, a terminal for whoever types. */
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return diag_fail(d, ERR_INPUT, "%s: is %s; a case is a regular file", path,
+                         S_ISDIR(info.st_mode) ? "a folder" : "a pipe or a device");
     FILE *file = fopen(path, "rb");
     if (!file) return diag_fail(d, ERR_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
     char *text;

@@ -214,13 +214,22 @@ void checkpoint_seal(struct image *m)
     memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
 }
 
-/* Steps in the name of a checkpoint of ours, or -1. */
-static int64_t steps_of(const char *name)
+static void name_of(char name[NAME_TEXT], int64_t steps)
 {
+    snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
+}
+
+/* Steps in the name of a checkpoint of ours, or -1: another spelling of the number is not ours, nor
+ * is what is no file. */
+static int64_t steps_of(const struct dirent *entry)
+{
+    char name[NAME_TEXT];
     int64_t steps;
-    int length = 0;
-    if (sscanf(name, "step-%" SCNd64 ".ckpt%n", &steps, &length) != 1) return -1;
-    return length > 0 && name[length] == '\0' ? steps : -1;
+    if (entry->d_type != DT_REG && entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
+        return -1;
+    if (sscanf(entry->d_name, "step-%18" SCNd64, &steps) != 1 || steps < 0) return -1;
+    name_of(name, steps);
+    return strcmp(entry->d_name, name) == 0 ? steps : -1;
 }
 
 /* The largest number of steps below `limit` among the folder's checkpoints, or -1. */
@@ -230,16 +239,11 @@ static int64_t newest_below(const char *folder, int64_t limit)
     if (!dir) return -1;
     int64_t best = -1;
     for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        const int64_t steps = steps_of(entry->d_name);
+        const int64_t steps = steps_of(entry);
         if (steps > best && steps < limit) best = steps;
     }
     closedir(dir);
     return best;
-}
-
-static void name_of(char name[NAME_TEXT], int64_t steps)
-{
-    snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
 }
 
 static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag *d)
@@ -256,7 +260,11 @@ static enum err keep_last(const char *folder, int64_t newest, struct diag *d)
 {
     int64_t steps = newest + 1;
     for (int kept = 0; (steps = newest_below(folder, steps)) >= 0; kept++)
-        if (kept >= KEEP) TRY(remove_checkpoint(folder, steps, d));
+        if (kept >= KEEP) {
+            /* One too many is no reason to end a run. */
+            struct diag why = {.code = ERR_OK};
+            if (remove_checkpoint(folder, steps, &why)) diag_warn(d, "%s", why.text);
+        }
     return ERR_OK;
 }
 
@@ -279,10 +287,26 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[FOLDER_
     return keep_last(folder, info.steps, d);
 }
 
+/* What runs that were killed have left unfinished. */
+static void remove_parts(const char *folder)
+{
+    static const char end[] = ".ckpt.part";
+    DIR *dir = opendir(folder);
+    if (!dir) return;
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        const size_t length = strlen(entry->d_name);
+        if (strncmp(entry->d_name, "step-", 5) == 0 && length > sizeof end &&
+            strcmp(entry->d_name + length - (sizeof end - 1), end) == 0)
+            unlinkat(dirfd(dir), entry->d_name, 0);
+    }
+    closedir(dir);
+}
+
 enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d)
 {
     for (int64_t later; (later = newest_below(folder, INT64_MAX)) > steps;)
         TRY(remove_checkpoint(folder, later, d));
+    remove_parts(folder);
     return ERR_OK;
 }
 

@@ -74,7 +74,8 @@ enum err checkpoint_apply(const struct image *m, struct simulation *s, struct di
 enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Removes checkpoints of more steps than these: they belong to a future that is run anew. */
+/* Removes checkpoints of more steps than these: they belong to a future that is run anew. And those
+ * that runs which were killed have left unfinished. */
 enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d) SPHFSI_CHECKED;
 
 void checkpoint_free(struct image *m);

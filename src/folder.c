@@ -12,6 +12,17 @@
 
 static const char lock_name[] = ".lock";
 
+/* Nothing outside of the folder is written, so a link that lies there is not written through. */
+int folder_open_file(const char *path, int flags)
+{
+    return open(path, flags | O_NOFOLLOW | O_CLOEXEC, 0666);
+}
+
+const char *folder_why(int error)
+{
+    return error == ELOOP ? "it is a symbolic link, which is not written through" : strerror(error);
+}
+
 enum err folder_join(char path[FOLDER_PATH], const char *folder, const char *name, struct diag *d)
 {
     const int length = snprintf(path, FOLDER_PATH, "%s/%s", folder, name);
@@ -103,9 +114,9 @@ static enum err lock_folder(struct folder *f, struct diag *d)
     char path[FOLDER_PATH];
     TRY(folder_join(path, f->path, lock_name, d));
     for (;;) {
-        const int fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        const int fd = folder_open_file(path, O_RDWR | O_CREAT);
         if (fd < 0)
-            return diag_fail(d, ERR_INPUT, "%s: cannot write there: %s", f->path, strerror(errno));
+            return diag_fail(d, ERR_INPUT, "%s: cannot be written: %s", path, folder_why(errno));
         if (flock(fd, LOCK_EX | LOCK_NB) != 0) {
             const int why = errno;
             const enum err e = why == EWOULDBLOCK ? lock_busy(f, fd, d) : ERR_OK;
@@ -174,10 +185,13 @@ enum err beside_open(struct beside *b, const char *folder, const char *name, str
     b->file = NULL;
     TRY(folder_join(b->path, folder, name, d));
     TRY(folder_join(b->part, folder, part_name, d));
-    b->file = fopen(b->part, "wb");
-    if (!b->file)
-        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", b->part, strerror(errno));
-    return ERR_OK;
+    unlink(b->part); /* of a run that was killed, or a link */
+    const int fd = folder_open_file(b->part, O_WRONLY | O_CREAT | O_EXCL);
+    b->file = fd >= 0 ? fdopen(fd, "wb") : NULL;
+    if (b->file) return ERR_OK;
+    diag_fail(d, ERR_IO, "%s: cannot be written: %s", b->part, folder_why(errno));
+    if (fd >= 0) close(fd);
+    return ERR_IO;
 }
 
 void beside_abandon(struct beside *b)
@@ -230,8 +244,14 @@ static enum err read_open(FILE *file, const char *path, char **bytes, size_t *si
 
 enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file) return diag_fail(d, ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+    /* Opening a pipe would wait for whoever writes to it. */
+    const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
+    if (!file) {
+        diag_fail(d, ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+        if (fd >= 0) close(fd);
+        return ERR_IO;
+    }
     const enum err e = read_open(file, path, bytes, size, d);
     fclose(file);
     return e;

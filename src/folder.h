@@ -33,6 +33,12 @@ enum err folder_open(struct folder *f, const char *path, enum folder_use use, st
     SPHFSI_CHECKED;
 void folder_close(struct folder *f);
 
+/* Opens a file of a run's folder to write it, as open does; ELOOP if it is a symbolic link. */
+int folder_open_file(const char *path, int flags);
+
+/* strerror, but for that. */
+const char *folder_why(int error);
+
 /* Makes renames and removals in the folder last through a power cut. */
 enum err folder_sync(const char *path, struct diag *d) SPHFSI_CHECKED;
 

@@ -49,13 +49,14 @@ static void on_signal(int number)
         requests.stop = number;
 }
 
-/* A second SIGINT or SIGTERM while the checkpoint is written ends the program at once. */
+/* A second SIGINT while the checkpoint is written ends the program at once, for whoever cannot wait;
+ * a second SIGTERM does not, since batch systems send several. */
 static void install_signals(void)
 {
     struct sigaction once = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
     struct sigaction again = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
     sigaction(SIGINT, &once, NULL);
-    sigaction(SIGTERM, &once, NULL);
+    sigaction(SIGTERM, &again, NULL);
     sigaction(SIGUSR1, &again, NULL);
     /* A file that may not grow further is a failed write, which is reported; so is a closed pipe. */
     signal(SIGXFSZ, SIG_IGN);

@@ -79,8 +79,9 @@ static void set_intervals(struct run *r, double time)
         struct due *u = &r->due[k];
         u->interval = interval[k];
         u->k = u->interval > 0 ? (int64_t)(time / u->interval) : 0;
-        /* A run that goes on has written what is due now; one that begins has not. */
-        while (r->options->restart && due_time(u) <= time) u->k++;
+        while (r->options->restart && due_time(u) < time) u->k++;
+        /* A run that was stopped right at an output may have written it, or not. */
+        u->k += due_time(u) <= u->written;
     }
     /* The state at the beginning is the case itself, or the checkpoint that is forked. */
     r->due[OUT_CHECKPOINT].k += !r->options->restart;
@@ -147,11 +148,19 @@ static enum err capture(struct run *r, struct diag *d)
     return ERR_OK;
 }
 
+/* A checkpoint must not outlive the rows before it through a power cut: they are synced first. */
+static enum err store(struct run *r, struct diag *d)
+{
+    TRY(series_sync(&r->probe_rows, d));
+    TRY(series_sync(&r->ledger_rows, d));
+    return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
+}
+
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
     TRY(capture(r, r->diag));
-    TRY(checkpoint_store(&r->image, r->folder.path, r->checkpoint, r->diag));
+    TRY(store(r, r->diag));
     return write_summary(r, "running", "", r->diag);
 }
 
@@ -199,12 +208,21 @@ static enum err write_due(struct run *r, bool at_end)
 
 /* --- the way --- */
 
+/* Seconds since a mark, which follows a clock that steps back: that of a guest does, when it is moved
+ * to another machine. */
+static double since(double *mark)
+{
+    const double now = wall_clock();
+    if (now < *mark) *mark = now;
+    return now - *mark;
+}
+
 static void show_progress(struct run *r, bool finished)
 {
     const struct sphfsi_options *o = r->options;
-    const double now = wall_clock();
     const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
-    if (!o->progress || (!finished && now - r->wall_progress < interval)) return;
+    if (!o->progress || (!finished && since(&r->wall_progress) < interval)) return;
+    const double now = wall_clock();
     r->wall_progress = now;
     r->record.wall_seconds = now - r->wall_start;
     const struct state *st = &r->s->state;
@@ -233,7 +251,7 @@ static enum err between_steps(struct run *r)
 {
     struct sphfsi_requests *wish = r->options->requests;
     const double minutes = r->session.scene.output.checkpoint_minutes;
-    const bool by_clock = minutes > 0 && wall_clock() - r->wall_checkpoint > 60 * minutes;
+    const bool by_clock = minutes > 0 && since(&r->wall_checkpoint) > 60 * minutes;
     if (by_clock || (wish && wish->checkpoint)) {
         if (wish) wish->checkpoint = 0;
         const double begin = wall_clock();
@@ -268,8 +286,7 @@ static void leave_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
     /* All rows up to the image have been written, so that a restart from it leaves no gap. */
-    if (why != ERR_INTERRUPT && r->image.size > 0 &&
-        checkpoint_store(&r->image, r->folder.path, r->checkpoint, &second))
+    if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
         diag_warn(&second, "the last sound state could not be kept: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->s, &second))
@@ -303,10 +320,16 @@ static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_
     }
     const char *name = o->case_path ? o->case_path : "case";
     if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
-    const size_t length = strlen(name);
-    const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
-    snprintf(path, FOLDER_PATH, "runs/%.*s%s", (int)(cfg ? length - 4 : length), name,
-             o->fork ? "-fork" : "");
+    const size_t whole = strlen(name);
+    const size_t length = whole > 4 && strcmp(name + whole - 4, ".cfg") == 0 ? whole - 4 : whole;
+    /* A name of dots would be another folder than one in runs/. */
+    if (strspn(name, ".") >= length)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: the folder of the results takes its name from the case, and '%.*s' is "
+            "none; choose one with --out",
+            o->case_path, (int)length, name);
+    snprintf(path, FOLDER_PATH, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
     return ERR_OK;
 }
 
@@ -314,6 +337,7 @@ static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_
 static enum err write_case(struct run *r, char part[FOLDER_PATH])
 {
     TRY(folder_join(part, r->folder.path, "case.cfg.part", r->diag));
+    unlink(part); /* of a run that was killed, or a link */
     TRY(scene_write(&r->session.scene, part, r->diag));
     size_t size;
     const enum err e = file_read(part, &r->case_text, &size, r->diag);
@@ -346,6 +370,8 @@ static enum err start_again(struct run *r, const char *header)
 {
     const double time = r->s->state.time;
     double row[SERIES_MAX_COLUMNS];
+    /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
+    TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, time,
                          &r->due[OUT_SNAPSHOT].written, r->diag));
     TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, time, row,
@@ -353,7 +379,6 @@ static enum err start_again(struct run *r, const char *header)
     if (r->probes.n > 0)
         TRY(series_resume(&r->probe_rows, r->folder.path, "probes.csv", header, time, NULL,
                           &r->due[OUT_PROBES].written, r->diag));
-    TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
     r->due[OUT_CHECKPOINT].written = time;
     int k = 0;
 #define LEDGER(name, unit, meaning) r->record.first.name = row[k++];

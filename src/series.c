@@ -52,9 +52,9 @@ enum err series_create(struct series *s, const char *folder, const char *name, c
                        struct diag *d)
 {
     TRY(begin(s, folder, name, header, d));
-    s->fd = open(s->path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+    s->fd = folder_open_file(s->path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
     if (s->fd < 0)
-        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, strerror(errno));
+        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, folder_why(errno));
     TRY(append(s, header, strlen(header), d));
     return append(s, "\n", 1, d);
 }
@@ -97,9 +97,9 @@ static enum err cut(struct series *s, const char *bytes, const char *header, dou
     *last = -1;
     const size_t keep = length + 1 + rows_until(bytes + length + 1, time, &row, last);
     if (first) TRY(read_first(s, row, first, d));
-    s->fd = open(s->path, O_WRONLY | O_APPEND | O_CLOEXEC);
+    s->fd = folder_open_file(s->path, O_WRONLY | O_APPEND);
     if (s->fd < 0 || ftruncate(s->fd, (off_t)keep) != 0)
-        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, strerror(errno));
+        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, folder_why(errno));
     return ERR_OK;
 }
 
@@ -124,6 +124,13 @@ enum err series_row(struct series *s, const double *values, struct diag *d)
         row[length++] = k + 1 < s->columns ? ',' : '\n';
     }
     return append(s, row, length, d);
+}
+
+enum err series_sync(const struct series *s, struct diag *d)
+{
+    /* EINVAL: what cannot be synced, such as a pipe. */
+    if (s->fd < 0 || fsync(s->fd) == 0 || errno == EINVAL) return ERR_OK;
+    return diag_fail(d, ERR_IO, "%s: cannot be synced: %s", s->path, strerror(errno));
 }
 
 void series_close(struct series *s)

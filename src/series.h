@@ -26,6 +26,9 @@ enum err series_resume(struct series *s, const char *folder, const char *name, c
 /* Appends a row in one write. */
 enum err series_row(struct series *s, const double *values, struct diag *d) SPHFSI_CHECKED;
 
+/* Makes the rows last through a power cut. A series that is not open has none. */
+enum err series_sync(const struct series *s, struct diag *d) SPHFSI_CHECKED;
+
 void series_close(struct series *s);
 
 /* The shortest text that reads back as the same number; "nan", "inf" as C spells them. */

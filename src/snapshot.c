@@ -160,7 +160,7 @@ static bool claim_space(const struct snapshots *w, int64_t points)
 #if _POSIX_ADVISORY_INFO > 0
     const int64_t have = file_bytes(w->spare), named = file_bytes(w->path);
     const int64_t want = (have > named ? have : named) + snapshot_file_bytes(points);
-    const int fd = open(w->spare, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    const int fd = folder_open_file(w->spare, O_WRONLY | O_CREAT);
     const int why = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)want);
     if (fd >= 0) close(fd);
     errno = why;
@@ -175,6 +175,8 @@ static bool claim_space(const struct snapshots *w, int64_t points)
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *s)
 {
     const int64_t points = s ? count_points(s) : 0;
+    struct stat info;
+    if (lstat(w->spare, &info) == 0 && !S_ISREG(info.st_mode)) unlink(w->spare);
     if (!claim_space(w, points)) return false;
     const bool is_named = access(w->path, F_OK) == 0;
     const hid_t named = is_named ? H5Fopen(w->path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;

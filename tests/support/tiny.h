@@ -12,4 +12,7 @@ const char *tiny_folder(void);
 /* A file in it: valid until the next call but three. */
 const char *tiny_path(const char *name);
 
+/* Removes a folder with all that is in it. */
+void tiny_remove(const char *path);
+
 #endif

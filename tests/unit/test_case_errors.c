@@ -316,7 +316,7 @@ static void test_a_folder_is_no_file(void)
     struct scene s;
     struct diag d = {0};
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, ".", 0, NULL, &d));
-    TEST_ASSERT_EQUAL_STRING(".: cannot be read: Is a directory", d.text);
+    TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 
 int main(void)

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: MIT
+ * A run stopped after any of its steps and continued, on another number of threads, ends with the bits,
+ * the rows and the snapshots of the run that was not stopped: between two sortings, within a cycle of
+ * Verlet, with sub-steps, right at an output that has not been written yet, after the last step. Every
+ * other time the run goes on behind the checkpoint, so that rows and snapshots have to be dropped. */
+#include "folder.h"
+#include "snapshot_file.h"
+#include "sphfsi.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static struct sphfsi_requests requests;
+static int64_t stop_after, save_after, steps_done;
+static int stops; /* of all forms */
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void watch(void *context, const struct sphfsi_progress *p)
+{
+    (void)context;
+    steps_done = p->steps;
+    if (p->steps >= stop_after) requests.stop = SIGTERM;
+    /* Looked at after the next step, or batch of steps of a lone solid. */
+    if (save_after > 0 && p->steps + 1 >= save_after) requests.checkpoint = 1, save_after = -1;
+}
+
+struct form {
+    const char *name, *file; /* of a shipped case; NULL: the tiny one */
+    int every;               /* stop after every so many steps; negative: so many times */
+    const char *sets[16];
+};
+
+static enum sphfsi_status run(const struct form *f, const char *out, int threads, bool restart,
+                              const char *checkpoint)
+{
+    int n = 0;
+    while (n < 16 && f->sets[n]) n++;
+    requests = (struct sphfsi_requests){.checkpoint = save_after == 1};
+    const struct sphfsi_options o = {.case_path = f->file,
+                                     .case_text = f->file ? NULL : tiny_case,
+                                     .sets = f->sets,
+                                     .n_sets = n,
+                                     .threads = threads,
+                                     .out = out,
+                                     .restart = restart,
+                                     .restart_file = checkpoint,
+                                     .requests = &requests,
+                                     .progress = watch,
+                                     .progress_interval = 1e-12};
+    const enum sphfsi_status status = sphfsi_run(&o);
+    char message[FOLDER_PATH];
+    snprintf(message, sizeof message, "%s: %s", f->name, sphfsi_error());
+    const enum sphfsi_status wanted = requests.stop ? SPHFSI_INTERRUPT : SPHFSI_OK;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(wanted, status, message);
+    return status;
+}
+
+/* --- comparing --- */
+
+static char *read_all(const char *folder, const char *name, size_t *size)
+{
+    static char *bytes;
+    char path[FOLDER_PATH + 64];
+    struct diag d = {.code = ERR_OK};
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    if (file_read(path, &bytes, size, &d)) TEST_FAIL_MESSAGE(d.text);
+    return bytes;
+}
+
+static void same_file(const char *a, const char *b, const char *name, const char *what)
+{
+    size_t n, m;
+    char *const x = read_all(a, name, &n), *const y = read_all(b, name, &m);
+    TEST_ASSERT_TRUE_MESSAGE(strcmp(x, y) == 0, what);
+    free(x);
+    free(y);
+}
+
+static void same_hash(const char *a, const char *b, const char *what)
+{
+    size_t n, m;
+    char *const x = read_all(a, "summary.json", &n), *const y = read_all(b, "summary.json", &m);
+    const char *const from = strstr(x, "\"state_hash\""), *const to = strstr(y, "\"state_hash\"");
+    TEST_ASSERT_TRUE_MESSAGE(from && to, what);
+    TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(from, to, strcspn(from, "\n") + 1, what);
+    free(x);
+    free(y);
+}
+
+static void same_snapshots(const char *a, const char *b, const char *what)
+{
+    hid_t file[2];
+    const char *const folder[2] = {a, b};
+    int64_t rows[2][D_COUNT];
+    for (int k = 0; k < 2; k++) {
+        char path[FOLDER_PATH + 64];
+        snprintf(path, sizeof path, "%s/fields.vtkhdf", folder[k]);
+        file[k] = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+        const int64_t n = snapshot_file_steps(file[k]);
+        TEST_ASSERT_TRUE_MESSAGE(n > 1 && snapshot_file_rows(file[k], n, rows[k]), what);
+    }
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(rows[0], rows[1], sizeof rows[0], what);
+    for (int k = 0; k < D_COUNT; k++) {
+        const size_t width = (size_t)snapshot_file_width((enum data)k);
+        const size_t bytes = (size_t)rows[0][k] * width * 8;
+        void *const x = malloc(bytes + 1), *const y = malloc(bytes + 1);
+        TEST_ASSERT_TRUE(snapshot_file_first(file[0], (enum data)k, rows[0][k], x));
+        TEST_ASSERT_TRUE(snapshot_file_first(file[1], (enum data)k, rows[1][k], y));
+        TEST_ASSERT_EQUAL_MEMORY_MESSAGE(x, y, bytes, what);
+        free(x);
+        free(y);
+    }
+    H5Fclose(file[0]);
+    H5Fclose(file[1]);
+}
+
+static void same(const char *a, const char *b, const char *what)
+{
+    same_file(a, b, "case.cfg", what);
+    same_file(a, b, "ledger.csv", what);
+    if (!strstr(what, "still_water")) same_file(a, b, "probes.csv", what);
+    same_hash(a, b, what);
+    same_snapshots(a, b, what);
+}
+
+/* --- stopping --- */
+
+/* The first checkpoint of the folder by its name. */
+static void oldest(const char *folder, char path[FOLDER_PATH + 300])
+{
+    DIR *dir = opendir(folder);
+    TEST_ASSERT_NOT_NULL(dir);
+    char first[256] = "step-x";
+    for (const struct dirent *e; (e = readdir(dir)) != NULL;)
+        if (strncmp(e->d_name, "step-", 5) == 0 && strcmp(e->d_name, first) < 0)
+            snprintf(first, sizeof first, "%s", e->d_name);
+    closedir(dir);
+    snprintf(path, FOLDER_PATH + 300, "%s/%s", folder, first);
+}
+
+static void stop_and_go_on(const struct form *f, const char *whole, int64_t at)
+{
+    char name[64], what[160], cut[FOLDER_PATH], checkpoint[FOLDER_PATH + 300];
+    snprintf(name, sizeof name, "stop%d", stops++);
+    snprintf(cut, sizeof cut, "%s", tiny_path(name));
+    snprintf(what, sizeof what, "%s, stopped after step %ld", f->name, (long)at);
+    const bool behind = stops % 2 != 0;
+    stop_after = at + (behind ? 3 : 0);
+    save_after = behind ? at : -1;
+    run(f, cut, 1, false, NULL);
+    oldest(cut, checkpoint);
+    stop_after = INT64_MAX;
+    save_after = -1;
+    run(f, cut, 2, true, behind ? checkpoint : NULL);
+    same(whole, cut, what);
+    tiny_remove(cut);
+}
+
+static void sweep(const struct form *f)
+{
+    char whole[FOLDER_PATH];
+    snprintf(whole, sizeof whole, "%s", tiny_path(f->name));
+    stop_after = INT64_MAX;
+    save_after = -1;
+    run(f, whole, 1, false, NULL);
+    const int64_t steps = steps_done;
+    TEST_ASSERT_TRUE_MESSAGE(steps >= 8, f->name);
+    const int64_t stride = f->every > 0 ? f->every : steps / -f->every;
+    for (int64_t at = stride; at <= steps; at += stride) stop_and_go_on(f, whole, at);
+    tiny_remove(whole);
+}
+
+/* Sortings every few steps (a thin skin), and outputs that meet in places and differ in others. */
+#define TINY                                                                          \
+    "end_time=3 ms", "output.probe_interval=0.3 ms", "output.ledger_interval=0.5 ms", \
+        "output.snapshot_interval=1.5 ms", "numerics.skin=0.002", "water.velocity=1 m/s, 0 m/s"
+
+static void symplectic_with_sub_steps(void)
+{
+    sweep(&(struct form){"tiny symplectic", NULL, 1, {TINY}});
+}
+
+static void symplectic_single_rate(void)
+{
+    sweep(&(struct form){"tiny symplectic single", NULL, 1, {TINY, "numerics.multirate=off"}});
+}
+
+static void verlet_with_sub_steps(void)
+{
+    sweep(&(struct form){
+        "tiny verlet", NULL, 1, {TINY, "integrator=verlet", "numerics.verlet_reset=7"}});
+}
+
+static void verlet_single_rate(void)
+{
+    sweep(&(struct form){"tiny verlet single",
+                         NULL,
+                         1,
+                         {TINY, "integrator=verlet", "numerics.verlet_reset=7",
+                          "numerics.multirate=off", "precision=double"}});
+}
+
+/* The shipped cases, coarse and short: three stops each, at steps that no output chose. */
+#define SHORT(end, interval)                                                                \
+    "end_time=" end, "output.probe_interval=" interval, "output.ledger_interval=" interval, \
+        "output.snapshot_interval=" end
+
+static void shipped_cases(void)
+{
+    static const struct form forms[] = {
+        {"cantilever", "cases/cantilever.cfg", -3, {SHORT("1e-3", "0.15e-3"), "ratio=4"}},
+        {"cantilever verlet",
+         "cases/cantilever.cfg",
+         -3,
+         {SHORT("1e-3", "0.15e-3"), "ratio=4", "integrator=verlet"}},
+        {"gate",
+         "cases/gate.cfg",
+         -3,
+         {SHORT("4e-3", "0.7e-3"), "dp=2.5 mm", "gate_thickness=10mm", "wall=10mm", "held=10mm",
+          "gate_length=80mm", "W=0.1m", "H=0.14m", "top=0.16m"}},
+        {"hydrostatic_plate",
+         "cases/hydrostatic_plate.cfg",
+         -3,
+         {SHORT("4e-3", "0.7e-3"), "dp=25 mm"}},
+        {"wet_baffle", "cases/wet_baffle.cfg", -3, {SHORT("2e-3", "0.7e-3"), "dp=2 mm"}},
+        {"sluice_gate", "cases/sluice_gate.cfg", -3, {SHORT("5e-3", "0.7e-3"), "dp=4 mm"}},
+        {"still_water",
+         "cases/still_water.cfg",
+         -3,
+         {SHORT("0.01", "0.7e-3"), "dp=20 mm", "wall=60mm"}},
+    };
+    for (size_t k = 0; k < COUNT_OF(forms); k++) sweep(&forms[k]);
+}
+
+int main(void)
+{
+    /* In memory where that is possible: thousands of synced files say nothing here. */
+    if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
+    UNITY_BEGIN();
+    RUN_TEST(shipped_cases);
+    RUN_TEST(symplectic_with_sub_steps);
+    RUN_TEST(symplectic_single_rate);
+    RUN_TEST(verlet_with_sub_steps);
+    RUN_TEST(verlet_single_rate);
+    printf("found: %d stops\n", stops);
+    return UNITY_END();
+}
