@@ -24,6 +24,7 @@ PREFIX  ?= /usr/local
 OUT     ?= runs/gate$(if $(DP),-dp$(subst $() ,,$(DP)))
 B       := build/$(CONFIG)
 Q       := $(if $(V),,@)
+comma   := ,
 
 # Nothing is built by these goals, so nothing is looked for or installed either.
 IDLE  := help info format dist clean distclean
@@ -116,7 +117,11 @@ $(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
 	  -c -o $@ $<
 
 $(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(LIB)
-	$(Q)$(LINK)
+	$(Q)$(LINK) $(WRAP)
+
+# Puts itself between the program and its memory (CMakeLists.txt, too).
+$(B)/tests/fault/test_alloc: private WRAP := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc \
+  aligned_alloc free fopen fdopen opendir)
 
 $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
 	$(Q)$(LINK)

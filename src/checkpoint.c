@@ -232,18 +232,19 @@ static int64_t steps_of(const struct dirent *entry)
     return strcmp(entry->d_name, name) == 0 ? steps : -1;
 }
 
-/* The largest number of steps below `limit` among the folder's checkpoints, or -1. */
-static int64_t newest_below(const char *folder, int64_t limit)
+/* The largest number of steps below *steps among the folder's checkpoints, or -1, takes its place. */
+static enum err next_newest(const char *folder, int64_t *steps, struct diag *d)
 {
+    const int64_t limit = *steps;
     DIR *dir = opendir(folder);
-    if (!dir) return -1;
-    int64_t best = -1;
+    if (!dir) return diag_fail(d, ERR_IO, "%s: cannot be read: %s", folder, strerror(errno));
+    *steps = -1;
     for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        const int64_t steps = steps_of(entry);
-        if (steps > best && steps < limit) best = steps;
+        const int64_t found = steps_of(entry);
+        if (found > *steps && found < limit) *steps = found;
     }
     closedir(dir);
-    return best;
+    return ERR_OK;
 }
 
 static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag *d)
@@ -256,16 +257,21 @@ static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag
     return ERR_OK;
 }
 
-static enum err keep_last(const char *folder, int64_t newest, struct diag *d)
+static enum err remove_older(const char *folder, int64_t newest, struct diag *d)
 {
     int64_t steps = newest + 1;
-    for (int kept = 0; (steps = newest_below(folder, steps)) >= 0; kept++)
-        if (kept >= KEEP) {
-            /* One too many is no reason to end a run. */
-            struct diag why = {.code = ERR_OK};
-            if (remove_checkpoint(folder, steps, &why)) diag_warn(d, "%s", why.text);
-        }
-    return ERR_OK;
+    for (int kept = 0;; kept++) {
+        TRY(next_newest(folder, &steps, d));
+        if (steps < 0) return ERR_OK;
+        if (kept >= KEEP) TRY(remove_checkpoint(folder, steps, d));
+    }
+}
+
+/* One too many is no reason to end a run. */
+static void keep_last(const char *folder, int64_t newest, struct diag *d)
+{
+    struct diag why = {.code = ERR_OK};
+    if (remove_older(folder, newest, &why)) diag_warn(d, "%s", why.text);
 }
 
 enum err checkpoint_store(struct image *m, const char *folder, char path[FOLDER_PATH],
@@ -284,7 +290,8 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[FOLDER_
     }
     TRY(beside_commit(&out, d));
     memcpy(path, out.path, FOLDER_PATH);
-    return keep_last(folder, info.steps, d);
+    keep_last(folder, info.steps, d);
+    return ERR_OK;
 }
 
 /* What runs that were killed have left unfinished. */
@@ -304,8 +311,12 @@ static void remove_parts(const char *folder)
 
 enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d)
 {
-    for (int64_t later; (later = newest_below(folder, INT64_MAX)) > steps;)
+    for (;;) {
+        int64_t later = INT64_MAX;
+        TRY(next_newest(folder, &later, d));
+        if (later <= steps) break;
         TRY(remove_checkpoint(folder, later, d));
+    }
     remove_parts(folder);
     return ERR_OK;
 }
@@ -400,11 +411,16 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[FOLDER
 {
     char name[NAME_TEXT];
     int seen = 0;
-    for (int64_t steps = INT64_MAX; (steps = newest_below(folder, steps)) >= 0; seen++) {
+    for (int64_t steps = INT64_MAX;; seen++) {
         struct diag why = {.code = ERR_OK};
+        TRY(next_newest(folder, &steps, d));
+        if (steps < 0) break;
         name_of(name, steps);
         TRY(folder_join(path, folder, name, d));
-        if (checkpoint_read(m, path, &why) == ERR_OK) return ERR_OK;
+        const enum err e = checkpoint_read(m, path, &why);
+        if (e == ERR_OK) return ERR_OK;
+        /* It may be as sound as any; the one before it would cost it, as a later one. */
+        if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; the one before it is tried", why.text);
     }
     return diag_fail(d, ERR_IO, "%s: holds no %scheckpoint (step-*.ckpt) to restart from", folder,

@@ -248,9 +248,10 @@ enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d)
     const int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     FILE *file = fd >= 0 ? fdopen(fd, "rb") : NULL;
     if (!file) {
-        diag_fail(d, ERR_IO, "%s: cannot be read: %s", path, strerror(errno));
+        const enum err e = errno == ENOMEM ? ERR_MEMORY : ERR_IO;
+        diag_fail(d, e, "%s: cannot be read: %s", path, strerror(errno));
         if (fd >= 0) close(fd);
-        return ERR_IO;
+        return e;
     }
     const enum err e = read_open(file, path, bytes, size, d);
     fclose(file);

@@ -402,7 +402,9 @@ static enum err find_checkpoint(struct run *r)
 
 static enum err load_checkpoint(struct run *r)
 {
-    if (find_checkpoint(r)) {
+    const enum err missing = find_checkpoint(r);
+    if (missing == ERR_MEMORY) return missing;
+    if (missing) {
         /* One that is not there or not sound is wrong input: nothing was started. */
         r->diag->code = ERR_INPUT;
         return ERR_INPUT;

@@ -256,7 +256,7 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
 }
 
 /* How many snapshots the named file holds, and how many of them up to `time`; the time of the last
- * of these. */
+ * of these. errno is ENOMEM where it is memory that is missing. */
 static bool count_snapshots(const struct snapshots *w, double time, int64_t *all, int64_t *keep,
                             double *last)
 {
@@ -265,8 +265,10 @@ static bool count_snapshots(const struct snapshots *w, double time, int64_t *all
     double *times = *all >= 0 ? malloc((size_t)(*all + 1) * sizeof *times) : NULL;
     const bool ok = times && snapshot_file_first(file, D_TIME, *all, times);
     for (*keep = 0; ok && *keep < *all && times[*keep] <= time; ++*keep) *last = times[*keep];
+    const int why = *all >= 0 && !times ? ENOMEM : 0;
     free(times);
     if (file >= 0) H5Fclose(file);
+    errno = why;
     return ok;
 }
 
@@ -283,7 +285,10 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     int64_t all, keep;
     const struct quiet q = quiet_begin();
     const bool counted = count_snapshots(w, time, &all, &keep, last);
+    const int why = errno;
     quiet_end(q);
+    if (!counted && why == ENOMEM)
+        return diag_fail(d, ERR_MEMORY, "%s: no memory to look at its snapshots", w->path);
     if (!counted)
         return diag_fail(d, ERR_INPUT,
                          "%s: cannot be read as snapshots; move it away to go on "

@@ -1,0 +1,245 @@
+/* SPDX-License-Identifier: MIT
+ * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart, a
+ * fork, --inspect and --explain: a sentence and a status each time, nothing leaks, no lock is left, and
+ * what was good stays good. malloc, calloc, realloc, aligned_alloc, fopen, fdopen and opendir of this
+ * program are put in between by the linker (--wrap). Those within HDF5, a shared library, are not: it
+ * says itself that it does not survive all of them; a snapshot that fails is rehearsed by full disks. */
+#include "folder.h"
+#include "sphfsi.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static long countdown = -1, live, failures;
+static bool hit;
+
+static bool fails(void)
+{
+    if (countdown < 0 || countdown-- > 0) return false;
+    errno = ENOMEM;
+    return hit = true;
+}
+
+static void *counted(void *memory)
+{
+    live += memory != NULL;
+    return memory;
+}
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t n, size_t size);
+void *__real_realloc(void *old, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void __real_free(void *memory);
+FILE *__real_fopen(const char *path, const char *mode);
+FILE *__real_fdopen(int fd, const char *mode);
+DIR *__real_opendir(const char *path);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+void __wrap_free(void *memory);
+FILE *__wrap_fopen(const char *path, const char *mode);
+FILE *__wrap_fdopen(int fd, const char *mode);
+DIR *__wrap_opendir(const char *path);
+
+void *__wrap_malloc(size_t size) { return fails() ? NULL : counted(__real_malloc(size)); }
+
+void *__wrap_calloc(size_t n, size_t size)
+{
+    return fails() ? NULL : counted(__real_calloc(n, size));
+}
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    if (fails()) return NULL;
+    void *const memory = __real_realloc(old, size);
+    live += !old && memory;
+    return memory;
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    return fails() ? NULL : counted(__real_aligned_alloc(alignment, size));
+}
+
+void __wrap_free(void *memory)
+{
+    live -= memory != NULL;
+    __real_free(memory);
+}
+
+FILE *__wrap_fopen(const char *path, const char *mode)
+{
+    return fails() ? NULL : __real_fopen(path, mode);
+}
+
+FILE *__wrap_fdopen(int fd, const char *mode) { return fails() ? NULL : __real_fdopen(fd, mode); }
+
+DIR *__wrap_opendir(const char *path) { return fails() ? NULL : __real_opendir(path); }
+
+void setUp(void) { countdown = -1; }
+
+void tearDown(void) { countdown = -1; }
+
+static char folder[FOLDER_PATH], begun[FOLDER_PATH], path[FOLDER_PATH + 300];
+static const char *const sets[] = {"output.snapshot_interval=0.2 ms",
+                                   "output.checkpoint_interval=0.2 ms"};
+static const char *const stiffer[] = {"gate.young=2e6"};
+
+static struct sphfsi_options options(const char *out, double until)
+{
+    return (struct sphfsi_options){.case_path = "tests/fault/tiny.cfg",
+                                   .until = until,
+                                   .threads = 1,
+                                   .sets = sets,
+                                   .n_sets = 2,
+                                   .out = out};
+}
+
+static enum sphfsi_status fresh(void)
+{
+    const struct sphfsi_options o = options(folder, 0.0004);
+    return sphfsi_run(&o);
+}
+
+static enum sphfsi_status restart(void)
+{
+    struct sphfsi_options o = options(folder, 0.0008);
+    o.restart = 1;
+    return sphfsi_run(&o);
+}
+
+static enum sphfsi_status fork_it(void)
+{
+    struct sphfsi_options o = options(folder, 0.0006);
+    o.fork = path;
+    o.sets = stiffer;
+    o.n_sets = 1;
+    return sphfsi_run(&o);
+}
+
+static enum sphfsi_status inspect(void)
+{
+    const struct sphfsi_options o = {0};
+    return sphfsi_inspect(path, &o);
+}
+
+static enum sphfsi_status explain(void)
+{
+    const struct sphfsi_options o = options(NULL, 0);
+    return sphfsi_explain(&o);
+}
+
+static void begin(void)
+{
+    snprintf(begun, sizeof begun, "%s", tiny_path("begun"));
+    const struct sphfsi_options o = options(begun, 0.0004);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
+    DIR *dir = opendir(begun);
+    for (const struct dirent *e; (e = readdir(dir)) != NULL;)
+        if (strstr(e->d_name, ".ckpt")) snprintf(path, sizeof path, "%s/%s", begun, e->d_name);
+    closedir(dir);
+}
+
+static void copy_begun(void)
+{
+    static const char *const names[] = {"case.cfg", "ledger.csv", "probes.csv", "fields.vtkhdf",
+                                        "summary.json"};
+    char from[FOLDER_PATH + 300], to[FOLDER_PATH + 300];
+    TEST_ASSERT_EQUAL_INT(0, mkdir(folder, 0777));
+    for (size_t k = 0; k <= COUNT_OF(names); k++) {
+        const char *name = k < COUNT_OF(names) ? names[k] : strrchr(path, '/') + 1;
+        snprintf(from, sizeof from, "%s/%s", begun, name);
+        snprintf(to, sizeof to, "%s/%s", folder, name);
+        struct diag d = {.code = ERR_OK};
+        char *bytes = NULL;
+        size_t size;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, file_read(from, &bytes, &size, &d), d.text);
+        FILE *file = fopen(to, "wb");
+        TEST_ASSERT_EQUAL_INT(size, fwrite(bytes, 1, size, file));
+        fclose(file);
+        free(bytes);
+    }
+}
+
+static int count_checkpoints(void)
+{
+    int n = 0;
+    DIR *dir = opendir(folder);
+    for (const struct dirent *e; (e = readdir(dir)) != NULL;)
+        n += strstr(e->d_name, ".ckpt") != NULL;
+    closedir(dir);
+    return n;
+}
+
+static void judge(enum sphfsi_status status, long n, const char *what)
+{
+    char message[1024], lock[FOLDER_PATH + 300];
+    snprintf(message, sizeof message, "%s, allocation %ld: %s", what, n, sphfsi_error());
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, live, message);
+    snprintf(lock, sizeof lock, "%s/.lock", folder);
+    TEST_ASSERT_TRUE_MESSAGE(access(lock, F_OK) != 0, message);
+    /* The checkpoint that a restart began from is there, or a later one. */
+    if (strcmp(what, "restart") == 0) TEST_ASSERT_TRUE_MESSAGE(count_checkpoints() > 0, message);
+    if (!status) return;
+    const bool told = strstr(sphfsi_error(), "memory") != NULL;
+    TEST_ASSERT_TRUE_MESSAGE(told, message);
+    TEST_ASSERT_TRUE_MESSAGE(status == SPHFSI_MEMORY || status == SPHFSI_IO ||
+                                 status == SPHFSI_INPUT,
+                             message);
+}
+
+static void every_one(enum sphfsi_status (*work)(void), const char *what, long least)
+{
+    long n = 0;
+    for (hit = true; hit; n++) {
+        TEST_ASSERT_TRUE_MESSAGE(n < 20000, what);
+        char name[64];
+        snprintf(name, sizeof name, "%s%ld", what, n);
+        snprintf(folder, sizeof folder, "%s", tiny_path(name));
+        if (work == restart) copy_begun();
+        hit = false;
+        live = 0;
+        countdown = n;
+        const enum sphfsi_status status = work();
+        countdown = -1;
+        failures += hit;
+        judge(status, n, what);
+        if (!hit) TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, status, sphfsi_error());
+        if (access(folder, F_OK) == 0) tiny_remove(folder);
+    }
+    char message[64];
+    snprintf(message, sizeof message, "%s: %ld allocations only", what, n);
+    TEST_ASSERT_TRUE_MESSAGE(n > least, message);
+}
+
+static void of_a_run(void) { every_one(fresh, "run", 100); }
+
+static void of_a_restart(void) { every_one(restart, "restart", 100); }
+
+static void of_a_fork(void) { every_one(fork_it, "fork", 100); }
+
+static void of_inspect(void) { every_one(inspect, "inspect", 1); }
+
+static void of_explain(void) { every_one(explain, "explain", 100); }
+
+int main(void)
+{
+    if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
+    UNITY_BEGIN();
+    RUN_TEST(begin);
+    RUN_TEST(of_a_run);
+    RUN_TEST(of_a_restart);
+    RUN_TEST(of_a_fork);
+    RUN_TEST(of_inspect);
+    RUN_TEST(of_explain);
+    printf("found: %ld failing allocations\n", failures);
+    return UNITY_END();
+}
