@@ -8,6 +8,14 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 #undef EFFECT
 };
 
+static bool fluid_sticks(const struct scene *s)
+{
+    bool sticks = false;
+    for (int k = 0; k < s->n_wall; k++) sticks |= s->wall[k].slip == SLIP_NONE;
+    for (int k = 0; k < s->n_solid; k++) sticks |= s->solid[k].slip == SLIP_NONE;
+    return sticks;
+}
+
 static unsigned fluid_effects(const struct scene *s)
 {
     if (s->n_fluid == 0) return 0;
@@ -17,6 +25,8 @@ static unsigned fluid_effects(const struct scene *s)
     if (f->density_diffusion > 0) fx |= FX_DIFFUSION;
     if (f->density_diffusion > 0 && f->diffusion_form == DIFFUSION_FOURTAKAS) fx |= FX_FOURTAKAS;
     if (s->domain.periodic != PERIODIC_NONE) fx |= FX_PERIODIC;
+    if (f->laminar_viscosity > 0) fx |= FX_LAMINAR;
+    if (fluid_sticks(s)) fx |= FX_NO_SLIP;
     if (s->n_wall > 0) fx |= FX_WALL;
     for (int k = 0; k < s->n_wall; k++)
         if (s->wall[k].motion[0]) fx |= FX_MOTION;

@@ -20,18 +20,38 @@ static struct fluid_constants constants_of(const struct scene *s)
         .rho0 = s->rho0,
         .mass = s->rho0 * square(s->top.dp),
         .alpha = fluid->artificial_viscosity,
+        .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
         .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
     };
 }
 
+/* Fields that the set calls for in the lanes of a kind. */
+static int lanes_wanted(enum kind kind, unsigned effects)
+{
+    return kind != KIND_FLUID && effects & FX_NO_SLIP ? LANE_NO_SLIP_FIELDS : LANE_FIELDS;
+}
+
 static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, size_t size,
                              struct diag *d)
 {
-    for (int m = 0; m < LANE_FIELDS; m++) {
+    for (int m = 0; m < lanes->n; m++) {
         lanes->field[m] = arena_alloc(a, (size_t)n, size, "lanes of the fluid's sweep", d);
         if (!lanes->field[m]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *s, struct diag *d)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const int n = kind == KIND_WALL ? s->n_wall : s->n_solid;
+        bool *const sticks = arena_alloc(a, (size_t)n, sizeof *sticks, "walls", d);
+        if (!sticks) return ERR_MEMORY;
+        for (int k = 0; k < n; k++)
+            sticks[k] = (kind == KIND_WALL ? s->wall[k].slip : s->solid[k].slip) == SLIP_NONE;
+        f->sticks[kind] = sticks;
     }
     return ERR_OK;
 }
@@ -45,8 +65,15 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
                   s->numerics.kernel == KERNEL_GENERIC);
     f->threads = thread_count();
-    f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->sweeps->tile_size, "candidate tiles", d);
+    int most = 0;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        f->lanes[k].n = lanes_wanted((enum kind)k, effects);
+        most = f->lanes[k].n > most ? f->lanes[k].n : most;
+    }
+    f->tile_size = f->sweeps->tile_head + (size_t)most * f->sweeps->tile_row;
+    f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->tile_size, "candidate tiles", d);
     if (!f->tiles) return ERR_MEMORY;
+    if (effects & FX_NO_SLIP) TRY(note_slip(f, a, s, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         TRY(lanes_create(&f->lanes[k], a, kinds[k].capacity, f->sweeps->lane_size, d));

@@ -11,6 +11,7 @@ struct fluid_constants {
     double h, c0, rho0;
     double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double alpha; /* Eq. 7 */
+    double nu;    /* laminar viscosity, m^2/s */
     double delta; /* Eq. 6 */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
@@ -24,10 +25,27 @@ struct fluid_extremes {
 
 /* Copies in cell order that the sweeps read: positions relative to the cell's centre in units of h,
  * volume in units of h^2, the rest in SI; float in mixed, double in double precision. */
-enum lane_field { LANE_X, LANE_Y, LANE_U, LANE_V, LANE_VOLUME, LANE_P, LANE_DENS, LANE_FIELDS };
+enum lane_field {
+    LANE_X,
+    LANE_Y,
+    LANE_U,
+    LANE_V,
+    LANE_VOLUME,
+    LANE_P,
+    LANE_DENS,
+    LANE_FIELDS,
+    /* Of walls and solids, where fluid sticks to some of them: the mirrored velocity (Adami et al. 2012,
+     * Eq. 23) and 1 where it acts, 0 where the surface is free-slip. */
+    LANE_MIRROR_U = LANE_FIELDS,
+    LANE_MIRROR_V,
+    LANE_STICKS,
+    LANE_NO_SLIP_FIELDS,
+    LANE_MOST = LANE_NO_SLIP_FIELDS
+};
 
 struct lanes {
-    void *field[LANE_FIELDS];
+    int n; /* fields in use */
+    void *field[LANE_MOST];
 };
 
 /* Most candidates of one kind that a sweep takes from the nine cells around a particle. More than
@@ -40,7 +58,8 @@ struct fluid;
 struct fluid_sweeps {
     const char *name;
     unsigned effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
-    size_t lane_size, tile_size;
+    size_t lane_size; /* of an item */
+    size_t tile_head, tile_row; /* of a candidate tile, and of each of its fields */
     /* Pressure by the equation of state, and lanes of the fluid. */
     void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their lanes, and the
@@ -53,7 +72,7 @@ struct fluid_sweeps {
 #define ANY_EFFECTS (~0u)
 
 /* Pair effects that kernels are stamped for. */
-#define PAIR_EFFECTS (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS)
+#define PAIR_EFFECTS (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
@@ -65,7 +84,9 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    void *tiles; /* [threads] of candidate tiles */
+    bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
+    void *tiles;              /* [2 threads] of candidate tiles */
+    size_t tile_size;
     int threads;
     struct fluid_extremes extremes;
 };

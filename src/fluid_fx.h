@@ -17,6 +17,7 @@ struct receiver {
 struct pair {
     vreal x, y;    /* xi_ab */
     vreal r2;      /* |xi_ab|^2 */
+    vreal u, v;    /* v_ab, m/s */
     vreal vx;      /* v_ab . xi_ab, m/s */
     vreal slope;   /* V_b/h^2 t^3 */
     vreal p, dens; /* of b */
@@ -31,6 +32,7 @@ struct sums {
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
     vreal viscosity; /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal laminar;   /* 2 nu rho0/h, kg/(m^2 s) */
     vreal gx, gy;    /* g h/c0^2: slope of the hydrostatic density, 1 */
     vreal eta2;      /* (eta/h)^2 = 0.01 */
 };
@@ -45,7 +47,9 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, const real *x, con
     q.r2 = vfma(q.y, q.y, q.x * q.x);
     const vreal t = vmax(vset(0), vfma(vset((real)-0.5), vsqrt(q.r2), vset(1)));
     q.slope = vload(volume) * (t * t * t);
-    q.vx = vfma(a->v - vload(v), q.y, (a->u - vload(u)) * q.x);
+    q.u = a->u - vload(u);
+    q.v = a->v - vload(v);
+    q.vx = vfma(q.v, q.y, q.u * q.x);
     return q;
 }
 
@@ -76,6 +80,14 @@ SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q,
 {
     const vreal both = (vset(1) + a->dens) * (vset(1) + q->dens);
     return -(k->viscosity * vmin(q->vx, vset(0))) * (both * damping);
+}
+
+/* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:
+ *   rho_a dv_a/dt = sum of V_b 2 nu rho0 x_ab . grad W/(|x|^2 + eta^2) v_ab.
+ * The pair's weight; the sums are of weight * v_ab, downwards. */
+SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct lane_constants *k)
+{
+    return k->laminar * q->slope * (q->r2 * inv);
 }
 
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With

@@ -17,14 +17,17 @@
  * A copy may write up to LANES beyond the last. */
 struct SWEEP(tile) {
     int n; /* a multiple of LANES */
-    real field[LANE_FIELDS][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
+    int fields;
+    real field[][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
 };
 
+#define ETA2 0.01     /* (eta/h)^2 */
 #define TILE_FAR 1000 /* in units of h; the kernel ends at 2 */
 
 static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
 {
-    return (struct SWEEP(tile) *)f->tiles + 2 * thread_index() + which;
+    const size_t place = (size_t)(2 * thread_index() + which) * f->tile_size;
+    return (struct SWEEP(tile) *)(void *)((char *)f->tiles + place);
 }
 
 /* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h. */
@@ -38,6 +41,8 @@ SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lan
         vstore(&tile->field[LANE_Y][n + k],
                vload((const real *)lanes->field[LANE_Y] + start + k) + shift_y);
         for (int m = LANE_U; m < LANE_FIELDS; m++)
+            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
+        for (int m = LANE_FIELDS; m < lanes->n; m++)
             vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
     }
     return n + count;
@@ -65,7 +70,7 @@ static void tile_close(struct SWEEP(tile) * tile, int n)
 {
     const int padded = (n + LANES - 1) / LANES * LANES;
     for (; n < padded; n++) {
-        for (int m = 0; m < LANE_FIELDS; m++) tile->field[m][n] = 0;
+        for (int m = 0; m < tile->fields; m++) tile->field[m][n] = 0;
         tile->field[LANE_X][n] = TILE_FAR;
     }
     tile->n = padded;
@@ -127,6 +132,47 @@ static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(ti
     return max2(f->k.lowest_wall_pressure, pressure);
 }
 
+/* Adami et al. 2012, Eqs. 22 and 23: twice the velocity (u, v) of a wall or solid particle less the
+ * mean of the fluid's around it, so that between them the fluid moves with the surface. */
+static void mirrored_velocity(const struct SWEEP(tile) * tile, real x, real y, double *u, double *v)
+{
+    vreal sum_w = vset(0), sum_u = vset(0), sum_v = vset(0);
+    for (int j = 0; j < tile->n; j += LANES) {
+        const vreal dx = vset(x) - vload(&tile->field[LANE_X][j]);
+        const vreal dy = vset(y) - vload(&tile->field[LANE_Y][j]);
+        const vreal q = vsqrt(vfma(dy, dy, dx * dx));
+        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1)));
+        const vreal t2 = t * t, w = t2 * t2 * vfma(vset(2), q, vset(1));
+        sum_w = sum_w + w;
+        sum_u = vfma(w, vload(&tile->field[LANE_U][j]), sum_u);
+        sum_v = vfma(w, vload(&tile->field[LANE_V][j]), sum_v);
+    }
+    const double weight = (double)vsum(sum_w);
+    if (!(weight > 1e-12)) return;
+    *u = 2 * *u - (double)vsum(sum_u) / weight;
+    *v = 2 * *v - (double)vsum(sum_v) / weight;
+}
+
+/* The mirror image of what sum_dummies adds to the fluid by laminar viscosity, as in fluid_force; s has
+ * the mirrored velocity. */
+static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
+                       const struct receiver *s, double volume, double force[2])
+{
+    vreal sum_x = vset(0), sum_y = vset(0);
+    const struct lane_constants k = {.laminar = vset((real)(2 * f->k.nu * f->k.rho0 / f->k.h))};
+    for (int j = 0; j < tile->n; j += LANES) {
+        const struct pair q =
+            pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
+                      &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
+        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + vset((real)ETA2)), &k);
+        sum_x = vfma(weight, q.u, sum_x);
+        sum_y = vfma(weight, q.v, sum_y);
+    }
+    const double scale = KERNEL_SLOPE * f->k.h * volume;
+    force[0] -= scale * (double)vsum(sum_x);
+    force[1] -= scale * (double)vsum(sum_y);
+}
+
 /* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
  * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. */
 static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
@@ -168,11 +214,21 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_VOLUME][place] = (real)(f->k.mass / f->k.rho0 * square(inv_h) / (1 + p->dens[i]));
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
+    const bool sticks = f->effects & FX_NO_SLIP && f->sticks[kind][p->body[i]];
+    struct receiver s = {.x = vset(x), .y = vset(y), .p = vset(out[LANE_P][place])};
+    if (f->effects & FX_NO_SLIP) {
+        double mirror_u = u[i], mirror_v = v[i];
+        if (sticks) mirrored_velocity(tile, x, y, &mirror_u, &mirror_v);
+        out[LANE_MIRROR_U][place] = (real)mirror_u;
+        out[LANE_MIRROR_V][place] = (real)mirror_v;
+        out[LANE_STICKS][place] = sticks;
+        s.u = vset((real)mirror_u);
+        s.v = vset((real)mirror_v);
+    }
     if (!p->fx) return;
-    const struct receiver s = {vset(x), vset(y), vset(0), vset(0), vset(out[LANE_P][place]),
-                               vset(0), vset(0)};
     double force[2];
     fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
 }
@@ -185,6 +241,7 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
+        tile->fields = f->lanes[KIND_FLUID].n;
         tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
             dummy_update(f, &kinds[kind], kind, j, list->order[j], c, cell, tile);
@@ -212,6 +269,11 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
         } else {
             inv = vset(1) / (q.r2 + k->eta2);
         }
+        if (fx & FX_LAMINAR) {
+            const vreal weight = fx_laminar(&q, inv, k);
+            s->ax = s->ax - weight * q.u;
+            s->ay = s->ay - weight * q.v;
+        }
         fx_approach(&q, inv, s);
         const vreal g = q.slope * stress;
         s->ax = vfma(g, q.x, s->ax);
@@ -219,9 +281,9 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
     }
 }
 
-/* Sums over walls and structures: pressure and continuity only, since they are free-slip. */
+/* Sums over walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
 SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct receiver *a,
-                               const struct lane_constants *k, struct sums *s)
+                               const struct lane_constants *k, unsigned fx, struct sums *s)
 {
     for (int j = 0; j < tile->n; j += LANES) {
         struct pair q =
@@ -229,7 +291,13 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
         fx_continuity(&q, s);
-        fx_approach(&q, vset(1) / (q.r2 + k->eta2), s);
+        const vreal inv = vset(1) / (q.r2 + k->eta2);
+        if (fx & FX_NO_SLIP) {
+            const vreal weight = vload(&tile->field[LANE_STICKS][j]) * fx_laminar(&q, inv, k);
+            s->ax = s->ax - weight * (a->u - vload(&tile->field[LANE_MIRROR_U][j]));
+            s->ay = s->ay - weight * (a->v - vload(&tile->field[LANE_MIRROR_V][j]));
+        }
+        fx_approach(&q, inv, s);
         const vreal g = q.slope * fx_pressure(a, &q);
         s->ax = vfma(g, q.x, s->ax);
         s->ay = vfma(g, q.y, s->ay);
@@ -255,6 +323,8 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
                                  struct fluid_extremes *top)
 {
     struct SWEEP(tile) *const tile = thread_tile(f, 0), *const dummies = thread_tile(f, 1);
+    tile->fields = f->lanes[KIND_FLUID].n;
+    dummies->fields = f->lanes[KIND_WALL].n;
     tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
     int n = 0;
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
@@ -273,7 +343,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
                                    vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
         struct sums s = {vset(0), vset(0), vset(0), vset(0)};
         sum_fluid(tile, &a, k, fx, &s);
-        sum_dummies(dummies, &a, k, &s);
+        sum_dummies(dummies, &a, k, fx, &s);
         rates_store(&f->k, p, i, &s, top);
     }
 }
@@ -309,9 +379,10 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
     const double per_c2 = fk->h / square(fk->c0);
     const struct lane_constants k = {
         vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+        vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
         vset((real)(fk->gravity[0] * per_c2)),
         vset((real)(fk->gravity[1] * per_c2)),
-        vset((real)0.01),
+        vset((real)ETA2),
     };
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(dynamic) num_threads(f->threads) \
@@ -341,7 +412,8 @@ VARIANT(any, ANY_EFFECTS)
 #define SWEEPS_ROW(variant, set)                                                        \
     {                                                                                   \
 #variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)), \
-            SWEEP(lanes), SWEEP(dummies), SWEEP(rates_##variant)                        \
+            sizeof *((struct SWEEP(tile) *)0)->field, SWEEP(lanes), SWEEP(dummies),     \
+            SWEEP(rates_##variant)                                                      \
     }
 
 /* The generic kernel stands last. */

@@ -15,12 +15,12 @@ const char *const phase_names[PHASE_COUNT] = {
 #undef PHASE
 };
 const char *const bound_names[BOUND_COUNT] = {
-#define BOUND(name, source) #name,
+#define BOUND(name, effect, source) #name,
 #include "bounds.def"
 #undef BOUND
 };
 const char *const bound_sources[BOUND_COUNT] = {
-#define BOUND(name, source) source,
+#define BOUND(name, effect, source) source,
 #include "bounds.def"
 #undef BOUND
 };

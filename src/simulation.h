@@ -22,7 +22,7 @@ enum phase {
 extern const char *const phase_names[PHASE_COUNT];
 
 enum bound {
-#define BOUND(name, source) BOUND_##name,
+#define BOUND(name, effect, source) BOUND_##name,
 #include "bounds.def"
 #undef BOUND
     BOUND_COUNT

@@ -3,33 +3,74 @@
 
 #include <math.h>
 
+/* Eq. 28a. */
+static double bound_force(const struct simulation *s)
+{
+    const double size = sqrt(max2(s->fluid.extremes.acceleration2, 1e-300));
+    return s->scene->numerics.cfl * sqrt(s->fluid.k.h / size);
+}
+
+/* Eq. 28b. */
+static double bound_acoustic(const struct simulation *s)
+{
+    return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + s->fluid.extremes.approach);
+}
+
+/* Morris et al. 1997, Eq. 21. */
+static double bound_viscous(const struct simulation *s)
+{
+    return 0.125 * square(s->fluid.k.h) / s->fluid.k.nu;
+}
+
+static double bound_solid(const struct simulation *s)
+{
+    return s->effects & FX_MULTIRATE ? (double)INFINITY : s->dt_solid;
+}
+
+/* Found below, where the time that is left is known. */
+static double bound_output(const struct simulation *s)
+{
+    (void)s;
+    return (double)INFINITY;
+}
+
+static double bound_fixed(const struct simulation *s)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    return fixed > 0 ? fixed : (double)INFINITY;
+}
+
 double timestep_fluid_limit(const struct simulation *s)
 {
     const double fixed = s->scene->numerics.fixed_step;
     if (fixed > 0) return fixed;
-    return s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    const double acoustic = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    return s->effects & FX_LAMINAR ? min2(acoustic, bound_viscous(s)) : acoustic;
 }
 
-/* Eq. 28. */
-static void fluid_bounds(struct simulation *s)
-{
-    const double cfl = s->scene->numerics.cfl, h = s->fluid.k.h;
-    const struct fluid_extremes *top = &s->fluid.extremes;
-    s->dt_bound[BOUND_force] = cfl * sqrt(h / sqrt(max2(top->acceleration2, 1e-300)));
-    s->dt_bound[BOUND_acoustic] = cfl * h / (s->fluid.k.c0 + top->approach);
-}
+/* One function for each row of bounds.def. */
+typedef double bound_function(const struct simulation *s);
+static bound_function *const bound_functions[BOUND_COUNT] = {
+#define BOUND(name, effect, source) bound_##name,
+#include "bounds.def"
+#undef BOUND
+};
+static const unsigned bound_effects[BOUND_COUNT] = {
+#define FX_NONE 0u
+#define BOUND(name, effect, source) FX_##effect,
+#include "bounds.def"
+#undef BOUND
+#undef FX_NONE
+};
 
 double timestep_choose(struct simulation *s, double t_limit, bool *hits)
 {
-    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
-    if (s->effects & FX_FLUID) fluid_bounds(s);
-    if ((s->effects & FX_SOLID) && !(s->effects & FX_MULTIRATE))
-        s->dt_bound[BOUND_solid] = s->dt_solid;
-    const double fixed = s->scene->numerics.fixed_step;
-    if (fixed > 0)
-        for (int k = 0; k < BOUND_COUNT; k++)
-            s->dt_bound[k] = k == BOUND_fixed ? fixed : (double)INFINITY;
-
+    const bool fixed = s->scene->numerics.fixed_step > 0;
+    for (int k = 0; k < BOUND_COUNT; k++) {
+        const bool owned = bound_effects[k] == 0 || s->effects & bound_effects[k];
+        s->dt_bound[k] =
+            owned && (!fixed || k == BOUND_fixed) ? bound_functions[k](s) : (double)INFINITY;
+    }
     double dt = (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT; k++) dt = min2(dt, s->dt_bound[k]);
     /* Two equal steps rather than one full and a sliver; round-off of the time makes no sliver either. */

@@ -44,8 +44,12 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .rho0 = f->density,
                        .alpha = f->artificial_viscosity,
                        .delta = f->density_diffusion,
+                       .nu = f->laminar_viscosity,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
+    for (int axis = 0; axis < 2; axis++)
+        if (scene->domain.periodic & 1 << axis)
+            t->period[axis] = scene->domain.upper[axis] - scene->domain.lower[axis];
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct particles *const p = &s->kind[kind];
         t->n[kind] = p->n;
@@ -55,6 +59,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
             struct twin_point *const q = &t->point[kind][i];
             *q = (struct twin_point){.x = p->x[i], .y = p->y[i], .u = p->vx[i], .v = p->vy[i]};
             if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * p->dens[i];
+            if (kind == KIND_WALL) q->sticks = scene->wall[p->body[i]].slip == SLIP_NONE;
+            if (kind == KIND_SOLID) q->sticks = scene->solid[p->body[i]].slip == SLIP_NONE;
             if (kind == KIND_SOLID) q->u = p->wx[i];
             if (kind == KIND_SOLID) q->v = p->wy[i];
             if (kind != KIND_FLUID && p->ax) q->ax = p->ax[i];
@@ -69,30 +75,52 @@ void twin_free(struct twin *t)
     memset(t, 0, sizeof *t);
 }
 
-/* Eqs. 19 and 20 for one wall or solid particle. */
+/* a less b, to the nearest image of b. */
+static double apart(const struct twin *t, int axis, double a, double b)
+{
+    const double d = a - b, L = t->period[axis];
+    return L > 0 ? remainder(d, L) : d;
+}
+
+/* Eqs. 19 and 20, and 22 and 23 of Adami et al. 2012, for one wall or solid particle. */
 static void extrapolate(const struct twin *t, struct twin_point *s)
 {
-    double sum_w = 0, sum = 0, size = 0;
+    double sum_w = 0, sum = 0, size = 0, sum_u = 0, sum_v = 0;
     for (int64_t k = 0; k < t->n[KIND_FLUID]; k++) {
         const struct twin_point *const f = &t->point[KIND_FLUID][k];
-        const double dx = s->x - f->x, dy = s->y - f->y;
+        const double dx = apart(t, 0, s->x, f->x), dy = apart(t, 1, s->y, f->y);
         const double w = kernel(sqrt(dx * dx + dy * dy), t->h);
         const double lift = f->rho * ((t->g[0] - s->ax) * dx + (t->g[1] - s->ay) * dy);
         sum_w += w;
+        sum_u += f->u * w;
+        sum_v += f->v * w;
         sum += (f->p + lift) * w;
         size += (fabs(f->p) + fabs(lift)) * w;
     }
     s->weight = sum_w / kernel(0, t->h);
+    s->mu = sum_w > 0 ? 2 * s->u - sum_u / sum_w : s->u;
+    s->mv = sum_w > 0 ? 2 * s->v - sum_v / sum_w : s->v;
     s->p = sum_w > 0 ? sum / sum_w : 0;
     if (!t->suction && s->p < 0) s->p = 0;
     s->size_p = sum_w > 0 ? size / sum_w : 0;
     s->rho = tait_inverse(t, s->p);
 }
 
+/* Morris et al. 1997: what viscosity adds, by the factor x . grad W/(r^2 + eta^2). */
+static void laminar_pair(const struct twin *t, struct twin_point *a, const struct twin_point *b,
+                         bool mirrored, double factor)
+{
+    const double c = t->mass * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
+    a->ax += c * (a->u - (mirrored ? b->mu : b->u));
+    a->ay += c * (a->v - (mirrored ? b->mv : b->v));
+    a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
+}
+
 /* What a fluid particle a feels of b (Eqs. 4, 6, 7, 21a); b of a wall or solid slips freely. */
 static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_point *b, bool slip)
 {
-    const double dx = a->x - b->x, dy = a->y - b->y, r = sqrt(dx * dx + dy * dy);
+    const double dx = apart(t, 0, a->x, b->x), dy = apart(t, 1, a->y, b->y);
+    const double r = sqrt(dx * dx + dy * dy);
     if (r >= 2 * t->h || r == 0) return;
     const double gx = kernel_derivative(r, t->h) * dx / r; /* Eq. 5 */
     const double gy = kernel_derivative(r, t->h) * dy / r;
@@ -112,6 +140,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
     a->ax += factor * gx;
     a->ay += factor * gy;
+    if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
     a->drho += moved + diffused;
     a->size_a +=
         t->mass * ((fabs(a->p) + fabs(b->p)) / (a->rho * b->rho) + fabs(Pi)) * hypot(gx, gy);
@@ -124,12 +153,20 @@ static void solid_force(const struct twin *t, struct twin_point *s)
 {
     for (int64_t k = 0; k < t->n[KIND_FLUID]; k++) {
         const struct twin_point *const f = &t->point[KIND_FLUID][k];
-        const double dx = s->x - f->x, dy = s->y - f->y, r = sqrt(dx * dx + dy * dy);
+        const double dx = apart(t, 0, s->x, f->x), dy = apart(t, 1, s->y, f->y);
+        const double r = sqrt(dx * dx + dy * dy);
         if (r >= 2 * t->h) continue;
         const double slope = kernel_derivative(r, t->h) / r;
         const double factor = -t->mass * t->mass * (s->p + f->p) / (s->rho * f->rho);
         s->fx += factor * slope * dx;
         s->fy += factor * slope * dy;
+        if (s->sticks) {
+            const double drag = t->mass * t->mass * 2 * t->nu * t->rho0 / (s->rho * f->rho) *
+                                slope * r * r / (r * r + 0.01 * t->h * t->h);
+            s->fx += drag * (s->mu - f->u);
+            s->fy += drag * (s->mv - f->v);
+            s->size_f += fabs(drag) * (hypot(s->mu, s->mv) + hypot(f->u, f->v));
+        }
         s->size_f +=
             fabs(t->mass * t->mass / (s->rho * f->rho) * slope * r) * (fabs(s->p) + fabs(f->p));
     }

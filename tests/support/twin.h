@@ -11,14 +11,17 @@ struct twin_point {
     double ax, ay;     /* m/s^2: of a fluid particle the result, of the others given */
     double rho, p;     /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
     double drho;       /* kg/(m^3 s) */
-    double fx, fy;     /* N/m: force of the fluid on a solid particle, Eq. 21b */
+    double mu, mv;     /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
+    bool sticks;
+    double fx, fy; /* N/m: force of the fluid on a solid particle, Eq. 21b */
     /* Sums of the sizes of the terms: what round-off is relative to. */
     double size_a, size_drho, size_p, size_f;
     double weight; /* sum of W over the fluid, relative to W(0): of walls and solids */
 };
 
 struct twin {
-    double h, mass, c0, rho0, alpha, delta, g[2];
+    double h, mass, c0, rho0, alpha, delta, nu, g[2];
+    double period[2]; /* 0: none */
     bool suction;     /* walls and structures may pull */
     bool hydrostatic; /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];

@@ -233,6 +233,13 @@ static const struct {
      "bad.cfg:8: [reference r] needs `file` or `formula`"},
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
+    {TOP FLUID "[wall w]\nshape = box 0, -5 mm, 20 mm, 0\nslip = none\n", NULL,
+     "bad.cfg:6: [wall w] slip = none acts by the fluid's laminar viscosity, and there is none: "
+     "the "
+     "fluid needs `laminar_viscosity`"},
+    {TOP SOLID "slip = none\n", NULL,
+     "bad.cfg:3: [solid a] slip = none acts by the fluid's laminar viscosity, and there is no "
+     "fluid"},
     {TOP FLUID "[domain]\nperiodic = x\n", NULL,
      "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
     {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,

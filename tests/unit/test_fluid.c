@@ -108,6 +108,36 @@ static void test_viscosity_acts_on_approaching_pairs(void)
     assert_near(1e-11, -88.2529762870353, 1000 * p->ddens[a], "drho_a");
 }
 
+/* Morris et al. 1997 with nu = 0.3 m^2/s and v_ab = (2, -2): 2 nu rho0 m/(rho_a rho_b) |x . grad W|/1.01
+ * = 600 * 640/1030200 * 0.3481514/1.01 = 0.12848620396423277 1/s against the velocity, on its way together
+ * and apart, where Eq. 7 has two laws. */
+static void test_laminar_viscosity(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        place("w.laminar_viscosity=0.3", "gravity=0,0");
+        evaluate(sign, 0, -sign, 2 * sign);
+        const double drag = 2 * sign * 0.12848620396423277;
+        assert_near(1e-13, 0.6 * 0.6822899792818219 - drag, p->ax[a], "ax of a");
+        assert_near(1e-13, 0.8 * 0.6822899792818219 + drag, p->ay[a], "ay of a");
+        assert_near(1e-13, -0.6 * 0.6822899792818219 + drag, p->ax[b], "ax of b");
+        assert_near(1e-13, -0.8 * 0.6822899792818219 - drag, p->ay[b], "ay of b");
+    }
+}
+
+/* Viscosity that vanishes leaves the bits of a scene without: 1e-30 m^2/s is not zero but nothing. */
+static void test_no_viscosity_is_the_limit(void)
+{
+    double ax[2], ay[2];
+    for (int k = 0; k < 2; k++) {
+        place(k ? "w.laminar_viscosity=1e-30" : "w.laminar_viscosity=0", "gravity=0,-9.81");
+        evaluate(1, 0, -1, 2);
+        TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_LAMINAR));
+        ax[k] = p->ax[a];
+        ay[k] = p->ay[a];
+    }
+    TEST_ASSERT_TRUE(ax[0] == ax[1] && ay[0] == ay[1]);
+}
+
 /* Eq. 6 with delta = 0.1: D_a = 0.1 * 10 * 640/1020 * 2 * 10/1.01 * 0.3481514 =
  * 4.325702200129168 kg/(m^3 s); of b, less dense a: -4.368530934783912. */
 static void test_diffusion_levels_densities(void)
@@ -176,7 +206,8 @@ static void test_coincident_and_lone_particles(void)
 /* Momentum of the disordered fluid: forces cancel to the round-off of their sizes. */
 static void test_forces_between_particles_cancel(void)
 {
-    rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35", NULL);
+    rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35",
+             "w.laminar_viscosity=0.3", NULL);
     p = &rig.sim.kind[KIND_FLUID];
     uint64_t seed = 11;
     for (int64_t i = 0; i < p->n; i++) {
@@ -206,6 +237,8 @@ int main(void)
     RUN_TEST(test_gravity_is_added);
     RUN_TEST(test_continuity);
     RUN_TEST(test_viscosity_acts_on_approaching_pairs);
+    RUN_TEST(test_laminar_viscosity);
+    RUN_TEST(test_no_viscosity_is_the_limit);
     RUN_TEST(test_diffusion_levels_densities);
     RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
     RUN_TEST(test_nothing_beyond_the_support);

@@ -90,6 +90,21 @@ static void test_multirate_auto(void)
     TEST_ASSERT_EQUAL_INT64(rig.sim.state.steps, rig.sim.state.solid_substeps);
 }
 
+/* A bound belongs to its effect: nu = 1e-2 m^2/s allows 0.125 * 0.0135^2/0.01 = 2.278125e-3 s, nothing
+ * allows anything. */
+static void test_viscous_bound_by_hand(void)
+{
+    bool hits;
+    rig_open(&rig, gate, NULL);
+    timestep_choose(&rig.sim, 10, &hits);
+    TEST_ASSERT_TRUE(isinf(rig.sim.dt_bound[BOUND_viscous]));
+    rig_open(&rig, gate, "water.laminar_viscosity=1e-2", NULL);
+    timestep_choose(&rig.sim, 10, &hits);
+    assert_near(1e-15, 2.278125e-3, rig.sim.dt_bound[BOUND_viscous], "0.125 h^2/nu");
+    rig_open(&rig, gate, "water.laminar_viscosity=10", NULL);
+    assert_near(1e-18, 2.278125e-6, timestep_fluid_limit(&rig.sim), "largest step");
+}
+
 /* Times to be hit are hit to the bit, no step is longer than its bound, and the books agree. */
 static void run_through_times(const char *integrator, const char *rate)
 {
@@ -251,6 +266,7 @@ int main(void)
     rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_bounds_by_hand);
+    RUN_TEST(test_viscous_bound_by_hand);
     RUN_TEST(test_steps_before_a_limit_are_equal);
     RUN_TEST(test_substeps_cover_the_step);
     RUN_TEST(test_multirate_auto);

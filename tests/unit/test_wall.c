@@ -92,6 +92,37 @@ static void test_walls_slip_freely(void)
     TEST_ASSERT_TRUE(ddens[0] == 0);
 }
 
+/* No slip: the fluid, v = (3, -1), is all that the wall, v = (0.5, 0.25), sees, so that the mirrored velocity
+ * is 2 (0.5, 0.25) - (3, -1), and the difference to the fluid's is 2 (2.5, -1.25). With nu = 0.3 m^2/s the
+ * factor is 600 * 640/(1010 * 1084.6108) 0.3481514/1.01 = 0.12083221653174106 1/s. What drags the fluid
+ * pulls at the wall. */
+static void test_fluid_sticks_to_a_wall(void)
+{
+    double ay[2], fy[2];
+    for (int sticks = 0; sticks < 2; sticks++) {
+        rig_open(&rig, pair, sticks ? "plate.slip=none" : "plate.slip=free",
+                 "w.laminar_viscosity=0.3", NULL);
+        fluid = &rig.sim.kind[KIND_FLUID];
+        wall = &rig.sim.kind[KIND_WALL];
+        fluid->x[0] = wall->x[0] = wall->y[0] = 0;
+        fluid->y[0] = 1;
+        fluid->dens[0] = 0.01;
+        fluid->vx[0] = 3;
+        fluid->vy[0] = -1;
+        wall->vx[0] = 0.5;
+        wall->vy[0] = 0.25;
+        rig_sort(&rig);
+        rig_evaluate(&rig);
+        const double drag = sticks ? 5 * 0.12083221653174106 : 0;
+        assert_near(1e-13, -drag, fluid->ax[0], "ax");
+        assert_near(1e-10, 640 * drag, wall->fx[0], "drag on the wall");
+        ay[sticks] = fluid->ay[0];
+        fy[sticks] = wall->fy[0];
+    }
+    assert_near(1e-13, 2.5 * 0.12083221653174106, ay[1] - ay[0], "ay");
+    assert_near(1e-9, -640 * 2.5 * 0.12083221653174106, fy[1] - fy[0], "force on the wall");
+}
+
 static void test_dry_walls_have_no_pressure(void)
 {
     place(0, "w.density=1000");
@@ -153,6 +184,7 @@ int main(void)
     RUN_TEST(test_acceleration_of_the_wall);
     RUN_TEST(test_velocity_of_the_wall);
     RUN_TEST(test_walls_slip_freely);
+    RUN_TEST(test_fluid_sticks_to_a_wall);
     RUN_TEST(test_dry_walls_have_no_pressure);
     RUN_TEST(test_hydrostatic_pressure_continues_into_the_wall);
     RUN_TEST(test_moving_walls_follow_their_motion);
