@@ -218,7 +218,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     const int64_t count = x.s.kind[KIND_FLUID].n;
     const char *const variant = x.s.fluid.sweeps->name;
     for (size_t k = 0; sound && k < COUNT_OF(parts); k++)
-        print_row(b, "fluid", variant, count, threads, phase_names[parts[k]],
+        print_row(b, "fluid", variant, count, threads, phase_table[parts[k]].name,
                   "ns/particle/evaluation", b->sample[parts[k]]);
     if (sound)
         print_row(b, "fluid", variant, count, threads, "all", "ns/particle/evaluation",

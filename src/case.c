@@ -196,6 +196,8 @@ static enum err read_section(struct reader *r, int section)
         if (*before && p->type != PARAM_SHAPES)
             return bad_entry(r, e, "%s is given already, in line %d", e->key, (*before)->line);
         *before = e;
+        r->scene->given[r->scene->n_given++] =
+            (struct scene_given){cs->id, cs->index, p->key, e->line};
         if (inherited && strcmp(e->key, "like") == 0) continue;
         TRY(case_value(r, e, p, target));
     }
@@ -234,6 +236,9 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
     TRY(case_all_constants(r));
+    r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
+                                  sizeof *r->scene->given, "case file", r->diag);
+    if (!r->scene->given) return ERR_MEMORY;
     for (int k = 0; k < r->n_sections; k++) TRY(read_section(r, k));
     TRY(check_needed(r));
     TRY(case_check(r));

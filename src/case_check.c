@@ -3,6 +3,8 @@
  * that go together. */
 #include "case.h"
 
+#include "effects.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -80,29 +82,6 @@ static enum err check_fluids(struct reader *r)
                                 f->common.name, first->common.name, same[j].key, same[j].mine,
                                 same[j].its);
     }
-    return ERR_OK;
-}
-
-/* Fluid sticks to a wall or structure by its laminar viscosity. */
-static enum err check_slip(struct reader *r, const struct scene_section_common *section,
-                           const char *word, int slip)
-{
-    const struct scene *s = r->scene;
-    if (slip == SLIP_FREE || (s->n_fluid && s->fluid[0].laminar_viscosity > 0)) return ERR_OK;
-    return bad_line(r, section->line,
-                    "[%s %s] slip = none acts by the fluid's laminar viscosity, and %s", word,
-                    section->name,
-                    s->n_fluid ? "there is none: the fluid needs `laminar_viscosity`"
-                               : "there is no fluid");
-}
-
-static enum err check_slips(struct reader *r)
-{
-    const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_wall; k++)
-        TRY(check_slip(r, &s->wall[k].common, "wall", s->wall[k].slip));
-    for (int k = 0; k < s->n_solid; k++)
-        TRY(check_slip(r, &s->solid[k].common, "solid", s->solid[k].slip));
     return ERR_OK;
 }
 
@@ -249,9 +228,9 @@ enum err case_check(struct reader *r)
         return bad_line(r, 1,
                         "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
     TRY(check_fluids(r));
-    TRY(check_slips(r));
     TRY(check_motions(r));
     TRY(check_joined(r));
     TRY(check_probes(r));
-    return check_references(r);
+    TRY(check_references(r));
+    return effects_check(s, r->diag);
 }

@@ -6,6 +6,7 @@
 
 double phase_add(struct simulation *s, enum phase phase, double since)
 {
+    if (!phase_runs(phase, s->effects)) return since; /* what there is goes to the next one */
     const double now = wall_clock();
     s->phase_seconds[phase] += now - since;
     return now;
@@ -39,11 +40,7 @@ void move_walls(struct simulation *s, double time)
 void evaluate_fluid(struct simulation *s, double time)
 {
     if (s->effects & FX_MOTION) move_walls(s, time);
-    double seconds[3] = {0};
-    fluid_evaluate(&s->fluid, s->kind, &s->cells, seconds);
-    s->phase_seconds[PHASE_lanes] += seconds[0];
-    s->phase_seconds[PHASE_wall] += seconds[1];
-    s->phase_seconds[PHASE_fluid] += seconds[2];
+    fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     s->state.evaluations++;
 }
 

@@ -3,18 +3,29 @@
 #ifndef SPHFSI_EFFECTS_H
 #define SPHFSI_EFFECTS_H
 
+#include "params.h"
 #include "particles.h"
-#include "scene.h"
+
+/* -DSPHFSI_WITHOUT=NAME leaves an effect out of the program: its bit is no bit, and the compiler takes
+ * out what asks for it. For the proof that an effect costs nothing where it is off. */
+#ifdef SPHFSI_WITHOUT
+#define EFFECT_NUMBER_OF(name) EFFECT_##name
+#define EFFECT_NUMBER(name) EFFECT_NUMBER_OF(name)
+#define EFFECT_LEFT_OUT (1 << EFFECT_NUMBER(SPHFSI_WITHOUT))
+#else
+#define EFFECT_LEFT_OUT 0
+#endif
 
 enum effect {
-#define EFFECT(name, key, equation, groups, kind, meaning) EFFECT_##name,
+#define EFFECT(name, when, key, equation, groups, kind, meaning) EFFECT_##name,
 #include "effects.def"
 #undef EFFECT
     EFFECT_COUNT
 };
 
 enum {
-#define EFFECT(name, key, equation, groups, kind, meaning) FX_##name = 1 << EFFECT_##name,
+#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+    FX_##name = 1 << EFFECT_##name & ~EFFECT_LEFT_OUT,
 #include "effects.def"
 #undef EFFECT
 };
@@ -27,8 +38,43 @@ struct effect_info {
 };
 extern const struct effect_info effect_table[EFFECT_COUNT];
 
+/* Where in the scene an effect is called for. */
+struct effect_caller {
+    enum section_id section;
+    int index;
+    const char *key; /* "": the section itself */
+};
+
+/* Whether the scene calls for an effect, and where first. */
+bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by);
+
+/* "line 12: [wall bed] slip", or "--set: ...". */
+enum { EFFECT_CALLER_TEXT = 300 };
+void effect_caller_text(const struct scene *s, const struct effect_caller *by,
+                        char text[EFFECT_CALLER_TEXT]);
+
+/* Refuses what rules.def says does not go together. */
+enum err effects_check(const struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
 /* The set that a scene calls for. MULTIRATE is decided by the simulation, which knows the bounds. */
 unsigned effects_of_scene(const struct scene *s);
+
+/* The passes of a step, phases.def. */
+enum phase {
+#define PHASE(name, when, meaning) PHASE_##name,
+#include "phases.def"
+#undef PHASE
+    PHASE_COUNT
+};
+struct phase_info {
+    const char *name, *meaning;
+    unsigned when; /* runs where any of these effects is on */
+};
+extern const struct phase_info phase_table[PHASE_COUNT];
+SPHFSI_INLINE bool phase_runs(enum phase phase, unsigned effects)
+{
+    return phase_table[phase].when == ~0u || phase_table[phase].when & effects;
+}
 
 /* Field groups that the set needs for particles of one kind with the scene's integrator. */
 unsigned effects_groups(unsigned effects, enum kind kind, int integrator);

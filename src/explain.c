@@ -11,12 +11,6 @@
 enum { TRIAL_STEPS = 20 };
 static const double trial_seconds = 3.0;
 
-static const char *const phase_meanings[PHASE_COUNT] = {
-#define PHASE(name, meaning) meaning,
-#include "phases.def"
-#undef PHASE
-};
-
 static void say_scene(const struct session *x, const struct sphfsi_options *o)
 {
     const struct scene *c = &x->scene;
@@ -31,16 +25,38 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
 static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
 {
     session_say(o, "effects that are on, and what called for them");
-    for (int k = 0; k < EFFECT_COUNT; k++)
-        if (s->effects & (1u << k))
-            session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, effect_table[k].key,
-                        effect_table[k].meaning, effect_table[k].equation[0] ? "; " : "",
-                        effect_table[k].equation);
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        if (!(s->effects & (1u << k))) continue;
+        struct effect_caller by;
+        char text[EFFECT_CALLER_TEXT];
+        snprintf(text, sizeof text, "%s", effect_table[k].key);
+        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, text, effect_table[k].meaning,
+                    effect_table[k].equation[0] ? "; " : "", effect_table[k].equation);
+    }
     session_say(o, "effects that are off, and what would call for them");
     for (int k = 0; k < EFFECT_COUNT; k++)
         if (!(s->effects & (1u << k)))
             session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
                         effect_table[k].meaning);
+}
+
+/* Bytes that each group of fields takes; what holds no field is left out. */
+static void say_groups(const struct simulation *s, const struct sphfsi_options *o)
+{
+    for (int g = 0; g < GROUP_COUNT; g++) {
+        size_t bytes[KIND_COUNT] = {0}, all = 0;
+        for (int k = 0; k < KIND_COUNT; k++) {
+            const struct particles *p = &s->kind[k];
+            for (int f = 0; f < field_count; f++)
+                if (field_table[f].group == 1u << g && field_array(p, &field_table[f]))
+                    bytes[k] += field_table[f].size * (size_t)p->capacity;
+            all += bytes[k];
+        }
+        if (all == 0) continue;
+        session_say(o, "  %-12s %10zu bytes: fluid %zu, walls %zu, solids %zu", group_names[g], all,
+                    bytes[KIND_FLUID], bytes[KIND_WALL], bytes[KIND_SOLID]);
+    }
 }
 
 static void say_fields(const struct simulation *s, const struct sphfsi_options *o)
@@ -58,6 +74,7 @@ static void say_fields(const struct simulation *s, const struct sphfsi_options *
         session_say(o, "  %-6s %.3g MB, %zu bytes a particle:%s", kind_names[k],
                     1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
     }
+    say_groups(s, o);
     session_say(o, "  in all %.3g MB with cells, lanes and stencils; %.3g MB for the scene",
                 1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
 }
@@ -99,10 +116,10 @@ static void say_cost(const struct simulation *s, int steps, double seconds,
     const double particles = (double)(s->kind[KIND_FLUID].n + s->kind[KIND_SOLID].n);
     const double per_step = seconds / steps;
     for (int k = 0; k < PHASE_COUNT; k++)
-        if (k != PHASE_output)
-            session_say(o, "  %-7s %6.1f ns a particle and step  %s", phase_names[k],
+        if (k != PHASE_output && phase_runs((enum phase)k, s->effects))
+            session_say(o, "  %-8s %6.1f ns a particle and step  %s", phase_table[k].name,
                         1e9 * (s->phase_seconds[k] - phase_before[k]) / steps / particles,
-                        phase_meanings[k]);
+                        phase_table[k].meaning);
     const double n = (s->scene->top.end_time - s->state.time) / s->state.dt + steps;
     char time[32];
     text_of_seconds(n * per_step, time);

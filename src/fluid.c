@@ -118,17 +118,41 @@ int32_t fluid_crowding(const struct cells *c)
     return most;
 }
 
-void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                    double phase_seconds[3])
+static void pass_lanes(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
 {
-    const double start = wall_clock();
     f->sweeps->lanes(f, kinds, c);
-    const double copied = wall_clock();
+}
+
+static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
-    const double extrapolated = wall_clock();
+}
+
+static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
     f->sweeps->rates(f, kinds, c);
-    phase_seconds[0] += copied - start;
-    phase_seconds[1] += extrapolated - copied;
-    phase_seconds[2] += wall_clock() - extrapolated;
+}
+
+/* The passes of an evaluation, in order; phases.def says which scenes have them. */
+static const struct pass {
+    enum phase phase;
+    void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+} passes[] = {
+    {PHASE_lanes, pass_lanes},
+    {PHASE_wall, pass_wall},
+    {PHASE_fluid, pass_fluid},
+};
+
+void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                    double phase_seconds[PHASE_COUNT])
+{
+    double since = wall_clock();
+    for (size_t k = 0; k < COUNT_OF(passes); k++) {
+        if (!phase_runs(passes[k].phase, f->effects)) continue;
+        passes[k].run(f, kinds, c);
+        const double now = wall_clock();
+        phase_seconds[passes[k].phase] += now - since;
+        since = now;
+    }
 }

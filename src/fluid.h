@@ -102,8 +102,8 @@ void fluid_find_near(struct fluid *f, const struct cells *c);
 int32_t fluid_crowding(const struct cells *c);
 
 /* One evaluation: pressures, dummies, rates. Positions must lie within the skin of the last sorting.
- * phase_seconds: time of lanes, wall and fluid is added to [0], [1], [2]. */
+ * The time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                    double phase_seconds[3]);
+                    double phase_seconds[PHASE_COUNT]);
 
 #endif

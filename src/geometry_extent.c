@@ -127,10 +127,6 @@ static enum err check_periodic(const struct scene *s, struct diag *d)
     if (s->domain.periodic == PERIODIC_NONE) return ERR_OK;
     char place[PLACE_TEXT];
     scene_place(s, s->domain.common.line, place);
-    if (s->n_fluid == 0)
-        return diag_fail(d, ERR_INPUT,
-                         "%s: [domain] periodic acts on fluid, and the scene has none: it is to go",
-                         place);
     for (int axis = 0; axis < 2; axis++) {
         if (!scene_periodic(s, axis)) continue;
         if (s->domain.lower[axis] >= s->domain.upper[axis])

@@ -54,6 +54,16 @@ int section_count(const struct scene *s, enum section_id id)
     return *(const int *)(const void *)((const char *)s + info->count_offset);
 }
 
+const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+                                      const char *key)
+{
+    for (int k = 0; k < s->n_given; k++)
+        if (s->given[k].section == (int)section && s->given[k].index == index &&
+            strcmp(s->given[k].key, key) == 0)
+            return &s->given[k];
+    return NULL;
+}
+
 void *section_at(const struct scene *s, enum section_id id, int index)
 {
     const struct section_info *info = &section_table[id];

@@ -21,6 +21,10 @@ struct section_info {
 };
 extern const struct section_info section_table[SECTION_COUNT];
 
+/* Where a key is given in a section, or NULL. */
+const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+                                      const char *key);
+
 enum param_type {
     PARAM_REAL,
     PARAM_INTEGER,

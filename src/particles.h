@@ -5,21 +5,19 @@
 
 #include "base.h"
 
-/* Field groups: the unit of allocation. */
-enum group {
-    G_POINT = 1 << 0,       /* every particle */
-    G_DENSITY = 1 << 1,     /* fluid, and walls and structures that meet fluid */
-    G_RATE = 1 << 2,        /* fluid, moving walls, structures */
-    G_FLUID = 1 << 3,       /* fluid */
-    G_STAGE = 1 << 4,       /* predictor-corrector: fluid and solid */
-    G_STAGE_FLUID = 1 << 5, /* predictor-corrector: fluid */
-    G_VERLET = 1 << 6,      /* Verlet: fluid */
-    G_REFERENCE = 1 << 7,   /* solid, moving walls */
-    G_SOLID = 1 << 8,       /* solid */
-    G_COUPLED = 1 << 9,     /* solid that meets fluid */
-    G_FORCE = 1 << 10,      /* solid that meets fluid, moving walls */
-    G_JOINED = 1 << 11,     /* solid, where bodies are joined */
+/* Field groups: the unit of allocation, groups.def. */
+enum group_number {
+#define GROUP(name, meaning) GROUP_##name,
+#include "groups.def"
+#undef GROUP
+    GROUP_COUNT
 };
+enum group {
+#define GROUP(name, meaning) G_##name = 1 << GROUP_##name,
+#include "groups.def"
+#undef GROUP
+};
+extern const char *const group_names[GROUP_COUNT];
 
 enum keep { KEEP_STATE, KEEP_DERIVED };
 

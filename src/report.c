@@ -102,6 +102,15 @@ static void write_effects(struct json *j, const struct simulation *s)
     for (int k = 0; k < EFFECT_COUNT; k++)
         if (s->effects & (1u << k)) json_text(j, NULL, effect_table[k].name);
     json_close(j, ']');
+    json_open(j, "effects_called_by", '{');
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        struct effect_caller by;
+        char text[EFFECT_CALLER_TEXT] = "decided at the start";
+        if (!(s->effects & (1u << k))) continue;
+        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        json_text(j, effect_table[k].name, text);
+    }
+    json_close(j, '}');
 }
 
 enum bound report_binding(const struct simulation *s)
@@ -193,7 +202,9 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_integer(j, "solid_substeps", s->state.solid_substeps);
     json_number(j, "wall_seconds", r->wall_seconds);
     json_open(j, "phase_seconds", '{');
-    for (int k = 0; k < PHASE_COUNT; k++) json_number(j, phase_names[k], s->phase_seconds[k]);
+    for (int k = 0; k < PHASE_COUNT; k++)
+        if (phase_runs((enum phase)k, s->effects))
+            json_number(j, phase_table[k].name, s->phase_seconds[k]);
     json_close(j, '}');
     json_number(j, "particle_steps_per_second", report_rate(s, r));
     json_integer(j, "threads", r->threads);

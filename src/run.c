@@ -461,7 +461,7 @@ static void say_close(const struct run *r)
     for (int k = 0; k < PHASE_COUNT && all > 0; k++)
         if (r->s->phase_seconds[k] >= 0.005 * all)
             at += (size_t)snprintf(text + at, sizeof text - at, "%s%s %.0f %%", at ? ", " : "",
-                                   phase_names[k], 100 * r->s->phase_seconds[k] / all);
+                                   phase_table[k].name, 100 * r->s->phase_seconds[k] / all);
     session_say(r->options, "%.3g million particle steps a second: %s",
                 1e-6 * report_rate(r->s, &r->record), text);
     for (int k = 0; k < r->references.n && r->record.score; k++) {

@@ -99,6 +99,13 @@ struct scene_constant {
     double m, kg, s; /* powers of its unit */
 };
 
+/* A key that the case gives, as opposed to a default. */
+struct scene_given {
+    int section, index; /* enum section_id of params.h, and which of them */
+    const char *key;
+    int line; /* 0: by --set */
+};
+
 /* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
 struct scene {
     char path[4096];    /* of the case file */
@@ -111,6 +118,8 @@ struct scene {
 #include "params.def"
     int n_constants;
     struct scene_constant *constant;
+    int n_given;
+    struct scene_given *given;
     struct motion_table *motion_data; /* [n_motion] */
     struct scene_points points[3];    /* by enum kind of particles.h: fluid, wall, solid */
     double h, c0,

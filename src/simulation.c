@@ -9,11 +9,6 @@
 #include "smoothing.h"
 #include "timestep.h"
 
-const char *const phase_names[PHASE_COUNT] = {
-#define PHASE(name, meaning) #name,
-#include "phases.def"
-#undef PHASE
-};
 const char *const bound_names[BOUND_COUNT] = {
 #define BOUND(name, effect, source) #name,
 #include "bounds.def"
@@ -336,13 +331,11 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
 void simulation_refresh(struct simulation *s)
 {
     if ((s->effects & FX_FLUID) && !s->crowded) {
-        const double seconds[3] = {s->phase_seconds[PHASE_lanes], s->phase_seconds[PHASE_wall],
-                                   s->phase_seconds[PHASE_fluid]};
+        double seconds[PHASE_COUNT];
+        memcpy(seconds, s->phase_seconds, sizeof seconds);
         evaluate_fluid(s, s->state.time);
         s->state.evaluations--;
-        s->phase_seconds[PHASE_lanes] = seconds[0];
-        s->phase_seconds[PHASE_wall] = seconds[1];
-        s->phase_seconds[PHASE_fluid] = seconds[2];
+        memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
 }

@@ -13,14 +13,6 @@
 #include "scene.h"
 #include "solid.h"
 
-enum phase {
-#define PHASE(name, meaning) PHASE_##name,
-#include "phases.def"
-#undef PHASE
-    PHASE_COUNT
-};
-extern const char *const phase_names[PHASE_COUNT];
-
 enum bound {
 #define BOUND(name, effect, source) BOUND_##name,
 #include "bounds.def"

@@ -16,10 +16,10 @@ ROOT = Path(__file__).resolve().parent.parent
 # its name continues a listed one after an underscore: case_lines is part of case.
 FLOORS = [
     "base simd tensor2 errors",
-    "fields particles morton cells smoothing eos",
-    "params effects case expr units geometry motion scene",
+    "fields groups particles morton cells smoothing eos",
+    "params effects rules phases case expr units geometry motion scene",
     "fluid variants solid material",
-    "simulation timestep integrators symplectic verlet coupled monitor ledger bounds phases state",
+    "simulation timestep integrators symplectic verlet coupled monitor ledger bounds state",
     "folder json probes reference snapshot checkpoint report series",
     "sphfsi session explain inspect run api main",
 ]

@@ -66,7 +66,7 @@ void rig_sort(struct rig *r)
 
 void rig_evaluate(struct rig *r)
 {
-    double seconds[3] = {0};
+    double seconds[PHASE_COUNT] = {0};
     fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
 }
 

@@ -247,7 +247,9 @@ static const struct {
      "be "
      "a whole number of them; 0.02 m would fit"},
     {TOP SOLID "[domain]\nperiodic = x\nlower = 0, 0\nupper = 0.1, 0.1\n", NULL,
-     "bad.cfg:8: [domain] periodic acts on fluid, and the scene has none: it is to go"},
+     "bad.cfg, line 9: [domain] periodic calls for PERIODIC, which needs FLUID (a [fluid] "
+     "section): "
+     "fluid alone goes round through the sides"},
     {TOP SOLID
      "[fluid w]\nshape = box 0, 30 mm, 11 mm, 50 mm\nsound_speed = 20\n[domain]\nperiodic = x\n"
      "lower = 0, 0\nupper = 11 mm, 0.1\n",
