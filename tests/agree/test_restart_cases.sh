@@ -60,6 +60,7 @@ short hydrostatic_plate 0.004 "dp=25 mm"
 short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
 short still_water 0.01 "dp=20 mm" wall=60mm
+short channel 0.05 "dp=0.1 mm" length=1mm
 ls cases/*.cfg | sed 's|.*/||; s|\.cfg$||' | while read -r name; do
     grep -q "^short $name " "$0" || echo "$name"
 done >"$dir/output"
