@@ -87,7 +87,6 @@ unsigned effects_groups(unsigned effects, enum kind kind, int integrator)
     for (int k = 0; k < EFFECT_COUNT; k++)
         if ((effects & (1u << k)) && effect_table[k].kind == kind) groups |= effect_table[k].groups;
     if (!groups) return 0;
-    if (kind == KIND_FLUID && integrator == INTEGRATOR_VERLET) groups |= G_VERLET;
     if (kind == KIND_FLUID && integrator == INTEGRATOR_SYMPLECTIC)
         groups |= G_STAGE | G_STAGE_FLUID;
     if (kind == KIND_SOLID) groups |= G_STAGE;

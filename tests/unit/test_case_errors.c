@@ -234,12 +234,18 @@ static const struct {
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
     {TOP FLUID "[wall w]\nshape = box 0, -5 mm, 20 mm, 0\nslip = none\n", NULL,
-     "bad.cfg:6: [wall w] slip = none acts by the fluid's laminar viscosity, and there is none: "
-     "the "
-     "fluid needs `laminar_viscosity`"},
+     "bad.cfg, line 8: [wall w] slip calls for NO_SLIP, which needs LAMINAR "
+     "(fluid.laminar_viscosity > "
+     "0): fluid sticks to a surface by its laminar viscosity"},
     {TOP SOLID "slip = none\n", NULL,
-     "bad.cfg:3: [solid a] slip = none acts by the fluid's laminar viscosity, and there is no "
-     "fluid"},
+     "bad.cfg, line 8: [solid a] slip calls for NO_SLIP, which needs LAMINAR"},
+    {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
+     "bad.cfg, line 7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET, "
+     "called for "
+     "by line 3: integrator: leapfrog takes friction at the middle of its step"},
+    {TOP FLUID, "w.diffusion_form=fourtakas",
+     "bad.cfg, --set: [fluid w] diffusion_form is of DIFFUSION, which the scene does not have: "
+     "fluid.density_diffusion > 0 calls for it"},
     {TOP FLUID "[domain]\nperiodic = x\n", NULL,
      "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
     {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,
