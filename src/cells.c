@@ -231,6 +231,34 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     return outside;
 }
 
+/* Whether a comes before b in cell order. */
+static bool comes_before(const struct cells *c, const struct particles *p, int32_t a, int32_t b)
+{
+    const uint32_t key_a = key_of(c, p->cell[a]), key_b = key_of(c, p->cell[b]);
+    return key_a < key_b || (key_a == key_b && p->id[a] < p->id[b]);
+}
+
+void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const bool *moved)
+{
+    struct cell_list *const list = &c->kind[kind];
+    int64_t n_kept = 0, n_moved = 0;
+    for (int64_t k = 0; k < p->n; k++)
+        if (!moved[p->body[list->order[k]]]) c->permutation[n_kept++] = list->order[k];
+    for (int64_t i = 0; i < p->n; i++) {
+        if (!moved[p->body[i]]) continue;
+        p->cell[i] = cell_of(c, p->x[i], p->y[i]);
+        c->pair_a[n_moved++] = (uint64_t)key_of(c, p->cell[i]) << 32 | (uint64_t)i;
+    }
+    const uint64_t *const sorted = sort_pairs(c, n_moved, p->id);
+    for (int64_t k = 0, a = 0, b = 0; k < p->n; k++) {
+        const bool kept =
+            a < n_kept &&
+            (b == n_moved || comes_before(c, p, c->permutation[a], (int32_t)(uint32_t)sorted[b]));
+        list->order[k] = kept ? c->permutation[a++] : (int32_t)(uint32_t)sorted[b++];
+    }
+    list_fill(list, p->cell, p->n);
+}
+
 void cells_resume(struct cells *c, enum kind kind, struct particles *p)
 {
     struct cell_list *list = &c->kind[kind];

@@ -47,6 +47,10 @@ enum err cells_join(struct cells *c, int axis, struct diag *d) SPHFSI_CHECKED;
  * count as outside. */
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p);
 
+/* The same for a kind that keeps its place in memory and has been sorted before, where only particles of
+ * the bodies that have `moved` are elsewhere now. */
+void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const bool *moved);
+
 /* Builds the cell list of particles that are sorted already, from their `cell` fields (restart). */
 void cells_resume(struct cells *c, enum kind kind, struct particles *p);
 

@@ -14,27 +14,7 @@ double phase_add(struct simulation *s, enum phase phase, double since)
 
 void move_walls(struct simulation *s, double time)
 {
-    const struct scene *const scene = s->scene;
-    struct particles *const p = &s->kind[KIND_WALL];
-    struct motion_state state[SCENE_MAX_SECTIONS];
-    bool moves[SCENE_MAX_SECTIONS];
-    for (int k = 0; k < scene->n_wall; k++) {
-        const int motion =
-            scene->wall[k].motion[0] ? scene_find_motion(scene, scene->wall[k].motion) : -1;
-        moves[k] = motion >= 0;
-        if (moves[k]) state[k] = motion_at(scene, motion, time);
-    }
-#pragma omp parallel for schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        if (!moves[p->body[i]]) continue;
-        const struct motion_state *const m = &state[p->body[i]];
-        p->x[i] = p->X[i] + m->d[0];
-        p->y[i] = p->Y[i] + m->d[1];
-        p->vx[i] = m->v[0];
-        p->vy[i] = m->v[1];
-        p->ax[i] = m->a[0];
-        p->ay[i] = m->a[1];
-    }
+    moving_place(&s->moving, s->scene, &s->kind[KIND_WALL], time);
 }
 
 void evaluate_fluid(struct simulation *s, double time)

@@ -62,6 +62,7 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
     memset(f, 0, sizeof *f);
     f->k = constants_of(s);
     f->effects = effects;
+    f->idle_is_work = s->numerics.idle == IDLE_WORK;
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
                   s->numerics.kernel == KERNEL_GENERIC);
     f->threads = thread_count();
@@ -103,7 +104,8 @@ void fluid_find_near(struct fluid *f, const struct cells *c)
         const struct cell_list *list = &c->kind[kind];
         int32_t n = 0;
         for (int32_t k = 0; k < list->n_active; k++)
-            if (fluid_around(c, list->active[k])) f->near_fluid[kind][n++] = list->active[k];
+            if (f->idle_is_work || fluid_around(c, list->active[k]))
+                f->near_fluid[kind][n++] = list->active[k];
         f->n_near_fluid[kind] = n;
     }
 }

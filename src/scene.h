@@ -65,6 +65,7 @@ enum suction { SUCTION_OFF, SUCTION_ON };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum slip { SLIP_FREE, SLIP_NONE };
 enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
+enum idle { IDLE_SKIP, IDLE_WORK };
 enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };

@@ -119,7 +119,8 @@ static void find_speed(struct simulation *s)
 {
     s->speed2 = s->fluid_speed2;
     if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
-    if (s->effects & FX_MOTION) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_WALL]));
+    if (s->effects & FX_MOTION)
+        s->speed2 = max2(s->speed2, moving_speed2(&s->moving, &s->kind[KIND_WALL]));
 }
 
 /* Energy that a fluid particle carries, J/m. */
@@ -139,8 +140,24 @@ static void book_crossings(struct simulation *s)
                             (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
 }
 
-/* Particles of the structure that have lost touch with the fluid are not visited any more. */
-static void forget_touch(struct particles *p)
+/* Particles of the structure that have lost touch with the fluid are not visited any more: before the
+ * cells change, all that were visited forget it. */
+static void forget_touch(struct simulation *s, enum kind kind)
+{
+    struct particles *const p = &s->kind[kind];
+    const struct cell_list *const list = &s->cells.kind[kind];
+    for (int32_t k = 0; k < s->fluid.n_near_fluid[kind]; k++) {
+        const int32_t cell = s->fluid.near_fluid[kind][k];
+        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
+            const int32_t i = list->order[j];
+            p->p[i] = p->dens[i] = 0;
+            if (p->fx) p->fx[i] = p->fy[i] = 0;
+        }
+    }
+}
+
+/* What a checkpoint brings along is of the last evaluation before it. */
+static void forget_all_touch(struct particles *p)
 {
     const size_t bytes = (size_t)p->n * sizeof *p->p;
     if (p->fx) {
@@ -155,19 +172,19 @@ static void forget_touch(struct particles *p)
 static enum err sort_particles(struct simulation *s, struct diag *d)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    if (s->effects & FX_WALL) forget_touch(s, KIND_WALL);
+    if (s->effects & FX_COUPLING) forget_touch(s, KIND_SOLID);
     const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++)
         s->state.lost_energy += energy_of(s, fluid, i);
     if (s->effects & FX_PERIODIC) book_crossings(s);
     fluid->n -= lost;
     s->state.lost += lost;
-    if ((s->effects & FX_WALL) && ((s->effects & FX_MOTION) || s->state.sorts == 0))
+    if ((s->effects & FX_WALL) && s->state.sorts == 0)
         cells_sort(&s->cells, KIND_WALL, &s->kind[KIND_WALL]);
-    if (s->effects & FX_COUPLING) {
-        cells_sort(&s->cells, KIND_SOLID, solid);
-        forget_touch(solid);
-    }
-    if (s->effects & FX_WALL) forget_touch(&s->kind[KIND_WALL]);
+    else if (s->effects & FX_MOTION)
+        moving_sort(&s->moving, &s->cells, &s->kind[KIND_WALL]);
+    if (s->effects & FX_COUPLING) cells_sort(&s->cells, KIND_SOLID, solid);
     fluid_find_near(&s->fluid, &s->cells);
     s->state.drift = 0;
     s->state.sorts++;
@@ -232,7 +249,10 @@ static enum err build(struct simulation *s, struct diag *d)
         s->state.solid_stiffening = s->state.solid_slowing = 1;
         timestep_set_solid(s);
     }
-    if (s->effects & FX_MOTION) move_walls(s, 0);
+    if (s->effects & FX_MOTION) {
+        TRY(moving_create(&s->moving, &s->arena, s->scene, &s->kind[KIND_WALL], d));
+        move_walls(s, 0);
+    }
     TRY(choose_rate(s, d));
     set_guards(s);
     s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
@@ -260,10 +280,7 @@ void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 /* Work that moving walls have done on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
-    const struct particles *const p = &s->kind[KIND_WALL];
-    double power = 0;
-    for (int64_t i = 0; i < p->n; i++) power -= p->fx[i] * p->vx[i] + p->fy[i] * p->vy[i];
-    s->state.wall_work += s->state.dt * power;
+    s->state.wall_work += s->state.dt * moving_power(&s->moving, &s->kind[KIND_WALL]);
 }
 
 /* Size of the impulse that fluid and structure have exchanged in the last step. */
@@ -316,8 +333,8 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
-        if (s->effects & FX_COUPLING) forget_touch(&s->kind[KIND_SOLID]);
-        if (s->effects & FX_WALL) forget_touch(&s->kind[KIND_WALL]);
+        if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
+        if (s->effects & FX_WALL) forget_all_touch(&s->kind[KIND_WALL]);
         if (fluid_crowding(&s->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);

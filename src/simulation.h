@@ -9,6 +9,7 @@
 #include "fluid.h"
 #include "ledger.h"
 #include "monitor.h"
+#include "moving.h"
 #include "particles.h"
 #include "scene.h"
 #include "solid.h"
@@ -35,9 +36,10 @@ struct simulation {
     struct arena arena;
     struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
     struct cells cells;
-    struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
-    struct solid solid; /* model of the solid; unused without one */
-    unsigned effects;   /* bits of effects.h */
+    struct fluid fluid;   /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct moving moving; /* walls that move; unused where none does */
+    struct solid solid;   /* model of the solid; unused without one */
+    unsigned effects;     /* bits of effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
     double dt_solid;              /* stable step of the solid times its safety, s */

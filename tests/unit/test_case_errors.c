@@ -242,7 +242,7 @@ static const struct {
     {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
      "bad.cfg, line 7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET, "
      "called for "
-     "by line 3: integrator: leapfrog takes friction at the middle of its step"},
+     "by line 3: integrator: its two-step form takes friction in the middle"},
     {TOP FLUID, "w.diffusion_form=fourtakas",
      "bad.cfg, --set: [fluid w] diffusion_form is of DIFFUSION, which the scene does not have: "
      "fluid.density_diffusion > 0 calls for it"},
