@@ -4,9 +4,14 @@
 #include <math.h>
 
 #include "simulation.h"
+#include "timestep.h"
 
-/* Speed over c0 at which a warning says that weak compressibility is being lost. */
+/* Shares of the limits at which a warning comes first. Speed over c0: beyond it weak compressibility is
+ * being lost. Steps over the largest step of the fluid. */
 #define SPEED_WARNING 0.3
+#define DENS_WARNING 0.1
+#define DET_WARNING 0.2
+#define STEP_WARNING 100 /* times the limit */
 
 struct finding {
     int64_t at; /* -1: nothing found */
@@ -86,6 +91,14 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
                   "weak compressibility is lost; a higher sound_speed would mend it",
                   s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
     }
+    const double dens = max2(s->state.dens_high, -s->state.dens_low);
+    if (!s->guard.warned_dens && dens > DENS_WARNING) {
+        s->guard.warned_dens = true;
+        diag_warn(d,
+                  "t = %.6g s: the fluid's density is off by %.3g of its reference, where a "
+                  "hundredth is usual and %g stops the run; a higher sound_speed would mend it",
+                  s->state.time, dens, s->guard.dens_limit);
+    }
     return ERR_OK;
 }
 
@@ -144,6 +157,48 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "the material has turned inside out; finer particles, more hourglass control or a "
             "stiffer law may help",
             d);
+    if (!s->guard.warned_det && det.value < DET_WARNING) {
+        s->guard.warned_det = true;
+        diag_warn(
+            d,
+            "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is pressed to det F = %.3g; at "
+            "0 the material turns inside out and the run stops",
+            s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+    }
+    return ERR_OK;
+}
+
+static const char *binding_bound(const struct simulation *s)
+{
+    int least = 0;
+    for (int k = 1; k < BOUND_COUNT; k++)
+        if (s->dt_bound[k] < s->dt_bound[least]) least = k;
+    return bound_names[least];
+}
+
+/* Steps that shrink, and sub-steps that grow, out of proportion. */
+static enum err check_step(struct simulation *s, struct diag *d)
+{
+    const double limit = s->guard.step_limit;
+    const bool cut = !(s->dt_bound[BOUND_output] > s->state.dt); /* by an output time */
+    if (s->substeps > SUBSTEPS_MOST)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: the solid's step has collapsed to %.3g s, %d sub-steps a step: "
+            "its material is being crushed or torn; finer particles may help",
+            s->state.time, s->dt_solid, s->substeps);
+    if (cut || s->state.dt > STEP_WARNING * limit) return ERR_OK;
+    if (s->state.dt < limit)
+        return diag_fail(d, ERR_GUARD,
+                         "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow "
+                         "without bound; a higher sound_speed or a smaller cfl may help",
+                         s->state.time, s->state.dt);
+    if (!s->guard.warned_step)
+        diag_warn(d,
+                  "t = %.6g s: the time step has shrunk to %.3g s, bound by %s; at %.3g s the run "
+                  "stops",
+                  s->state.time, s->state.dt, binding_bound(s), limit);
+    s->guard.warned_step = true;
     return ERR_OK;
 }
 
@@ -151,28 +206,64 @@ enum err monitor_check(struct simulation *s, struct diag *d)
 {
     if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
     if (s->effects & FX_SOLID) TRY(check_solid(s, d));
-    if (s->state.dt < s->guard.step_limit && s->dt_bound[BOUND_output] > s->guard.step_limit)
-        return diag_fail(
-            d, ERR_GUARD,
-            "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow without bound; "
-            "a higher sound_speed or a smaller cfl may help",
-            s->state.time, s->state.dt);
-    return ERR_OK;
+    return check_step(s, d);
 }
 
 /* Share of the energy in motion and strain that may be missing from the balance: the paper's stress law
  * has no stored energy and its account is good to a few percent at large strains. */
 #define ENERGY_SLACK 0.05
+#define ENERGY_LIMIT 0.5
 
-void monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
+enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
 {
     const double active = row->kinetic + row->internal + row->elastic + row->hourglass;
-    if (s->guard.warned_energy || row->dissipated >= -ENERGY_SLACK * active) return;
+    const double gained = -row->dissipated;
+    const double noise = 1e-9 * fabs(s->state.energy_start); /* round-off of the sums */
+    if (gained > ENERGY_LIMIT * active + noise)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: %.3g J/m of energy have come from nowhere, more than half of the "
+            "%.3g J/m in motion and strain: the run is unstable; a smaller cfl or "
+            "solid_safety may help, or a structure that is not much lighter than the fluid",
+            s->state.time, gained, active);
+    if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(
         d,
         "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
-        "strain: the "
-        "run is not sound; light structures (density below the fluid's) and a high cfl do this",
-        s->state.time, -row->dissipated, active);
+        "strain: the run is not sound; light structures (density below the fluid's) and a high "
+        "cfl do this",
+        s->state.time, gained, active);
+    return ERR_OK;
+}
+
+/* Strays that are let go: a share of the fluid, and this many whatever the share. */
+#define CROSSING_SHARE 0.01
+enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 /* sortings */ };
+
+enum err monitor_crossing(struct simulation *s, struct diag *d)
+{
+    if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.sorts % CROSSING_INTERVAL)
+        return ERR_OK;
+    int64_t first;
+    const int64_t count = monitor_crossed(s, &first);
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    if (count == 0) return ERR_OK;
+    if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, "
+            "among them %lld at (%.6g, %.6g) m with speed = %.4g m/s: it is too thin, or "
+            "the fluid hits it too hard; three particles across and a higher sound_speed "
+            "may help",
+            s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
+            p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
+    if (s->guard.warned_crossing) return ERR_OK;
+    s->guard.warned_crossing = true;
+    diag_warn(
+        d,
+        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the run "
+        "stops when more than 1 %% of the fluid has",
+        s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
+    return ERR_OK;
 }

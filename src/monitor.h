@@ -13,14 +13,23 @@ struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
     double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
     double step_limit;  /* s: a step below this has collapsed */
-    bool warned_speed, warned_energy;
+    bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy;
 };
 
 struct simulation;
 struct ledger;
 
-/* Warns once where a ledger shows that energy has come from nowhere. */
-void monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d);
+/* Where a ledger shows that energy has come from nowhere: warns once, and fails where that is half of
+ * what is in motion and strain. */
+enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* After sorting: fluid that has entered a wall or a solid. Warns once, and fails where it is more than
+ * stray particles. */
+enum err monitor_crossing(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Number of fluid particles that stand inside of a wall or solid, and the first of them or -1. */
+int64_t monitor_crossed(const struct simulation *s, int64_t *first);
 
 /* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time, quantity
  * and likely cause; warns once where trouble is near. */

@@ -107,13 +107,14 @@ static enum err write_probes(struct run *r)
 static enum err write_ledger(struct run *r)
 {
     r->record.last = simulation_ledger(r->s);
-    monitor_energy(r->s, &r->record.last, r->diag);
+    const enum err e = monitor_energy(r->s, &r->record.last, r->diag);
     const double row[] = {
 #define LEDGER(name, unit, meaning) r->record.last.name,
         LEDGER_COLUMNS(LEDGER)
 #undef LEDGER
     };
-    return series_row(&r->ledger_rows, row, r->diag);
+    TRY(series_row(&r->ledger_rows, row, r->diag));
+    return e;
 }
 
 /* How far the probes are off their references; that it cannot be told is no failure of the run. */

@@ -305,7 +305,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         return ERR_OK;
     }
     double clock = wall_clock();
-    if (sorting_due(s)) TRY(sort_particles(s, d));
+    if (sorting_due(s)) {
+        TRY(sort_particles(s, d));
+        TRY(monitor_crossing(s, d));
+    }
     phase_add(s, PHASE_sort, clock);
     const double speed2_before = s->speed2;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
@@ -339,7 +342,10 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
     }
-    if (s->effects & FX_SOLID) timestep_set_solid(s);
+    if (s->effects & FX_SOLID) {
+        timestep_set_solid(s);
+        solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards look at the last gradients */
+    }
     s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);
     return ERR_OK;

@@ -159,6 +159,72 @@ static void test_one_warning_for_fast_fluid(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "6.5"), warning);
 }
 
+/* Fluid where the tank's particles are: one particle is a warning, once, more than a few are the end. In
+ * the solid as well, where it has moved. */
+static void test_fluid_inside_of_bodies(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_FLUID], *const solid = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
+    rig.sim.state.sorts = 2;
+    rig_sort(&rig);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_crossing(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    p->x[3] = solid->x[30] + 0.003;
+    p->y[3] = solid->y[30];
+    const int64_t id = p->id[3];
+    rig_sort(&rig);
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_crossing(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    char text[64];
+    snprintf(text, sizeof text, "fluid particle %lld at", (long long)id);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
+    for (int k = 0; k < 5; k++) {
+        p->x[10 + k] = 0.005 + 0.01 * k;
+        p->y[10 + k] = -0.013;
+    }
+    rig_sort(&rig);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_crossing(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "6 fluid particles have entered"),
+                                 rig.diag.text);
+}
+
+/* A twentieth of what moves is a warning, once, half of it the end. */
+static void test_energy_from_nowhere(void)
+{
+    struct ledger row = {.kinetic = 3, .elastic = 1, .dissipated = -0.1};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    row.dissipated = -0.3;
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    row.dissipated = -2.1;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "2.1 J/m of energy have come from nowhere"),
+                                 rig.diag.text);
+}
+
+/* Warnings that come before the limits, once each. */
+static void test_warnings_before_the_end(void)
+{
+    rig.sim.kind[KIND_FLUID].dens[50] = 0.15;
+    rig.sim.kind[KIND_SOLID].Uxx[7] = -0.9;
+    rig.sim.state.steps = 64;
+    rig.sim.state.dt = 50 * rig.sim.guard.step_limit;
+    rig.sim.dt_bound[BOUND_output] = INFINITY;
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(3, warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has shrunk"), warning);
+}
+
+static void test_substeps_without_end(void)
+{
+    rig.sim.substeps = 10001;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "10001 sub-steps"), rig.diag.text);
+}
+
 /* In a run: a velocity that is not a number is found by the step that meets it. */
 static void test_a_run_stops_at_once(void)
 {
@@ -181,6 +247,10 @@ int main(void)
     RUN_TEST(test_lone_solid_turned_inside_out);
     RUN_TEST(test_collapsed_step);
     RUN_TEST(test_one_warning_for_fast_fluid);
+    RUN_TEST(test_fluid_inside_of_bodies);
+    RUN_TEST(test_energy_from_nowhere);
+    RUN_TEST(test_warnings_before_the_end);
+    RUN_TEST(test_substeps_without_end);
     RUN_TEST(test_a_run_stops_at_once);
     return UNITY_END();
 }
