@@ -32,6 +32,7 @@ enum op_code {
     OP_TANH,
     OP_EXP,
     OP_LOG,
+    OP_ROUND,
     OP_ABS
 };
 
@@ -50,9 +51,9 @@ static const struct function {
     const char *name;
     enum op_code code;
 } functions[] = {
-    {"sqrt", OP_SQRT}, {"sin", OP_SIN},   {"cos", OP_COS},   {"tan", OP_TAN},
-    {"sinh", OP_SINH}, {"cosh", OP_COSH}, {"tanh", OP_TANH}, {"exp", OP_EXP},
-    {"log", OP_LOG},   {"abs", OP_ABS},   {"min", OP_MIN},   {"max", OP_MAX},
+    {"sqrt", OP_SQRT}, {"sin", OP_SIN},   {"cos", OP_COS}, {"tan", OP_TAN}, {"sinh", OP_SINH},
+    {"cosh", OP_COSH}, {"tanh", OP_TANH}, {"exp", OP_EXP}, {"log", OP_LOG}, {"round", OP_ROUND},
+    {"abs", OP_ABS},   {"min", OP_MIN},   {"max", OP_MAX},
 };
 
 enum { MAX_OPS = 1024, MAX_STACK = 64, MAX_NESTING = 64 };
@@ -110,6 +111,7 @@ static double run_unary(enum op_code code, double a)
     case OP_TANH: return tanh(a);
     case OP_EXP: return exp(a);
     case OP_LOG: return log(a);
+    case OP_ROUND: return round(a);
     default: return fabs(a);
     }
 }

@@ -219,23 +219,30 @@ static void test_every_kind_of_value_comes_back(void)
     round_trip();
 }
 
-static void test_shipped_cases_come_back(void)
+static int cases_of_folder(const char *name)
 {
-    DIR *folder = opendir("cases");
-    if (!folder) TEST_IGNORE_MESSAGE("run from the top folder");
+    DIR *folder = opendir(name);
     int n = 0;
-    for (struct dirent *e; (e = readdir(folder)) != NULL;) {
+    for (struct dirent *e; folder && (e = readdir(folder)) != NULL;) {
         const size_t length = strlen(e->d_name);
         if (length < 4 || strcmp(e->d_name + length - 4, ".cfg") != 0) continue;
         char path[300];
-        snprintf(path, sizeof path, "cases/%.250s", e->d_name);
+        snprintf(path, sizeof path, "%s/%.250s", name, e->d_name);
         scene_free(&scene);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&scene, path, 0, NULL, &diag), diag.text);
         round_trip();
         n++;
     }
-    closedir(folder);
+    if (folder) closedir(folder);
+    return n;
+}
+
+static void test_shipped_cases_come_back(void)
+{
+    const int n = cases_of_folder("cases");
+    if (n == 0) TEST_IGNORE_MESSAGE("run from the top folder");
     TEST_ASSERT_TRUE(n >= 6);
+    TEST_ASSERT_TRUE(cases_of_folder("cases/verify") >= 6);
 }
 
 static void test_files_are_found_from_the_effective_case(void)

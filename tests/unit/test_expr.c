@@ -67,6 +67,8 @@ static void test_functions(void)
     is(2, "1", "min(2, 3)");
     is(3, "1", "max(2, n)");
     is(5, "1", "abs(-5)");
+    is(3, "1", "round(2.5)");
+    is(-3, "1", "round(-2.6)");
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, -1, value_of("cos(pi)").value);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.5, value_of("sin(30 deg)").value);
 }
