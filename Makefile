@@ -9,6 +9,8 @@
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make bench           build and run bench/*.c
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
+#   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
+#                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
 #   make check | format  style, layers and exported symbols | clang-format in place
 #   make install         to PREFIX (/usr/local), below DESTDIR
@@ -30,7 +32,7 @@ comma   := ,
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := $(strip build $(if $(filter test%,$(GOALS)),test) $(if $(filter gate results,$(GOALS)),plot))
+  NEEDS := $(strip build $(if $(filter test% validate,$(GOALS)),test) $(if $(filter gate results validate,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -75,7 +77,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: faults fuzz reliability
+.PHONY: faults fuzz reliability validate
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
 .SECONDARY:
@@ -160,6 +162,9 @@ gate: $(PROGRAM)
 
 results: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/results.py $(ARGS)
+
+validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
+	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)
 
 check: $(LIB)
 	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)

@@ -38,6 +38,7 @@ static double off(int64_t i, double xx, double xy, double yx, double yy)
  * 0.4 m with 3e-17 of round-off over distances of 1 cm and 20 terms: 1e-13. */
 static void test_linear_fields_are_exact(void)
 {
+    double top = 0;
     for (int k = 0; k < 6; k++) {
         open(bodies[k % 3], k / 3 ? "b.gradient=quadratic" : "b.gradient=linear", "dp=1 cm");
         for (int64_t i = 0; i < p->n; i++) {
@@ -45,9 +46,11 @@ static void test_linear_fields_are_exact(void)
             p->uy[i] = -0.1 + 0.4 * p->X[i] + 0.1 * p->Y[i];
         }
         solid_stress(&rig.sim.solid, p);
-        for (int64_t i = 0; i < p->n; i++)
-            assert_at_most(1e-13, off(i, 0.2, -0.5, 0.4, 0.1), "error of U");
+        for (int64_t i = 0; i < p->n; i++) top = fmax(top, off(i, 0.2, -0.5, 0.4, 0.1));
     }
+    printf("linear field: largest error of the gradient %.3g\n",
+           top); /* the validation reads this */
+    assert_at_most(1e-13, top, "error of U");
 }
 
 /* A quadratic field is exact everywhere with the quadratic gradient, where there are three particles

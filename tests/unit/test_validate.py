@@ -1,0 +1,181 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The validation: its measures against curves of known answer, what it repeats and what it does not, and
+what it says of runs and references that are missing or broken. Exit 77: a package is missing."""
+
+import json
+import math
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(ROOT / "tools"))
+try:
+    import h5py  # noqa: F401  the snapshots need it
+    import numpy as np
+    import metrics
+    import validation_cases
+    import validation_checks
+    import validation_report
+    import validation_runs
+    from runfiles import BadFile
+except ImportError as missing:
+    print(f"{missing.name} is missing")
+    sys.exit(77)
+PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
+
+
+def near(found, wanted, tolerance):
+    assert abs(found - wanted) <= tolerance, (found, wanted)
+
+
+def test_oscillation():
+    """Period, drift and loss of a damped sine that is 1 % slow; the sampling bounds what is found."""
+    time = np.linspace(0, 1, 2001)
+    value = 0.02 * np.exp(-0.02 * time) * np.sin(2 * np.pi * time / 0.2525)
+    found = metrics.oscillation(time, value, 0.25)
+    near(found["first"], 0.2525, 1e-5)
+    near(found["mean"], 0.2525, 1e-5)
+    near(found["drift"], 360 * (found["mean"] / 0.25 - 1) * 3.5, 0.05)  # seven crossings in 1 s
+    near(found["loss"], 1 - math.exp(-0.02), 2e-4)
+    near(found["amplitude"], 0.02, 1e-4)
+    try:
+        metrics.oscillation(time[:300], value[:300], 0.25)
+        raise AssertionError("half a period has no period")
+    except BadFile:
+        pass
+
+
+def test_fits():
+    time = np.linspace(0, 5, 501)
+    omega, decay = metrics.damped_sine(time, 3 * np.exp(-0.1 * time) * np.cos(5.4 * time + 1), 5.2)
+    near(omega, 5.4, 1e-3)
+    near(decay, 0.1, 2e-3)
+    near(metrics.order([1, 0.5, 0.25], [0.08, 0.02, 0.005]), 2, 1e-9)
+    near(metrics.strongest(time, 2 + np.sin(2 * np.pi * 7 * time)), 7, 0.05)
+
+
+def relaxed_elastica(load, n=200):
+    """The same beam another way: central differences and Newton's method."""
+    s, step, angle = np.linspace(0, 1, n + 1), 1 / n, np.zeros(n + 1)
+    for _ in range(30):
+        rest, slope = np.zeros(n + 1), np.zeros((n + 1, n + 1))
+        rest[0], slope[0, 0] = angle[0], 1
+        for k in range(1, n + 1):
+            right = angle[k + 1] if k < n else angle[n - 1]  # theta'(1) = 0
+            rest[k] = angle[k - 1] - 2 * angle[k] + right + step**2 * load * (1 - s[k]) * np.cos(angle[k])
+            slope[k, k] = -2 - step**2 * load * (1 - s[k]) * np.sin(angle[k])
+            slope[k, k - 1] += 1
+            slope[k, min(k + 1, 2 * n - k - 1)] += 1
+        angle -= np.linalg.solve(slope, rest)
+    middle = 0.5 * (angle[1:] + angle[:-1])
+    return np.cos(middle).sum() * step, -np.sin(middle).sum() * step
+
+
+def test_exact_solutions():
+    """Stoker's bore of Sec. 3.4; the elastica against the linear beam and another solution."""
+    depth, speed = metrics.wet_bed_bore(0.15, 0.03)
+    near(depth, 0.0762, 5e-5)
+    near(speed, 1.150, 5e-4)
+    x, y = metrics.elastica(0.01)
+    near(y, -0.01 / 8, 1e-7)
+    near(x, 1, 1e-5)
+    x, y = metrics.elastica(8)
+    near(y, relaxed_elastica(8)[1], 1e-4)
+    near(x, relaxed_elastica(8)[0], 1e-4)
+
+
+def test_distances():
+    random = np.random.default_rng(2)
+    a, b = random.uniform(0, 1, (300, 2)), random.uniform(0.5, 1.5, (400, 2))
+    plain = np.minimum(0.2, np.hypot(*(a[:, None] - b[None]).transpose(2, 0, 1)).min(axis=1))
+    assert np.array_equal(metrics.nearest(a, b, 0.2), plain)
+    x = np.array([[0.05, 0.1], [0.05, 0.3], [0.45, 0.2]])
+    assert metrics.surface_height(x, 0.1, np.array([0.05, 0.25, 0.45])).tolist() == [0.35, 0, 0.25]
+
+
+def test_runner(folder):
+    """Finished runs of the same case stay; another setting runs anew; an interrupted one goes on."""
+    spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
+    spec.folder = folder / "tiny"
+    runner = validation_runs.Runner(PROGRAM)
+    runner.say = lambda text: None
+    runner.run(spec)
+    assert not runner.failed, runner.failed
+    summary = spec.folder / "summary.json"
+
+    def state_after(edit):
+        data = json.loads(summary.read_text())
+        data.update(edit)
+        summary.write_text(json.dumps(data))
+        return runner.state(spec)
+    assert runner.state(spec) == "finished"
+    before = summary.stat().st_mtime_ns
+    runner.run(spec)
+    assert summary.stat().st_mtime_ns == before
+    assert state_after({"version": "0.0.0"}) == "other"
+    assert validation_runs.Runner(PROGRAM, any_version=True).state(spec) == "finished"
+    assert state_after({"version": runner.version, "exit_reason": "interrupted"}) == "interrupted"
+    runner.run(spec)
+    assert runner.state(spec) == "finished" and json.loads(summary.read_text())["restarted_from"]
+    spec.sets[2] = "end_time=1 ms"
+    assert runner.state(spec) == "other"
+    runner.run(spec)
+    assert json.loads(summary.read_text())["time"] == 1e-3
+    spec.sets.append("water.no_such_key=1")
+    runner.run(spec)
+    assert "no_such_key" in runner.failed["tiny"], runner.failed
+
+
+def report_text(folder, failed):
+    validation_report.write_report(folder, failed)
+    return (folder / "validation.md").read_text()
+
+
+def test_report(folder):
+    """Without runs every section stands and says so; a broken reference ends its own section only; a
+    run that a guard stopped is shown as failed; no figure is drawn without data."""
+    for spec in validation_runs.SPECS:
+        spec.folder = folder / "runs" / spec.name
+    halted = validation_runs.BY_NAME["plate"].folder
+    halted.mkdir(parents=True)
+    (halted / "summary.json").write_text(json.dumps(
+        {"exit_reason": "guard", "message": "too fast", "time": 0.25, "version": "v"}))
+    text = report_text(folder, {"bar-5": "line 3: no such key"})
+    for title, _ in validation_report.sections():
+        assert f"## {title}" in text, title
+    assert "failed at t = 0.25 s: too fast" in text
+    assert "failed: line 3: no such key" in text
+    assert "Not reported" in text and "not run" in text
+    pictures = [p.name for p in (folder / "img").iterdir()]
+    assert pictures == [], pictures
+    broken = folder / "reference"
+    broken.mkdir()
+    for path in validation_cases.REFERENCES.glob("*.csv"):
+        (broken / path.name).write_text(path.read_text())
+    (broken / "gate_antoci_2007_x.csv").write_text("time_s,value\n0.04,wet\n")
+    (broken / "dam_break_lobovsky_2014.csv").unlink()
+    validation_cases.REFERENCES = validation_checks.REFERENCES = broken
+    text = report_text(folder, {})
+    assert "**Not reported: " in text and "gate_antoci_2007_x.csv, line 2" in text
+    assert "dam_break_lobovsky_2014.csv: No such file" in text
+    assert "## Free rotation" in text and "Table 1" in text
+
+
+def main():
+    test_oscillation()
+    test_fits()
+    test_exact_solutions()
+    test_distances()
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "report").mkdir()
+        test_runner(Path(folder))
+        test_report(Path(folder) / "report")
+    print("the validation measures what it says and shows what is missing")
+
+
+if __name__ == "__main__":
+    main()

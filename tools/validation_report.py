@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: MIT
+"""Writes docs/validation.md and its figures from the runs that there are.
+
+A section that meets a reference that is missing or malformed says so and the rest goes on; a run that
+failed, has not ended or was not run stands in its table with that word."""
+
+import datetime
+import subprocess
+import sys
+from pathlib import Path
+
+from runfiles import BadFile, Run, np
+from validation_runs import BY_NAME, ROOT, SPECS
+
+TOOLS = Path(__file__).resolve().parent
+
+
+class Missing(Exception):
+    """There is no finished run to report on; the text says what there is."""
+
+
+class Report:
+    """What the sections share: the folder of figures, targets, runs that failed just now."""
+
+    def __init__(self, docs, failed):
+        self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
+        self.targets, self.versions = [], set()
+
+    def run(self, name, partly=False):
+        """A finished run; with `partly` also one that has got somewhere."""
+        spec = BY_NAME[name]
+        if name in self.failed and not partly:
+            raise Missing(f"failed: {self.failed[name]}")
+        if not (spec.folder / "summary.json").is_file():
+            raise Missing("not run")
+        run = Run(spec.folder)
+        if run.failure() and not partly:
+            reason = run.summary.get("exit_reason", "")
+            ended = run.summary.get("time", 0)
+            raise Missing(f"failed at t = {ended:.3g} s: {run.summary.get('message', reason)}"
+                          if reason == "guard" else f"unfinished, at t = {ended:.3g} s")
+        self.versions.add(run.summary.get("version", "?"))
+        return run
+
+    def has(self, *names):
+        """Those of the names that have finished."""
+        found = []
+        for name in names:
+            try:
+                self.run(name)
+                found.append(name)
+            except (Missing, BadFile):
+                pass
+        return found
+
+    def first(self, *names):
+        """The first of the names that has finished."""
+        found = self.has(*names)
+        if not found:
+            raise Missing("none of the runs " + ", ".join(names) + " has finished")
+        return found[0]
+
+    def target(self, case, words, value, met):
+        """A row of the table of targets; met: True, False, or None where there is no run."""
+        self.targets.append((case, words, value, {True: "met", False: "**missed**", None: "not run"}[met]))
+
+    def try_target(self, case, words, measure):
+        """measure() gives (text, met)."""
+        try:
+            value, met = measure()
+            self.target(case, words, value, bool(met))
+        except (Missing, BadFile) as problem:
+            self.target(case, words, str(problem), None)
+
+    # --- tables ---
+    def table(self, head, specs, cells):
+        """A row for each run: its words and what cells(run) gives, or why there is nothing."""
+        lines = ["| run | " + " | ".join(head) + " |", "|---" * (len(head) + 1) + "|"]
+        for spec in specs:
+            try:
+                row = cells(self.run(spec.name))
+            except (Missing, BadFile) as problem:
+                row = [f"*{problem}*"] + [""] * (len(head) - 1)
+            lines.append(f"| {spec.words} | " + " | ".join(row) + " |")
+        return [*lines, ""]
+
+    # --- figures ---
+    def draw(self, tool, names, image, caption, *options):
+        """A figure by one of the drawing tools, or the sentence why there is none."""
+        runs = [str(BY_NAME[name].folder) for name in self.has(*names)]
+        if not runs:
+            return [f"*No figure: none of {', '.join(names)} has finished.*", ""]
+        path = self.images / f"validation-{image}.png"
+        done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"), *runs, "--out", str(path),
+                               *map(str, options)], capture_output=True, text=True, check=False)
+        if done.returncode:
+            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            return [f"*No figure: {last}*", ""]
+        return self.picture(path, caption)
+
+    def save(self, figure, image, caption):
+        path = self.images / f"validation-{image}.png"
+        figure.savefig(path)
+        return self.picture(path, caption)
+
+    def picture(self, path, caption):
+        shrink(path)
+        return [f"![{caption}](img/{path.name})", "", f"*{caption}*", ""]
+
+
+def shrink(path, width=1500, colours=160):
+    """Makes a picture small: at most `width` pixels wide, from a palette."""
+    from PIL import Image  # comes with matplotlib
+    with Image.open(path) as image:
+        image = image.convert("RGB")
+        if image.width > width:
+            image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
+        image.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
+
+
+def series(run, column, since=-1.0):
+    """Time and a column of probes.csv from an instant on."""
+    table = run.table("probes.csv")
+    if column not in table:
+        raise BadFile(f"{run.folder / 'probes.csv'}: no column {column}")
+    time, value = table["time_s"], table[column]
+    return time[time >= since], value[time >= since]
+
+
+def cost(run):
+    summary = run.summary
+    return [f"{summary['steps']:,}", f"{summary['solid_substeps']:,}",
+            f"{summary['wall_seconds']:.0f} ({summary['threads']})"]
+
+
+COST = ["fluid steps", "solid steps", "s (threads)"]
+
+
+def specs(*names):
+    return [BY_NAME[name] for name in names]
+
+
+def starting(prefix):
+    return [spec for spec in SPECS if spec.name.startswith(prefix)]
+
+
+def ledgers(report, prefixes):
+    """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
+    from plot_ledger import read_ledger
+    lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, y at the "
+             "end (N s/m) | mass | density |", "|---" * 7 + "|"]
+    for spec in [s for p in prefixes for s in starting(p)]:
+        try:
+            run = report.run(spec.name)
+            ledger = read_ledger(run)
+        except (Missing, BadFile):
+            continue
+        play = np.nanmax(ledger["kinetic"] + ledger["elastic"] + ledger["hourglass"])
+        lost = ledger["dissipated"]
+        gain = np.max(np.maximum.accumulate(lost) - lost)
+        density = np.nanmax(ledger["dens_extreme"])
+        mass = ledger["mass"][-1] / ledger["mass"][0] - 1 if ledger["mass"][0] else 0.0
+        lines.append(
+            f"| {spec.name} | {play:.4g} | {lost[-1]:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) | "
+            f"{ledger['momentum_x'][-1]:.3g}, {ledger['momentum_y'][-1]:.3g} | {mass:+.1g} | "
+            f"{100 * density:.2g} % |")
+    return [*lines, ""]
+
+
+def machine():
+    path = Path("/proc/cpuinfo")
+    for line in path.read_text().splitlines() if path.exists() else []:
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
+def what_was_run(report):
+    """The runs by how they stand."""
+    stand = {"finished": [], "unfinished or failed": [], "not run": []}
+    for spec in SPECS:
+        try:
+            report.run(spec.name)
+            stand["finished"].append(spec.name)
+        except Missing as problem:
+            stand["not run" if str(problem) == "not run" else "unfinished or failed"].append(spec.name)
+        except BadFile:
+            stand["unfinished or failed"].append(spec.name)
+    return [f"* {words} ({len(names)}): {', '.join(names) or 'none'}"
+            for words, names in stand.items()] + [""]
+
+
+def sections():
+    """(title, function) of each section, in order."""
+    from validation_cases import baffle, cantilever, gate, plate, sluice
+    import validation_checks as checks
+    return [("3.1 Free oscillation of a cantilever", cantilever),
+            ("3.2 Hydrostatic water column on an elastic plate", plate),
+            ("3.3 Dam-break wave and elastic gate", gate),
+            ("3.4 Dam break in a wet bed and an elastic baffle", baffle),
+            ("3.5 Dam break and an elastic sluice gate", sluice),
+            ("Still water", checks.still), ("Standing wave", checks.wave),
+            ("Taylor-Green vortices", checks.vortices),
+            ("Dam break on a dry bed: the front", checks.front),
+            ("Dam break: pressures of the impact", checks.impact),
+            ("Patch test", checks.patch), ("Free rotation of an unloaded block", checks.block),
+            ("Bar stretched by its own weight", checks.bar),
+            ("Ledgers of the verification runs", checks.all_ledgers)]
+
+
+def write_report(docs, failed):
+    report = Report(docs, failed)
+    report.images.mkdir(parents=True, exist_ok=True)
+    body = []
+    for title, section in sections():
+        body += [f"## {title}", ""]
+        try:
+            body += section(report)
+        except (Missing, BadFile) as problem:
+            body += [f"**Not reported: {problem}.**", ""]
+        print(f"section: {title}", flush=True)
+    runs = what_was_run(report)
+    head = [
+        "# Validation", "",
+        "Written by `make validate` (`tools/validate.py`); nothing here is typed by hand, and what is judged is "
+        "computed from the runs. Program " + ", ".join(sorted(report.versions)) +
+        f"; {machine()}; {datetime.date.today()}. Seconds are the clock's of a run's last process, on a machine that "
+        "other work shared: they show ratios at best.", "",
+        "## Targets", "", "| case | target | found | |", "|---|---|---|---|",
+        *("| " + " | ".join(row) + " |" for row in report.targets), "",
+        "Why a target is missed is said in the section of its case.", ""]
+    tail = ["## What was run", "",
+            "A run that is not listed as finished has no number in this report. Names are those of "
+            "`tools/validation_runs.py`; `--only NAME` runs one.", "", *runs]
+    path = report.docs / "validation.md"
+    path.write_text("\n".join([*head, *body, *tail]).rstrip() + "\n")
+    print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")
+
+

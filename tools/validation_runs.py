@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""The runs of the validation: which there are, whether they are up to date, and running them."""
+
+import shutil
+import subprocess
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from runfiles import BadFile, Run
+
+ROOT = Path(__file__).resolve().parent.parent
+FOLDER = ROOT / "runs" / "validate"
+PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
+
+
+class Spec:
+    """A run: a case, the settings over it, what is different about it in words, and whether it
+    belongs to the quick selection."""
+
+    def __init__(self, name, case, sets=(), words="", quick=False):
+        self.name, self.case, self.sets = name, ROOT / "cases" / f"{case}.cfg", list(sets)
+        self.words, self.quick, self.folder = words, quick, FOLDER / name
+
+    def arguments(self):
+        return [part for item in self.sets for part in ("--set", item)]
+
+
+def both(name, case, sets, words, quick=False):
+    """The same run by both integrators."""
+    return [Spec(name, case, [*sets, "integrator=symplectic"], f"{words}, symplectic", quick),
+            Spec(f"{name}-verlet", case, [*sets, "integrator=verlet"], f"{words}, Verlet", quick)]
+
+
+def cantilevers():
+    fine = "output.snapshot_interval=10 ms"
+    specs = [Spec(f"cantilever-{n}", "cantilever", [f"ratio={n}", fine], f"ts/dp = {n}", n < 40)
+             for n in (10, 20, 40, 80)]
+    specs += [Spec(f"cantilever-{n}-kappa{k}", "cantilever", [f"ratio={n}", f"plate.hourglass={k}"],
+                   f"ts/dp = {n}, kappa = {k}", n == 10)
+              for n in (10, 20, 40, 80) for k in (0, 1, 10)]
+    specs += [Spec(f"cantilever-{n}-symplectic", "cantilever",
+                   [f"ratio={n}", fine, "integrator=symplectic"],
+                   f"ts/dp = {n}, symplectic", n == 10) for n in (10, 20)]
+    specs += [Spec(f"cantilever-{n}-printed", "cantilever",
+                   [f"ratio={n}", "plate.viscosity_form=printed",
+                    *(s.format("plate") for s in PRINTED_SOLID)],
+                   f"ts/dp = {n}, Eqs. 13, 17 and 18 as printed", n == 10) for n in (10, 20)]
+    return specs
+
+
+def plates():
+    def at(size):
+        return [f"dp={size} mm"]
+    return [*both("plate", "hydrostatic_plate", at("6.25"), "dp = 6.25 mm"),
+            *both("plate-12.5mm", "hydrostatic_plate", at("12.5"), "dp = 12.5 mm", True),
+            Spec("plate-3.125mm-verlet", "hydrostatic_plate", [*at("3.125"), "integrator=verlet"],
+                 "dp = 3.125 mm, Verlet"),
+            Spec("plate-12.5mm-h1.5", "hydrostatic_plate",
+                 [*at("12.5"), "integrator=verlet", "numerics.h_over_dp=1.5"],
+                 "dp = 12.5 mm, Verlet, h/dp = 1.5", True),
+            Spec("plate-h1.5", "hydrostatic_plate",
+                 [*at("6.25"), "integrator=verlet", "numerics.h_over_dp=1.5"],
+                 "dp = 6.25 mm, Verlet, h/dp = 1.5"),
+            Spec("plate-printed", "hydrostatic_plate",
+                 [*at("6.25"), "integrator=verlet", "plate.viscosity_form=printed"],
+                 "dp = 6.25 mm, Verlet, Eq. 18 as printed")]
+
+
+def gates():
+    coarse = ["dp=1 mm", "integrator=verlet"]
+    return [*both("gate", "gate", ["dp=0.5 mm"], "dp = 0.5 mm"),
+            *both("gate-1mm", "gate", ["dp=1 mm"], "dp = 1 mm", True),
+            Spec("gate-1mm-printed", "gate",
+                 [*coarse, "gate.viscosity_form=printed", *(s.format("gate") for s in PRINTED_SOLID)],
+                 "dp = 1 mm, Verlet, Eqs. 13, 17 and 18 as printed"),
+            Spec("gate-1mm-plane-stress", "gate", [*coarse, "gate.plane=stress"],
+                 "dp = 1 mm, Verlet, plane stress", True),
+            Spec("gate-1mm-neo-hookean", "gate", [*coarse, "gate.law=neo_hookean"],
+                 "dp = 1 mm, Verlet, neo-Hookean"),
+            Spec("gate-1mm-h1.5", "gate", [*coarse, "numerics.h_over_dp=1.5", "wall=6 mm"],
+                 "dp = 1 mm, Verlet, h/dp = 1.5"),
+            Spec("gate-1mm-cfl0.4", "gate", [*coarse, "numerics.cfl=0.4"],
+                 "dp = 1 mm, Verlet, C_CFL = 0.4")]
+
+
+def baffles():
+    def at(size, *sets):
+        return [f"dp={size} mm", "output.snapshot_interval=25 ms", *sets]
+    middle = at(2, "integrator=verlet")
+    return [*both("baffle", "wet_baffle", at(1), "dp = 1 mm"),
+            *both("baffle-2.5mm", "wet_baffle", at(2.5), "dp = 2.5 mm", True),
+            Spec("baffle-2mm-verlet", "wet_baffle", middle, "dp = 2 mm, Verlet"),
+            Spec("baffle-2mm-embedded", "wet_baffle", [*middle, "embedded=16 mm"],
+                 "dp = 2 mm, Verlet, 64 mm free"),
+            Spec("baffle-2mm-slow", "wet_baffle", [*middle, "lift_speed=0.75 m/s"],
+                 "dp = 2 mm, Verlet, plate lifted at 0.75 m/s"),
+            Spec("baffle-2mm-fast", "wet_baffle", [*middle, "lift_speed=6 m/s"],
+                 "dp = 2 mm, Verlet, plate lifted at 6 m/s")]
+
+
+def sluices():
+    def at(size, *sets):
+        return [f"dp={size} mm", *sets]
+    middle = at(2.5, "integrator=verlet")
+    return [*both("sluice", "sluice_gate", at(1), "dp = 1 mm"),
+            *both("sluice-2.5mm", "sluice_gate", at(2.5), "dp = 2.5 mm", True),
+            Spec("sluice-2mm-verlet", "sluice_gate", at(2, "integrator=verlet"), "dp = 2 mm, Verlet"),
+            Spec("sluice-2.5mm-opening10", "sluice_gate", [*middle, "opening=10 mm"],
+                 "dp = 2.5 mm, Verlet, opening 10 mm"),
+            Spec("sluice-2.5mm-opening40", "sluice_gate", [*middle, "opening=40 mm"],
+                 "dp = 2.5 mm, Verlet, opening 40 mm"),
+            Spec("sluice-2.5mm-slow", "sluice_gate", [*middle, "lift_speed=1 m/s"],
+                 "dp = 2.5 mm, Verlet, plate lifted at 1 m/s"),
+            Spec("sluice-2.5mm-viscous", "sluice_gate", [*middle, "water.artificial_viscosity=0.06"],
+                 "dp = 2.5 mm, Verlet, alpha = 0.06")]
+
+
+def verifications():
+    still = ["end_time=10 s", "wall=4*dp", "output.snapshot_interval=1 s"]
+    kept = "water.diffusion_form=fourtakas"
+    specs = [Spec(f"still-{name}-{h}", "still_water",
+                  [*still, f"dp={size} mm", f"numerics.h_over_dp={h}", *extra],
+                  f"dp = {size} mm, h/dp = {h}{words}", size == 10)
+             for size, name, extra, words in (
+                 (10, "10mm-printed", ["water.diffusion_form=molteni"], ", Eq. 6 as printed"),
+                 (10, "10mm", [kept], ", Fourtakas"),
+                 (10, "10mm-c20", [kept, "water.max_speed=2*sqrt(g*H)"], ", Fourtakas, c0 = 20 sqrt(gH)"),
+                 (5, "5mm", [kept], ", Fourtakas"))
+             for h in (1.35, 1.5)]
+    specs += [Spec(f"wave-{n}-{h}", "verify/standing_wave",
+                   [f"ratio={n}", f"numerics.h_over_dp={h}"], f"H/dp = {n}, h/dp = {h}", n < 40)
+              for h in (1.35, 1.5) for n in (10, 20, 40)]
+    specs += [Spec(f"taylor-green-{n}", "verify/taylor_green", [f"ratio={n}"], f"L/dp = {n}", n < 100)
+              for n in (25, 50, 100)]
+    specs += [Spec(f"front-{n}", "verify/dam_break_front", [f"ratio={n}"], f"a/dp = {n}", n < 80)
+              for n in (20, 40, 80)]
+    specs += [Spec(f"front-40-square", "verify/dam_break_front", ["ratio=40", "n2=1"],
+                   "a/dp = 40, square column", True)]
+    specs += [Spec(f"impact-{n}-{h}", "verify/dam_break_impact",
+                   [f"ratio={n}", f"numerics.h_over_dp={h}"], f"H/dp = {n}, h/dp = {h}", n < 60)
+              for n in (30, 60) for h in (1.35, 2)]
+    specs += [Spec(f"block-{n}", "verify/rotating_block", [f"ratio={n}", "turns=1"], f"L/dp = {n}",
+                   n == 10) for n in (10, 20)]
+    specs += [Spec(f"bar-{n}", "verify/stretched_bar", [f"ratio={n}"], f"thickness/dp = {n}", True)
+              for n in (5, 10, 20)]
+    return specs
+
+
+SPECS = [*cantilevers(), *plates(), *gates(), *baffles(), *sluices(), *verifications()]
+BY_NAME = {spec.name: spec for spec in SPECS}
+
+
+def physics(text):
+    """Lines of an effective case that the results depend on: comments name the program, and the
+    paths of files the place where it ran."""
+    return [line for line in text.splitlines()
+            if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label "))]
+
+
+class Runner:
+    """Runs what is not up to date, several at a time with a thread each: a run gives the same bits
+    on any number of threads, and separate runs share no barrier."""
+
+    def __init__(self, program, any_version=False):
+        self.program, self.any_version, self.lock = str(program), any_version, threading.Lock()
+        self.failed = {}
+        try:
+            done = subprocess.run([self.program, "--version"], capture_output=True, text=True,
+                                  check=True)
+        except (OSError, subprocess.CalledProcessError):
+            raise BadFile(f"cannot run {program}; build it with make") from None
+        self.version = done.stdout.split()[-1]
+
+    def effective(self, spec):
+        done = subprocess.run([self.program, "--effective", str(spec.case), *spec.arguments()],
+                              capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise BadFile(f"{spec.name}: {done.stderr.strip().splitlines()[-1]}")
+        return physics(done.stdout)
+
+    def state(self, spec):
+        """new, finished, ended (and would end again), interrupted, or other: of another case or
+        version."""
+        if not (spec.folder / "case.cfg").is_file():
+            return "new"
+        run = Run(spec.folder)
+        same = physics((spec.folder / "case.cfg").read_text()) == self.effective(spec)
+        if not same or not (self.any_version or run.summary.get("version") == self.version):
+            return "other"
+        reason = run.summary.get("exit_reason")
+        if reason in ("finished", "guard"):
+            return "finished" if reason == "finished" else "ended"
+        return "interrupted" if list(spec.folder.glob("*.ckpt")) else "other"
+
+    def run(self, spec):
+        try:
+            state = self.state(spec)
+        except BadFile as problem:
+            self.say(str(problem))
+            self.failed[spec.name] = str(problem)
+            return
+        if state in ("finished", "ended"):
+            return
+        if state == "other":
+            shutil.rmtree(spec.folder)
+        command = [self.program, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
+                   *spec.arguments(), *(["--restart"] if state == "interrupted" else [])]
+        self.say(f"{'continues' if state == 'interrupted' else 'runs'} {spec.name}: {spec.words}")
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            text = (done.stderr.strip().splitlines() or ["no message"])[-1]
+            self.failed[spec.name] = text
+            self.say(f"{spec.name} failed: {text}")
+
+    def say(self, text):
+        with self.lock:
+            print(text, flush=True)
+
+    def run_all(self, specs, jobs):
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(self.run, specs))
