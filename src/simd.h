@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Lanes: compiler vector types for arithmetic (+ - * / are the language's), and the few verbs the
- * language has no word for. Three lane types: vfloat and vdouble fill a 256-bit register (128-bit on
- * machines without AVX2), vwide holds doubles in the widest register there is.
+ * language has no word for. vfloat and vdouble fill the widest register there is: 512, 256 or 128 bits.
  * Sums over lanes follow one fixed tree and fma is explicit, so that a lane count gives the same bits
- * whatever the compiler and the instruction set (build with -ffp-contract=off). Sweeps over vwide give
- * each lane a particle of its own, so their results do not depend on its width at all. */
+ * whatever the compiler and the instruction set (build with -ffp-contract=off); -DSPHFSI_LANES=8 asks an
+ * AVX-512 machine for the 8 float lanes, and the bits, of an AVX2 one. Sweeps over vwide give each lane a
+ * particle of its own, so their results do not depend on its width at all. */
 #ifndef SPHFSI_SIMD_H
 #define SPHFSI_SIMD_H
 
@@ -13,7 +13,12 @@
 #if defined __AVX2__ && defined __FMA__
 #include <immintrin.h>
 #define SIMD_AVX2 1
+#if defined __AVX512F__ && defined __AVX512DQ__ && !(defined SPHFSI_LANES && SPHFSI_LANES == 8)
+#define SIMD_AVX512 1
+#define SIMD_BYTES 64
+#else
 #define SIMD_BYTES 32
+#endif
 #elif defined __aarch64__
 #include <arm_neon.h>
 #define SIMD_NEON 1
@@ -21,40 +26,57 @@
 #else
 #define SIMD_BYTES 16
 #endif
-#if defined SIMD_AVX2 && defined __AVX512F__
-#define SIMD_AVX512 1
-#define SIMD_WIDE_BYTES 64
-#else
-#define SIMD_WIDE_BYTES SIMD_BYTES
-#endif
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
-typedef double vwide __attribute__((vector_size(SIMD_WIDE_BYTES)));
+typedef vdouble vwide;
 
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
     LANES_DOUBLE = SIMD_BYTES / 8,
-    LANES_WIDE = SIMD_WIDE_BYTES / 8,
+    LANES_WIDE = LANES_DOUBLE,
 };
 
 /* The same vectors at any address, and free to alias the arrays they are loaded from. */
 typedef float vfloat_at __attribute__((vector_size(SIMD_BYTES), aligned(4), may_alias));
 typedef double vdouble_at __attribute__((vector_size(SIMD_BYTES), aligned(8), may_alias));
-typedef double vwide_at __attribute__((vector_size(SIMD_WIDE_BYTES), aligned(8), may_alias));
 
 SPHFSI_INLINE vfloat vload_float(const float *p) { return (vfloat) * (const vfloat_at *)p; }
 SPHFSI_INLINE vdouble vload_double(const double *p) { return (vdouble) * (const vdouble_at *)p; }
-SPHFSI_INLINE vwide vload_wide(const double *p) { return (vwide) * (const vwide_at *)p; }
 SPHFSI_INLINE void vstore_float(float *p, vfloat a) { *(vfloat_at *)p = (vfloat_at)a; }
 SPHFSI_INLINE void vstore_double(double *p, vdouble a) { *(vdouble_at *)p = (vdouble_at)a; }
-SPHFSI_INLINE void vstore_wide(double *p, vwide a) { *(vwide_at *)p = (vwide_at)a; }
 SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
-SPHFSI_INLINE vwide vset_wide(double a) { return (vwide){0} + a; }
 
 /* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a : b. */
-#ifdef SIMD_AVX2
+#ifdef SIMD_AVX512
+SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
+{
+    return (vfloat)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+}
+SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
+{
+    return (vdouble)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+}
+SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
+{
+    return (vfloat)_mm512_min_ps((__m512)a, (__m512)b);
+}
+SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
+{
+    return (vfloat)_mm512_max_ps((__m512)a, (__m512)b);
+}
+SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
+{
+    return (vdouble)_mm512_min_pd((__m512d)a, (__m512d)b);
+}
+SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
+{
+    return (vdouble)_mm512_max_pd((__m512d)a, (__m512d)b);
+}
+SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)_mm512_sqrt_ps((__m512)a); }
+SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)_mm512_sqrt_pd((__m512d)a); }
+#elif defined SIMD_AVX2
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
     return (vfloat)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
@@ -152,34 +174,25 @@ SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 #undef SIMD_LANEWISE
 #endif
 
-#ifdef SIMD_AVX512
-SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
-{
-    return (vwide)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
-}
-SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b)
-{
-    return (vwide)_mm512_min_pd((__m512d)a, (__m512d)b);
-}
-SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)_mm512_sqrt_pd((__m512d)a); }
-#else
-SPHFSI_INLINE vwide vfma_wide(vwide a, vwide b, vwide c)
-{
-    return (vwide)vfma_double((vdouble)a, (vdouble)b, (vdouble)c);
-}
-SPHFSI_INLINE vwide vmin_wide(vwide a, vwide b)
-{
-    return (vwide)vmin_double((vdouble)a, (vdouble)b);
-}
-SPHFSI_INLINE vwide vsqrt_wide(vwide a) { return (vwide)vsqrt_double((vdouble)a); }
-#endif
+/* Lanes with a particle each. */
+#define vload_wide vload_double
+#define vstore_wide vstore_double
+#define vset_wide vset_double
+#define vfma_wide vfma_double
+#define vmin_wide vmin_double
+#define vsqrt_wide vsqrt_double
 
 /* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. Maximum likewise. */
 SPHFSI_INLINE float vsum_float(vfloat a)
 {
 #ifdef SIMD_AVX2
-    const __m128 four =
-        _mm_add_ps(_mm256_castps256_ps128((__m256)a), _mm256_extractf128_ps((__m256)a, 1));
+#ifdef SIMD_AVX512
+    const __m256 eight =
+        _mm256_add_ps(_mm512_castps512_ps256((__m512)a), _mm512_extractf32x8_ps((__m512)a, 1));
+#else
+    const __m256 eight = (__m256)a;
+#endif
+    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
     const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
     return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 #else
@@ -191,8 +204,13 @@ SPHFSI_INLINE float vsum_float(vfloat a)
 SPHFSI_INLINE double vsum_double(vdouble a)
 {
 #ifdef SIMD_AVX2
-    const __m128d two =
-        _mm_add_pd(_mm256_castpd256_pd128((__m256d)a), _mm256_extractf128_pd((__m256d)a, 1));
+#ifdef SIMD_AVX512
+    const __m256d four =
+        _mm256_add_pd(_mm512_castpd512_pd256((__m512d)a), _mm512_extractf64x4_pd((__m512d)a, 1));
+#else
+    const __m256d four = (__m256d)a;
+#endif
+    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
     return _mm_cvtsd_f64(_mm_add_sd(two, _mm_unpackhi_pd(two, two)));
 #else
     for (int half = LANES_DOUBLE / 2; half > 0; half /= 2)
