@@ -221,9 +221,17 @@ static enum err check_references(struct reader *r)
     return ERR_OK;
 }
 
+/* The largest steps that keep the accuracy of each integrator; the paper's is 0.2. */
+static void choose_cfl(struct scene *s)
+{
+    if (s->numerics.cfl == 0)
+        s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? 0.5 : 0.2;
+}
+
 enum err case_check(struct reader *r)
 {
-    const struct scene *s = r->scene;
+    struct scene *const s = r->scene;
+    choose_cfl(s);
     if (s->n_fluid == 0 && s->n_solid == 0)
         return bad_line(r, 1,
                         "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");

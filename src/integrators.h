@@ -11,6 +11,8 @@ void symplectic_step(struct simulation *s, double t_limit);
 void symplectic_solid(struct simulation *s, double dt);
 /* Eqs. 25-27: Verlet for the fluid, semi-implicit Euler for the solid. */
 void verlet_step(struct simulation *s, double t_limit);
+/* T-32a, T-32b: leapfrog, one evaluation a step. */
+void leapfrog_step(struct simulation *s, double t_limit);
 /* A solid alone: many steps at once. */
 void solid_only_step(struct simulation *s, double t_limit);
 

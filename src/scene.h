@@ -58,7 +58,7 @@ struct scene_section_common {
 };
 
 /* Values of the CHOICE keys, in the order of their names in params.def. */
-enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET };
+enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
 enum suction { SUCTION_OFF, SUCTION_ON };

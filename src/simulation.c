@@ -60,6 +60,10 @@ static void start_fluid(struct simulation *s)
         p->dens[i] = eos_dens(pressure, s->scene->rho0, s->scene->c0);
         p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
         p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
+        if (p->vx_half) {
+            p->vx_half[i] = p->vx[i];
+            p->vy_half[i] = p->vy[i];
+        }
         if (!p->vx_old) continue;
         p->vx_old[i] = p->vx[i];
         p->vy_old[i] = p->vy[i];
@@ -313,8 +317,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     const double speed2_before = s->speed2;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
-    else
+    else if (s->scene->top.integrator == INTEGRATOR_VERLET)
         verlet_step(s, t_limit);
+    else
+        leapfrog_step(s, t_limit);
     clock = wall_clock();
     /* So that the state does not depend on whether anybody looks at it between two steps. */
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);

@@ -114,6 +114,7 @@ void timestep_book(struct simulation *s, double dt, double t_limit, bool hits)
 {
     struct state *const st = &s->state;
     st->time = hits ? t_limit : st->time + dt;
+    st->dt_old = st->dt;
     st->dt = dt;
     st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
     st->dt_max = max2(st->dt_max, dt);

@@ -19,7 +19,7 @@ FLOORS = [
     "fields groups particles morton cells smoothing eos",
     "params effects rules phases case expr units geometry motion scene",
     "fluid variants solid material",
-    "simulation timestep integrators symplectic verlet coupled moving monitor ledger bounds state",
+    "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",
     "folder json probes reference snapshot checkpoint report series",
     "sphfsi session explain inspect run api main",
 ]
