@@ -41,6 +41,8 @@ static void test_ledgers_leave_no_trace(void)
                             hash_after("integrator=symplectic", true));
     TEST_ASSERT_EQUAL_HEX64(hash_after("integrator=verlet", false),
                             hash_after("integrator=verlet", true));
+    TEST_ASSERT_EQUAL_HEX64(hash_after("integrator=leapfrog", false),
+                            hash_after("integrator=leapfrog", true));
 }
 
 /* Two output times a breath apart make a tiny step, which is no collapse. */

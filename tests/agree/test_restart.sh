@@ -28,7 +28,7 @@ agree() {
     cmp "$1/case.cfg" "$2/case.cfg" || fail "$3: case.cfg differ"
 }
 
-for integrator in symplectic verlet; do
+for integrator in symplectic verlet leapfrog; do
     for precision in mixed double; do
         name=$integrator-$precision
         set=(--set integrator=$integrator --set precision=$precision --threads 1)
@@ -56,7 +56,7 @@ agree "$dir/grid" "$dir/older" "from an older checkpoint"
 
 # Periodic sides: particles go round, and a wall goes through.
 case=tests/fault/channel.cfg
-for integrator in symplectic verlet; do
+for integrator in symplectic verlet leapfrog; do
     set=(--set integrator=$integrator --threads 1)
     run "${set[@]}" --out "$dir/round-$integrator"
     run "${set[@]}" --out "$dir/round-$integrator-cut" --until 0.012

@@ -84,6 +84,11 @@ static void test_verlet_double_with_substeps(void)
     compare("integrator=verlet", "precision=double", "numerics.multirate=on");
 }
 
+static void test_leapfrog_mixed_with_substeps(void)
+{
+    compare("integrator=leapfrog", "precision=mixed", "numerics.multirate=on");
+}
+
 /* A solid alone: its packs are cut the same way whoever sweeps them. */
 static void test_lone_solid(void)
 {
@@ -138,6 +143,7 @@ int main(void)
     RUN_TEST(test_symplectic_double_with_one_rate);
     RUN_TEST(test_verlet_mixed_with_one_rate);
     RUN_TEST(test_verlet_double_with_substeps);
+    RUN_TEST(test_leapfrog_mixed_with_substeps);
     RUN_TEST(test_lone_solid);
     RUN_TEST(test_periodic_sides);
     return UNITY_END();

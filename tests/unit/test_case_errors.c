@@ -112,9 +112,9 @@ static const struct {
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
-     "bad.cfg:3: integrator = verlett: did you mean `verlet`? Known: symplectic|verlet"},
+     "bad.cfg:3: integrator = verlett: did you mean `verlet`? Known: symplectic|verlet|leapfrog"},
     {TOP "integrator = rk4\n" SOLID, NULL,
-     "bad.cfg:3: integrator = rk4: unknown choice; known: symplectic|verlet"},
+     "bad.cfg:3: integrator = rk4: unknown choice; known: symplectic|verlet|leapfrog"},
     {TOP "[numerics]\nverlet_reset = 2.5\n" SOLID, NULL,
      "bad.cfg:4: verlet_reset = 2.5: a whole number is expected"},
     {TOP "title = "

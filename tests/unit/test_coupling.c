@@ -165,6 +165,35 @@ static void test_momentum_of_an_isolated_system_in_double(void)
     TEST_ASSERT_TRUE(rig.sim.state.solid_substeps > rig.sim.state.steps);
 }
 
+/* Leapfrog: the fluid's momentum half a step behind and the structure's after as many kicks. */
+static double momentum_of_kicks(int axis)
+{
+    double sum = 0;
+    for (int64_t i = 0; i < fluid->n; i++)
+        sum += rig.sim.fluid.k.mass * (axis ? fluid->vy_half[i] : fluid->vx_half[i]);
+    for (int64_t i = 0; i < solid->n; i++)
+        sum += rig.sim.solid.body[0].mass * (axis ? solid->vy[i] : solid->vx[i]);
+    return sum;
+}
+
+static void test_momentum_with_leapfrog(void)
+{
+    static const char *const rates[] = {"numerics.multirate=off", "numerics.multirate=on"};
+    for (int k = 0; k < 4; k++) {
+        rig_open(&rig, impact, k / 2 ? "precision=double" : "precision=mixed", rates[k % 2],
+                 "integrator=leapfrog", NULL);
+        fluid = &rig.sim.kind[KIND_FLUID];
+        solid = &rig.sim.kind[KIND_SOLID];
+        const double start[2] = {momentum_of_kicks(0), momentum_of_kicks(1)};
+        for (double t = 0.001; t < 0.04; t += 0.0013) rig_run(&rig, t); /* uneven steps */
+        const double exchanged = rig.sim.state.exchanged;
+        TEST_ASSERT_TRUE(exchanged > 2);
+        const double tolerance = (k / 2 ? 1e-12 : 1e-6) * exchanged;
+        assert_near(tolerance, start[0], momentum_of_kicks(0), "momentum, x");
+        assert_near(tolerance, start[1], momentum_of_kicks(1), "momentum, y");
+    }
+}
+
 static void test_momentum_of_an_isolated_system_in_mixed(void)
 {
     check_momentum("precision=mixed", "numerics.multirate=off", 1e-6);
@@ -194,6 +223,7 @@ int main(void)
     RUN_TEST(test_force_enters_the_solid_once);
     RUN_TEST(test_momentum_of_an_isolated_system_in_double);
     RUN_TEST(test_momentum_of_an_isolated_system_in_mixed);
+    RUN_TEST(test_momentum_with_leapfrog);
     RUN_TEST(test_no_force_out_of_touch);
     return UNITY_END();
 }
