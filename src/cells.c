@@ -23,7 +23,8 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
     list->start = arena_alloc(a, n_cells, sizeof *list->start, "cell list", d);
     list->count = arena_alloc(a, n_cells, sizeof *list->count, "cell list", d);
     list->active = arena_alloc(a, (size_t)p->capacity, sizeof *list->active, "cell list", d);
-    if (!list->start || !list->count || !list->active) return ERR_MEMORY;
+    list->overhang = arena_alloc(a, n_cells, sizeof *list->overhang, "cell list", d);
+    if (!list->start || !list->count || !list->active || !list->overhang) return ERR_MEMORY;
     if (!keep_order) return ERR_OK;
     list->order = arena_alloc(a, (size_t)p->capacity, sizeof *list->order, "cell list", d);
     return list->order ? ERR_OK : ERR_MEMORY;
@@ -228,6 +229,7 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
     if (!list->order) particles_permute(p, order, n, c->scratch);
     list_fill(list, p->cell, n);
+    cells_measure(c, kind, p);
     return outside;
 }
 
@@ -257,6 +259,7 @@ void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const
         list->order[k] = kept ? c->permutation[a++] : (int32_t)(uint32_t)sorted[b++];
     }
     list_fill(list, p->cell, p->n);
+    cells_measure(c, kind, p);
 }
 
 void cells_resume(struct cells *c, enum kind kind, struct particles *p)
@@ -269,4 +272,5 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p)
         for (int64_t k = 0; k < p->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
     list_fill(list, p->cell, p->n);
+    cells_measure(c, kind, p);
 }

@@ -5,12 +5,23 @@
 
 #include "particles.h"
 
+/* By how much a cell's particles hang over its left, right, lower and upper edge, m; negative: they keep
+ * off it. */
+struct overhang {
+    double by[4];
+};
+
+/* Fluid strays from its cell by less than this part of the cell's side, whatever its neighbours do. */
+#define CELLS_ASTRAY 0.25
+
 /* The particles of one kind by cell. Cells are numbered cy * nx + cx. */
 struct cell_list {
     int32_t *start, *count; /* [nx * ny]: range in cell order; count 0: empty */
     int32_t *active;        /* cells that hold particles, in Morton order */
     int32_t n_active;
-    int32_t *order; /* particle at each place of the cell order; fluid is kept sorted in
+    struct overhang *overhang; /* [nx * ny], of cells with particles, when last measured */
+    struct overhang most;      /* the largest of them */
+    int32_t *order;            /* particle at each place of the cell order; fluid is kept sorted in
                                memory, so that there place = particle and order is NULL */
 };
 
@@ -54,6 +65,13 @@ void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const
 /* Builds the cell list of particles that are sorted already, from their `cell` fields (restart). */
 void cells_resume(struct cells *c, enum kind kind, struct particles *p);
 
+/* Measures by how much the particles of a kind hang over their cells' edges now. */
+void cells_measure(struct cells *c, enum kind kind, const struct particles *p);
+
+/* Whether, as last measured, a fluid particle may have come within `reach` of any particle in a cell that
+ * does not touch its own. */
+bool cells_outgrown(const struct cells *c, double reach);
+
 SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
 SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }
 
@@ -69,6 +87,13 @@ SPHFSI_INLINE int32_t cell_at(const struct cells *c, int cx, int cy)
         cy += cy < 0 ? c->ny : -c->ny;
     }
     return cy * c->nx + cx;
+}
+
+/* Cells along an axis from two before a cell to two behind it, none twice through joined sides. */
+SPHFSI_INLINE int cells_around(const struct cells *c, int axis)
+{
+    const int n = axis ? c->ny : c->nx;
+    return c->joined[axis] && n < 5 ? n : 5;
 }
 
 /* A difference of positions along an axis, the short way round through joined sides. */

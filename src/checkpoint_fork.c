@@ -49,7 +49,6 @@ static enum err sort_anew(struct simulation *s, struct diag *d)
                              "this case's domain: a larger [domain] is needed",
                              out);
     }
-    s->state.drift = 0;
     s->state.sorts++;
     return ERR_OK;
 }

@@ -60,13 +60,18 @@ void moving_place(struct moving *m, const struct scene *s, struct particles *wal
     }
 }
 
-void moving_sort(struct moving *m, struct cells *c, struct particles *walls)
+bool moving_any(const struct moving *m)
 {
     bool any = false;
     for (int k = 0; k < m->n; k++) any |= m->moved[m->body[k].section];
+    return any;
+}
+
+void moving_sort(struct moving *m, struct cells *c, struct particles *walls)
+{
     if (m->idle_is_work)
         cells_sort(c, KIND_WALL, walls);
-    else if (any)
+    else if (moving_any(m))
         cells_sort_some(c, KIND_WALL, walls, m->moved);
     for (int k = 0; k < m->n; k++) m->moved[m->body[k].section] = false;
 }

@@ -28,6 +28,9 @@ enum err moving_create(struct moving *m, struct arena *a, const struct scene *s,
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void moving_place(struct moving *m, const struct scene *s, struct particles *walls, double time);
 
+/* Whether a wall has moved since the last sorting. */
+bool moving_any(const struct moving *m);
+
 /* Sorts the walls that have moved since the last sorting in among those that have not. */
 void moving_sort(struct moving *m, struct cells *c, struct particles *walls);
 

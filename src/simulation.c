@@ -190,7 +190,6 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
         moving_sort(&s->moving, &s->cells, &s->kind[KIND_WALL]);
     if (s->effects & FX_COUPLING) cells_sort(&s->cells, KIND_SOLID, solid);
     fluid_find_near(&s->fluid, &s->cells);
-    s->state.drift = 0;
     s->state.sorts++;
     const int32_t crowd = fluid_crowding(&s->cells);
     s->crowded = crowd > CELL_CAPACITY;
@@ -203,16 +202,16 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-static double skin_length(const struct simulation *s)
+/* Whether a pair may be out of the cells' sight at the next evaluations: the next is at the state as it
+ * is, the predictor's second one half a step of the present velocities on. */
+static bool sorting_due(struct simulation *s)
 {
-    return min2(s->cells.side[0], s->cells.side[1]) - KERNEL_REACH * s->fluid.k.h;
-}
-
-/* Whether the next step might carry a pair out of the cells' reach unseen. */
-static bool sorting_due(const struct simulation *s)
-{
-    const double ahead = timestep_fluid_limit(s) * sqrt(s->speed2) * 1.5;
-    return 2 * (s->state.drift + ahead) > skin_length(s);
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        if (s->cells.kind[kind].n_active && (kind != KIND_WALL || moving_any(&s->moving)))
+            cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
+    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    const double ahead = predicts ? 1.1 * timestep_fluid_limit(s) * sqrt(s->speed2) : 0;
+    return cells_outgrown(&s->cells, KERNEL_REACH * s->fluid.k.h + ahead);
 }
 
 static enum err create_fluid(struct simulation *s, struct diag *d)
@@ -308,31 +307,30 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         timestep_recheck_solid(s);
         return ERR_OK;
     }
-    double clock = wall_clock();
-    if (sorting_due(s)) {
-        TRY(sort_particles(s, d));
-        TRY(monitor_crossing(s, d));
-    }
-    phase_add(s, PHASE_sort, clock);
-    const double speed2_before = s->speed2;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
     else if (s->scene->top.integrator == INTEGRATOR_VERLET)
         verlet_step(s, t_limit);
     else
         leapfrog_step(s, t_limit);
-    clock = wall_clock();
+    double clock = wall_clock();
     /* So that the state does not depend on whether anybody looks at it between two steps. */
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
     const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
     find_speed(s);
-    s->state.drift += s->state.dt * sqrt(max2(speed2_before, s->speed2));
     if (s->effects & FX_MOTION) add_wall_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
     if (!e && (s->effects & FX_SOLID) && s->state.steps % LOOK_INTERVAL == 0)
         timestep_recheck_solid(s);
-    phase_add(s, PHASE_update, clock);
-    return e;
+    clock = phase_add(s, PHASE_update, clock);
+    if (e) return e;
+    /* Now, so that the cells are good for whoever looks at the state between two steps. */
+    if (sorting_due(s)) {
+        TRY(sort_particles(s, d));
+        TRY(monitor_crossing(s, d));
+    }
+    phase_add(s, PHASE_sort, clock);
+    return ERR_OK;
 }
 
 enum err simulation_resume(struct simulation *s, struct diag *d)
@@ -387,8 +385,10 @@ double simulation_pressure_at(const struct simulation *s, double x, double y)
     const int cx = (int)floor((x - s->cells.lower[0]) / s->cells.side[0]);
     const int cy = (int)floor((y - s->cells.lower[1]) / s->cells.side[1]);
     double sum_w = 0, sum_p = 0;
-    for (int ny = cy - 1; ny <= cy + 1; ny++) {
-        for (int nx = cx - 1; nx <= cx + 1; nx++) {
+    /* Two cells either way: particles may have strayed since they were sorted. */
+    const int wide = cells_around(&s->cells, 0), high = cells_around(&s->cells, 1);
+    for (int ny = cy - 2; ny < cy - 2 + high; ny++) {
+        for (int nx = cx - 2; nx < cx - 2 + wide; nx++) {
             const int32_t cell = cell_at(&s->cells, nx, ny);
             if (cell < 0) continue;
             for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {

@@ -12,7 +12,7 @@
 static const char scene[] =
     "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nskin = 0.02\n"
     "[fluid water]\nshape = box 0, 0, 0.2, 0.2\nsound_speed = 20\nsurface = 0.2\n"
-    "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
+    "velocity = 8*y, 0\nartificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0; 0.5, 0; 0.5, 0.25\n"
     "[wall piston]\nshape = box -0.02, 0, 0, 0.25\nmotion = push\n"
     "[motion push]\nkind = polynomial\npoly_x = 0.2, 3\n"
@@ -131,7 +131,7 @@ static void test_periodic_sides(void)
         if (k == 0) expected = hash;
         TEST_ASSERT_EQUAL_HEX64(expected, hash);
     }
-    TEST_ASSERT_TRUE(rig.sim.state.sorts > 5);
+    TEST_ASSERT_TRUE(rig.sim.state.sorts > 2);
     TEST_ASSERT_TRUE(rig.sim.state.carried > 0);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
 }

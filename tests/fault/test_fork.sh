@@ -29,7 +29,7 @@ ckpt=$(ls "$run"/*.ckpt)
 
 # --- inspect ---
 expect 0 'a sound checkpoint' --inspect "$ckpt"
-for words in 'time 0.02 s, 200 steps' 'fluid *100 particles' 'run *drift' 'solid *ux *45 double' \
+for words in 'time 0.02 s, 200 steps' 'fluid *100 particles' 'run *sorts' 'solid *ux *45 double' \
     'case *case' 'dp = 0.01 m'; do
     grep -q -- "$words" "$dir/output" || fail "--inspect does not say '$words'"
 done

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ * A sorting is called outgrown before any pair within reach can be out of sight, and not while all the
+ * fluid travels together. */
+#include "rig.h"
+#include "smoothing.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char tank[] =
+    "dp = 1 cm\nend_time = 10\nprecision = double\n[numerics]\nskin = 0.3\n"
+    "[domain]\nlower = -1, -1\nupper = 1, 1\n[fluid w]\nshape = box -0.3, -0.3, 0.3, 0.3\n"
+    "sound_speed = 20\n[wall bed]\nshape = box -0.3, -0.36, 0.3, -0.32\n"
+    "[solid beam]\nshape = box 0.32, -0.3, 0.36, 0.3\ndensity = 1e3\nyoung = 1e6\npoisson = 0.3\n";
+
+static struct rig rig;
+
+void setUp(void) { rig_open(&rig, tank, NULL); }
+void tearDown(void) { rig_close(&rig); }
+
+static bool outgrown(void)
+{
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        cells_measure(&rig.sim.cells, (enum kind)kind, &rig.sim.kind[kind]);
+    return cells_outgrown(&rig.sim.cells, KERNEL_REACH * rig.sim.fluid.k.h);
+}
+
+/* Whether some fluid particle has any other within reach in a cell that does not touch its own. */
+static bool pair_unseen(void)
+{
+    const struct cells *const c = &rig.sim.cells;
+    const struct particles *const a = &rig.sim.kind[KIND_FLUID];
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const b = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < a->n; i++)
+            for (int64_t j = 0; j < b->n; j++) {
+                const int dx = cell_x(c, a->cell[i]) - cell_x(c, b->cell[j]);
+                const int dy = cell_y(c, a->cell[i]) - cell_y(c, b->cell[j]);
+                if (dx * dx <= 1 && dy * dy <= 1) continue;
+                if (hypot(a->x[i] - b->x[j], a->y[i] - b->y[j]) < KERNEL_REACH * rig.sim.fluid.k.h)
+                    return true;
+            }
+    }
+    return false;
+}
+
+/* Particles wander at random until the sorting is called outgrown: up to then nothing is unseen, and going
+ * on without sorting something is soon. */
+static void test_no_pair_is_unseen(void)
+{
+    uint64_t seed = 5;
+    int unseen_after = 0;
+    for (int trial = 0; trial < 8; trial++) {
+        rig_open(&rig, tank, NULL);
+        const double step = 0.001 * (1 + trial % 4);
+        int steps = 0;
+        for (; steps < 200; steps++) {
+            for (int kind = 0; kind < KIND_COUNT; kind += 2) /* fluid and solid */
+                for (int64_t i = 0; i < rig.sim.kind[kind].n; i++) {
+                    rig.sim.kind[kind].x[i] += step * noise(&seed);
+                    rig.sim.kind[kind].y[i] += step * noise(&seed);
+                }
+            if (outgrown()) break;
+            TEST_ASSERT_FALSE(pair_unseen());
+        }
+        TEST_ASSERT_TRUE(steps > 0 && steps < 200);
+        for (int more = 0; more < 3 * steps + 3 && !pair_unseen(); more++)
+            for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++)
+                rig.sim.kind[KIND_FLUID].x[i] += step * noise(&seed);
+        unseen_after += pair_unseen();
+    }
+    TEST_ASSERT_TRUE(unseen_after >= 4);
+}
+
+/* Fluid alone that moves as one, by more than the skin: nothing to be done until it strays too far. */
+static void test_common_motion_is_free(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+             "[fluid w]\nshape = box -0.3, -0.3, 0.3, 0.3\nsound_speed = 20\n",
+             NULL);
+    const double side = rig.sim.cells.side[0], skin = side - 2 * rig.sim.fluid.k.h;
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    double way = 0;
+    while (!outgrown()) {
+        for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.1 * skin;
+        way += 0.1 * skin;
+    }
+    TEST_ASSERT_TRUE(way > skin);
+    assert_at_most(CELLS_ASTRAY * side + 0.01 + 0.1 * skin, way, "way gone");
+    TEST_ASSERT_FALSE(pair_unseen());
+}
+
+/* Two blobs that jump towards each other over more than a cell. */
+static void test_leap_is_noticed(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    TEST_ASSERT_FALSE(outgrown());
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->x[i] < -0.2) p->x[i] += 0.4;
+    TEST_ASSERT_TRUE(outgrown());
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_no_pair_is_unseen);
+    RUN_TEST(test_common_motion_is_free);
+    RUN_TEST(test_leap_is_noticed);
+    return UNITY_END();
+}
