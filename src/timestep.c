@@ -16,6 +16,24 @@ static double bound_acoustic(const struct simulation *s)
     return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + s->fluid.extremes.approach);
 }
 
+/* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven lattices. */
+static double bound_decay(const struct simulation *s, double limit, double rate)
+{
+    return 0.9 * limit * s->fluid.k.h / (rate * s->fluid.k.c0);
+}
+
+/* Adams and Bashforth's third-order rule holds to 6/11. */
+static double bound_diffusion(const struct simulation *s)
+{
+    return bound_decay(s, s->effects & FX_LEAPFROG ? 6.0 / 11 : 2, 6.5 * s->fluid.k.delta);
+}
+
+/* Leapfrog's velocity, which is seen half a step late, to 1. */
+static double bound_artificial(const struct simulation *s)
+{
+    return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
+}
+
 /* Morris et al. 1997, Eq. 21. */
 static double bound_viscous(const struct simulation *s)
 {
@@ -44,8 +62,11 @@ double timestep_fluid_limit(const struct simulation *s)
 {
     const double fixed = s->scene->numerics.fixed_step;
     if (fixed > 0) return fixed;
-    const double acoustic = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
-    return s->effects & FX_LAMINAR ? min2(acoustic, bound_viscous(s)) : acoustic;
+    double limit = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    if (s->effects & FX_DIFFUSION) limit = min2(limit, bound_diffusion(s));
+    if (s->effects & FX_VISCOSITY) limit = min2(limit, bound_artificial(s));
+    if (s->effects & FX_LAMINAR) limit = min2(limit, bound_viscous(s));
+    return limit;
 }
 
 /* One function for each row of bounds.def. */

@@ -39,7 +39,7 @@ static void test_defaults(void)
 {
     parse(TOP BLOCK, 0, NULL);
     TEST_ASSERT_EQUAL_DOUBLE(0.001, scene.top.dp);
-    TEST_ASSERT_EQUAL_INT(INTEGRATOR_SYMPLECTIC, scene.top.integrator);
+    TEST_ASSERT_EQUAL_INT(INTEGRATOR_LEAPFROG, scene.top.integrator);
     TEST_ASSERT_EQUAL_DOUBLE(1.35, scene.numerics.h_over_dp);
     TEST_ASSERT_EQUAL_DOUBLE(1.35e-3, scene.h);
     TEST_ASSERT_EQUAL_INT(40, scene.numerics.verlet_reset);

@@ -144,7 +144,7 @@ static const char impact[] =
 
 static void check_momentum(const char *precision, const char *rate, double tolerance)
 {
-    open(impact, precision, rate);
+    rig_open(&rig, impact, "integrator=symplectic", precision, rate, NULL);
     const struct ledger start = simulation_ledger(&rig.sim);
     rig_run(&rig, 0.04);
     const struct ledger end = simulation_ledger(&rig.sim);

@@ -29,7 +29,7 @@ void tearDown(void) { rig_close(&rig); }
  *   28b: 0.2 * 0.0135/25 = 1.08e-4 s; at rest 0.2 * 0.0135/20 = 1.35e-4 s. */
 static void test_bounds_by_hand(void)
 {
-    rig_open(&rig, gate, "numerics.multirate=off", NULL);
+    rig_open(&rig, gate, "numerics.multirate=off", "integrator=symplectic", NULL);
     bool hits;
     rig.sim.fluid.extremes = (struct fluid_extremes){10000, 5};
     rig.sim.dt_solid = 1;
@@ -103,6 +103,21 @@ static void test_viscous_bound_by_hand(void)
     assert_near(1e-15, 2.278125e-3, rig.sim.dt_bound[BOUND_viscous], "0.125 h^2/nu");
     rig_open(&rig, gate, "water.laminar_viscosity=10", NULL);
     assert_near(1e-18, 2.278125e-6, timestep_fluid_limit(&rig.sim), "largest step");
+}
+
+/* T-33b, h/c0 = 0.0135/20 s: leapfrog 0.9 (6/11)/(6.5 * 0.5) and 0.9/(2.3 * 2) of it. */
+static void test_decay_bounds_by_hand(void)
+{
+    bool hits;
+    rig_open(&rig, gate, "water.density_diffusion=0.5", "water.artificial_viscosity=2", NULL);
+    assert_near(1e-12, 0.15104895104895104 * 0.0135 / 20, timestep_fluid_limit(&rig.sim), "least");
+    timestep_choose(&rig.sim, 10, &hits);
+    assert_near(1e-12, 0.15104895104895104 * 0.0135 / 20, rig.sim.dt_bound[BOUND_diffusion],
+                "diffusion");
+    assert_near(1e-12, 0.1956521739130435 * 0.0135 / 20, rig.sim.dt_bound[BOUND_artificial],
+                "artificial viscosity");
+    rig_open(&rig, gate, "water.density_diffusion=0.5", "integrator=symplectic", NULL);
+    assert_near(1e-12, 0.2 * 0.0135 / 20, timestep_fluid_limit(&rig.sim), "predictor-corrector");
 }
 
 /* Times to be hit are hit to the bit, no step is longer than its bound, and the books agree. */
@@ -267,6 +282,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_bounds_by_hand);
     RUN_TEST(test_viscous_bound_by_hand);
+    RUN_TEST(test_decay_bounds_by_hand);
     RUN_TEST(test_steps_before_a_limit_are_equal);
     RUN_TEST(test_substeps_cover_the_step);
     RUN_TEST(test_multirate_auto);
