@@ -32,7 +32,8 @@ comma   := ,
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := $(strip build $(if $(filter test% validate,$(GOALS)),test) $(if $(filter gate results validate,$(GOALS)),plot))
+  NEEDS := $(strip build $(if $(filter test% validate,$(GOALS)),test) \
+             $(if $(filter gate results validate,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)

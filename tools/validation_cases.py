@@ -47,7 +47,8 @@ def cantilever(report):
         def period(name=f"cantilever-{ratio}", limit=limit):
             error = 100 * (swing(report, name)["mean"] / PERIOD - 1)
             return f"{error:+.2f} %", abs(error) <= limit
-        report.try_target("cantilever", f"period within {limit:g} % of {PERIOD} s at ts/dp = {ratio}", period)
+        report.try_target("cantilever",
+                          f"period within {limit:g} % of {PERIOD} s at ts/dp = {ratio}", period)
 
     def loss():
         found = report.first("cantilever-80", "cantilever-40", "cantilever-20")
@@ -57,10 +58,11 @@ def cantilever(report):
     head = ["period (s)", "error (%)", "mean period, error (%)", "phase at the end (deg)", "amplitude (mm)",
             "loss (%/s)", "RMSE, elasticity (mm)", "RMSE, thin plate (mm)", *COST[1:]]
     lines = [
-        "Free end, mid-thickness, 1 s, kappa = 50 unless said otherwise. Linear two-dimensional elasticity (converged "
-        f"FE): period {PERIOD} s, amplitude {1e3 * AMPLITUDE:.2f} mm; thin plate in plane strain: 0.25406 s, 23.06 mm. "
-        "The two references are 1.0 mm (RMS over 1 s) apart, so an RMSE against the thin plate below that is not the "
-        "aim. A positive phase is late.", "",
+        f"Free end, mid-thickness, 1 s, kappa = 50 unless said otherwise. Linear two-dimensional "
+        f"elasticity (converged FE): period {PERIOD} s, amplitude {1e3 * AMPLITUDE:.2f} mm; thin "
+        f"plate in plane strain: 0.25406 s, 23.06 mm. The two references are 1.0 mm (RMS over 1 s) "
+        f"apart, so an RMSE against the thin plate below that is not the aim. A positive phase is "
+        f"late.", "",
         *report.table(head, [s for s in starting("cantilever") if "kappa" not in s.name], cells),
         *table_one(report, plate, elastic),
         *report.draw("plot_m1", ["cantilever-20", "cantilever-20-symplectic", "cantilever-40",
@@ -78,9 +80,9 @@ def table_one(report, plate, elastic):
     printed = {20: "3.76", 40: "1.71", 80: "1.68"}
     kappas = (0, 1, 10, 50)
     lines = ["### Table 1 of the paper", "",
-             "RMSE of the deflection over 1 s in mm, against the thin plate / against 2-D elasticity, and below it the "
-             "error of the mean period in %. The paper's row is against its analytic solution (thin plate, inferred), "
-             "with kappa = 50.", "",
+             "RMSE of the deflection over 1 s in mm, against the thin plate / against 2-D "
+             "elasticity, and below it the error of the mean period in %. The paper's row is "
+             "against its analytic solution (thin plate, inferred), with kappa = 50.", "",
              "| ts/dp | paper | " + " | ".join(f"kappa = {k}" for k in kappas) + " |", "|---" * 6 + "|"]
     for ratio in (10, 20, 40, 80):
         cells = []
@@ -131,7 +133,8 @@ def plate(report):
                           lambda name=name: at(name, lambda s: (
                               f"{100 * (s['mean'] / DEFLECTION - 1):+.2f} %",
                               abs(s["mean"] / DEFLECTION - 1) <= 0.04)))
-        report.try_target("hydrostatic plate", f"fluctuation after 0.5 s below 2 % (standard deviation), {words}",
+        report.try_target("hydrostatic plate",
+                          f"fluctuation after 0.5 s below 2 % (standard deviation), {words}",
                           lambda name=name: at(name, lambda s: (
                               f"{-100 * s['std'] / s['mean']:.2f} %", -s["std"] / s["mean"] < 0.02)))
 
@@ -141,24 +144,27 @@ def plate(report):
                 abs(fine["mean"] / DEFLECTION - 1) < abs(coarse["mean"] / DEFLECTION - 1))
     report.try_target("hydrostatic plate", "closer at half the spacing", closer)
     head = ["deflection (1e-5 m)", "from elasticity (%)", "from thin plate (%)", "standard deviation (%)",
-            "half range (%)", "faster than 5 ms (%)", "first peak (1e-5 m, ms)", "first frequency (Hz)", *COST]
+            "half range (%)", "faster than 5 ms (%)", "first peak (1e-5 m, ms)",
+            "first frequency (Hz)", *COST]
     return [
-        "Mid-span, mean over 0.5 s to 1 s, with the plate's own weight: converged 2-D elasticity -7.064e-5 m, thin "
-        "plate -6.849e-5 m (the paper's line). The load is applied at once: first peak about -13e-5 m near 1.9 ms, and "
-        f"ringing near the dry frequency, {DRY:.0f} Hz, since water this compressible (c0 = 44.3 m/s) is shorter of "
-        "breath than the plate is long: it radiates instead of moving along. The slow ripple is the column's acoustic "
-        "quarter wave, 4H/c0 = 0.18 s.", "",
+        f"Mid-span, mean over 0.5 s to 1 s, with the plate's own weight: converged 2-D elasticity "
+        f"-7.064e-5 m, thin plate -6.849e-5 m (the paper's line). The load is applied at once: "
+        f"first peak about -13e-5 m near 1.9 ms, and ringing near the dry frequency, {DRY:.0f} Hz, "
+        f"since water this compressible (c0 = 44.3 m/s) is shorter of breath than the plate is "
+        f"long: it radiates instead of moving along. The slow ripple is the column's acoustic "
+        f"quarter wave, 4H/c0 = 0.18 s.", "",
         *report.table(head, starting("plate"), cells), *both_integrators(report, sides),
         *plate_figure(report),
         *report.draw("plot_fields", ["plate-verlet", "plate"], "plate-fields",
                      "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time", 0.3),
-        "*Why the ripple.* The start is hydrostatic, but not the discrete equilibrium: the sum over the even lattice of "
-        "h/dp = 1.35 makes 0.983 of a gradient (docs/theory.md), and the water is compressed by 1 % at the floor, so the column "
-        "first falls by some 3 % and then breathes with little to damp it. The runs with h/dp = 1.5, whose lattice sum is "
-        "0.997, show how much of it is the lattice.", "",
-        "*Eq. 18 as printed.* The viscous force with the tensors of one particle only feeds the plate's bending modes: "
-        "with it the run stops, with or without water (docs/theory.md, D8). The symmetric form is the default for that "
-        "reason.", "", *ledgers(report, ["plate"])]
+        "*Why the ripple.* The start is hydrostatic, but not the discrete equilibrium: the sum "
+        "over the even lattice of h/dp = 1.35 makes 0.983 of a gradient (docs/theory.md), and the "
+        "water is compressed by 1 % at the floor, so the column first falls by some 3 % and then "
+        "breathes with little to damp it. The runs with h/dp = 1.5, whose lattice sum is 0.997, "
+        "show how much of it is the lattice.", "",
+        "*Eq. 18 as printed.* The viscous force with the tensors of one particle only feeds the "
+        "plate's bending modes: with it the run stops, with or without water (docs/theory.md, D8). "
+        "The symmetric form is the default for that reason.", "", *ledgers(report, ["plate"])]
 
 
 def both_integrators(report, sides):
@@ -170,23 +176,27 @@ def both_integrators(report, sides):
     verdict = ("Verlet's is the larger, as the paper says" if ratio > 1.2 else
                "the paper's claim that symplectic is steadier is not seen here" if ratio > 0.8 else
                "symplectic's is the larger, against the paper's claim")
-    return [f"Symplectic against Verlet: the settled deflections differ by {100 * abs(b['mean'] / a['mean'] - 1):.2g} %; "
-            f"the standard deviation is {-100 * a['std'] / a['mean']:.2f} % (symplectic) and "
-            f"{-100 * b['std'] / b['mean']:.2f} % (Verlet), the part faster than 5 ms {-100 * a['fast'] / a['mean']:.4f} % and "
-            f"{-100 * b['fast'] / b['mean']:.4f} %: {verdict}.", ""]
+    return [f"Symplectic against Verlet: the settled deflections differ by "
+            f"{100 * abs(b['mean'] / a['mean'] - 1):.2g} %; the standard deviation is "
+            f"{-100 * a['std'] / a['mean']:.2f} % (symplectic) and "
+            f"{-100 * b['std'] / b['mean']:.2f} % (Verlet), the part faster than 5 ms "
+            f"{-100 * a['fast'] / a['mean']:.4f} % and {-100 * b['fast'] / b['mean']:.4f} %: "
+            f"{verdict}.", ""]
 
 
 def plate_figure(report):
     names = report.has("plate", "plate-verlet", "plate-h1.5", "plate-12.5mm-verlet")
     if not names:
         return ["*No figure: no run of the plate has finished.*", ""]
-    figure, (whole, early) = plt.subplots(1, 2, figsize=(WIDTH, 2.9), width_ratios=[2, 1], layout="constrained")
+    figure, (whole, early) = plt.subplots(1, 2, figsize=(WIDTH, 2.9), width_ratios=[2, 1],
+                                          layout="constrained")
     for axes, end in ((whole, 1.0), (early, 0.03)):
         for colour, name in zip(COLOURS, names):
             time, dy = series(report.run(name), "M1_dy_m")
             axes.plot(time[time <= end], 1e5 * dy[time <= end], color=colour, linewidth=0.8,
                       label=BY_NAME[name].words)
-        axes.axhline(1e5 * DEFLECTION, color="0.2", linestyle=(0, (5, 2)), linewidth=1, label="2-D elasticity")
+        axes.axhline(1e5 * DEFLECTION, color="0.2", linestyle=(0, (5, 2)), linewidth=1,
+                     label="2-D elasticity")
         axes.axhline(1e5 * THIN, color="0.5", linestyle=(0, (1.5, 1.5)), linewidth=1, label="thin plate")
         axes.set(xlabel="Time (s)", xlim=(0, end))
     whole.set(ylabel=r"M1 deflection ($10^{-5}$ m)", ylim=(-8.5, -5.5))
@@ -207,11 +217,13 @@ def gate(report):
 
     def cells(run):
         n = numbers(run)
-        return [f"{n['peak']:.1f}", f"{n['at']:.3f}", f"{n['late']:.1f}", f"{n['rms']:.1f}", f"{n['rms_y']:.1f}",
+        return [f"{n['peak']:.1f}", f"{n['at']:.3f}", f"{n['late']:.1f}", f"{n['rms']:.1f}",
+                f"{n['rms_y']:.1f}",
                 *cost(run)]
     top = float(1e3 * across.value.max())
     for name, words in (("gate", "symplectic"), ("gate-verlet", "Verlet")):
-        report.try_target("gate", f"RMS against the measured horizontal curve at most 3.5 mm at dp = 0.5 mm, {words}",
+        report.try_target("gate", f"RMS against the measured horizontal curve at most 3.5 mm at dp "
+                                  f"= 0.5 mm, {words}",
                           lambda name=name: (lambda n: (f"{n['rms']:.1f} mm", n["rms"] <= 3.5))(
                               numbers(report.run(name))))
         report.try_target("gate", f"peak within 3 mm of {top:.1f} mm, {words}",
@@ -219,53 +231,63 @@ def gate(report):
                               numbers(report.run(name))))
     show = ["gate", "gate-verlet", "gate-1mm-verlet", "gate-1mm-plane-stress"]
     return [
-        f"Free end. Measured (Antoci et al. 2007, mean of two digitisations): peak {top:.1f} mm at 0.16 s, 37.3 mm at "
-        "0.36 s; RMS is over its nine points. The displacement is compared as it is, without a shift in time.", "",
+        f"Free end. Measured (Antoci et al. 2007, mean of two digitisations): peak {top:.1f} mm at "
+        f"0.16 s, 37.3 mm at 0.36 s; RMS is over its nine points. The displacement is compared as "
+        f"it is, without a shift in time.", "",
         *report.table(["peak (mm)", "at (s)", "at 0.36 s (mm)", "RMS x (mm)", "RMS y (mm)", *COST],
                       starting("gate"), cells),
-        "Peaks of other computations of this gate, mm (at s): Antoci et al. 2007 SPH 50.1 (0.164), Khayyer et al. 2018 "
-        "ISPH 42.7 (0.115), Yang et al. 2012 SPH-FEM 39.3 (0.120), Ng et al. 2020 39.0 (0.116).", "",
+        "Peaks of other computations of this gate, mm (at s): Antoci et al. 2007 SPH 50.1 (0.164), "
+        "Khayyer et al. 2018 ISPH 42.7 (0.115), Yang et al. 2012 SPH-FEM 39.3 (0.120), Ng et al. "
+        "2020 39.0 (0.116).", "",
         *gate_reading(report, numbers),
-        *report.draw("plot_m1", show, "gate-m1", "Displacement of the free end, and its difference from the measured one"),
+        *report.draw("plot_m1", show, "gate-m1", "Displacement of the free end, and its difference "
+                                                 "from the measured one"),
         *report.draw("plot_fields", ["gate-verlet", "gate"] if report.has("gate-verlet", "gate")
                      else ["gate-1mm-verlet", "gate-1mm"], "gate-fields",
-                     "Pressure and von Mises stress, Verlet (left) and symplectic", "--time", 0.08, 0.16, 0.24, 0.36,
+                     "Pressure and von Mises stress, Verlet (left) and symplectic", "--time", 0.08,
+                     0.16, 0.24, 0.36,
                      "--window", -0.01, 0.35, -0.01, 0.165),
         *report.draw("plot_ledger", [report.first("gate", "gate-verlet", "gate-1mm-verlet")], "gate-ledger",
                      "Energy, momentum, extremes and time step of the gate"),
-        *interface(report, ["gate", "gate-verlet", "gate-1mm", "gate-1mm-verlet"]), *ledgers(report, ["gate"])]
+        *interface(report, ["gate", "gate-verlet", "gate-1mm", "gate-1mm-verlet"]), *ledgers(report,
+                                                                                             ["gate"])]
 
 
 def gate_reading(report, numbers):
     """What moves the curve, in numbers of the runs at 1 mm."""
-    lines = ["*Why the target is missed.* The rise is followed; then the computed gate falls back while the measured one "
-             "stays out. What was changed, and what it moved at dp = 1 mm (Verlet), in mm at the peak and at 0.36 s:", ""]
+    lines = ["*Why the target is missed.* The rise is followed; then the computed gate falls back "
+             "while the measured one stays out. What was changed, and what it moved at dp = 1 mm "
+             "(Verlet), in mm at the peak and at 0.36 s:", ""]
     base = numbers(report.run("gate-1mm-verlet"))
     for name, words in (("gate-verlet", "half the spacing"), ("gate-1mm", "symplectic for Verlet"),
-                        ("gate-1mm-h1.5", "h/dp = 1.5 for 1.35"), ("gate-1mm-cfl0.4", "C_CFL = 0.4 for 0.2"),
+                        ("gate-1mm-h1.5", "h/dp = 1.5 for 1.35"), ("gate-1mm-cfl0.4",
+                                                                   "C_CFL = 0.4 for 0.2"),
                         ("gate-1mm-neo-hookean", "neo-Hookean for the paper's law"),
                         ("gate-1mm-plane-stress", "plane stress for plane strain"),
                         ("gate-1mm-printed", "Eqs. 13, 17 and 18 as printed")):
         try:
             n = numbers(report.run(name))
-            lines.append(f"* {words}: {n['peak'] - base['peak']:+.1f} and {n['late'] - base['late']:+.1f}, RMS "
-                         f"{n['rms']:.1f} for {base['rms']:.1f}")
+            lines.append(f"* {words}: {n['peak'] - base['peak']:+.1f} and "
+                         f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} for {base['rms']:.1f}")
         except (Missing, BadFile) as problem:
             lines.append(f"* {words}: {problem}")
-    return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants hold the gate out; the "
-            "stiffness of the body does (plane stress is softer by 1 - nu^2 = 0.84). Khayyer et al. 2018 have nearly this "
-            "curve, with another method and the same linear rubber. Antoci's own material was E = 12 MPa at small "
-            "strain and stiffens further, the water leaks past the sides of the laboratory's gate, and 7.8 MPa is a "
-            "fit. The paper itself reports \"a fewer agreement with experimental measurement\" here. No constant was tuned "
-            "to the curve.", ""]
+    return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants hold "
+                        "the gate out; the stiffness of the body does (plane stress is softer by 1 "
+                        "- nu^2 = 0.84). Khayyer et al. 2018 have nearly this curve, with another "
+                        "method and the same linear rubber. Antoci's own material was E = 12 MPa "
+                        "at small strain and stiffens further, the water leaks past the sides of "
+                        "the laboratory's gate, and 7.8 MPa is a fit. The paper itself reports \"a "
+                        "fewer agreement with experimental measurement\" here. No constant was "
+                        "tuned to the curve.", ""]
 
 
 # --- interfaces, 3.4, 3.5 ---
 def interface(report, names):
     """Gaps and penetration between water and structure over the snapshots."""
     lines = ["### Interface", "",
-             "Distances between particles of the water and of the structure over all snapshots, in spacings (1 in the even "
-             "lattice). A gap: a particle of the structure's surface whose nearest water is 1.5 to 3 spacings away.", "",
+             "Distances between particles of the water and of the structure over all snapshots, in "
+             "spacings (1 in the even lattice). A gap: a particle of the structure's surface whose "
+             "nearest water is 1.5 to 3 spacings away.", "",
              "| run | closest | median, wetted surface | surface with a gap (%) |", "|---|---|---|---|"]
     for name in names:
         try:
@@ -337,26 +359,35 @@ def baffle(report):
         late = time > 0.7
         height, fast, _ = bore(run, 0.503, depth, 0.15, 0.03)
         return [f"{1e3 * height:.1f} ({100 * (height / depth - 1):+.0f} %)",
-                f"{fast:.2f} ({100 * (fast / speed - 1):+.0f} %)", f"{contact_time(run):.3f}", f"{1e3 * dx[k]:.1f}",
-                f"{time[k]:.3f}", f"{metrics.strongest(time[late], dx[late]):.1f}", f"{1e3 * dx[late].mean():.1f}",
+                f"{fast:.2f} ({100 * (fast / speed - 1):+.0f} %)", f"{contact_time(run):.3f}",
+                f"{1e3 * dx[k]:.1f}",
+                f"{time[k]:.3f}", f"{metrics.strongest(time[late], dx[late]):.1f}",
+                f"{1e3 * dx[late].mean():.1f}",
                 *cost(run)]
     shown = report.has("baffle-verlet", "baffle") or report.has("baffle-2.5mm-verlet", "baffle-2.5mm")
     return [
-        "The laboratory's curve and parts of the geometry are not available: **no agreement with the experiment is "
-        f"claimed**. What can be checked: Stoker's bore over a wet bed, depth {1e3 * depth:.1f} mm and speed {speed:.3f} m/s "
-        "for a dam that vanishes at once (the plate here is lifted, so the bore comes later and starts lower); first "
-        "contact near t = 0.3 s (the paper); the baffle's frequency, 13.0 Hz in air (20.3 Hz with 64 mm free), lower in "
-        "water; the interface.", "",
-        *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)", "largest M1 (mm)", "at (s)",
-                       "frequency after 0.7 s (Hz)", "mean after 0.7 s (mm)", *COST], starting("baffle"), cells),
-        *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-2mm-verlet", "baffle-2.5mm-verlet", "baffle-2.5mm"],
+        f"The laboratory's curve and parts of the geometry are not available: **no agreement with "
+        f"the experiment is claimed**. What can be checked: Stoker's bore over a wet bed, depth "
+        f"{1e3 * depth:.1f} mm and speed {speed:.3f} m/s for a dam that vanishes at once (the "
+        f"plate here is lifted, so the bore comes later and starts lower); first contact near t = "
+        f"0.3 s (the paper); the baffle's frequency, 13.0 Hz in air (20.3 Hz with 64 mm free), "
+        f"lower in water; the interface.", "",
+        *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)", "largest M1 (mm)",
+                       "at (s)",
+                       "frequency after 0.7 s (Hz)", "mean after 0.7 s (mm)", *COST],
+                       starting("baffle"), cells),
+        *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-2mm-verlet", "baffle-2.5mm-verlet",
+                                 "baffle-2.5mm"],
                      "baffle-m1", "Horizontal displacement of the tip", "--column", "M1_dx_m"),
-        *report.draw("plot_m1", ["baffle-2mm-verlet", "baffle-2mm-embedded", "baffle-2mm-slow", "baffle-2mm-fast"],
+        *report.draw("plot_m1", ["baffle-2mm-verlet", "baffle-2mm-embedded", "baffle-2mm-slow",
+                                 "baffle-2mm-fast"],
                      "baffle-sensitivity", "What the assumptions do: free length, speed of the plate",
                      "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "baffle-fields", "Pressure and von Mises stress, Verlet and symplectic where both "
-                     "were run", "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
-        *interface(report, ["baffle", "baffle-verlet", "baffle-2mm-verlet", "baffle-2.5mm", "baffle-2.5mm-verlet"]),
+        *report.draw("plot_fields", shown, "baffle-fields", "Pressure and von Mises stress, Verlet "
+                                                            "and symplectic where both were run",
+        "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
+        *interface(report, ["baffle", "baffle-verlet", "baffle-2mm-verlet", "baffle-2.5mm",
+                            "baffle-2.5mm-verlet"]),
         *ledgers(report, ["baffle"])]
 
 
@@ -380,27 +411,36 @@ def sluice(report):
         k = int(np.argmax(np.abs(dx)))
         late = time > 1.0
         fast = front_speed(run, 0.55, 1.45)
-        return [f"{fast:.2f} ({100 * fast / ritter:.0f} %)", f"{contact_time(run):.3f}", f"{1e3 * dx[k]:.1f}",
+        return [f"{fast:.2f} ({100 * fast / ritter:.0f} %)", f"{contact_time(run):.3f}",
+                f"{1e3 * dx[k]:.1f}",
                 f"{time[k]:.3f}", f"{1e3 * dx[late].mean():.1f}", f"{1e3 * dx[late].std():.2f}",
                 f"{metrics.strongest(time[late], dx[late]):.1f}", *cost(run)]
     shown = report.has("sluice-verlet", "sluice") or report.has("sluice-2.5mm-verlet", "sluice-2.5mm")
     window = ("--window", 0.55, 1.15, -0.01, 0.24)
     return [
-        "The laboratory's curve, the opening under the gate and the removal of the plate are not available: **no agreement "
-        "with the experiment is claimed**. What can be checked: the front is slower than Ritter's "
-        f"2 sqrt(gH) = {ritter:.2f} m/s; the gate swings at 4.47 Hz in air; the paper reports oscillations after t = 1 s "
-        "from vortices at the gate, which depend on the numerical parameters.", "",
-        *report.table(["front (m/s, of Ritter's)", "first contact (s)", "largest M1 (mm)", "at (s)", "mean after 1 s (mm)",
-                       "deviation after 1 s (mm)", "frequency after 1 s (Hz)", *COST], starting("sluice"), cells),
-        *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-2mm-verlet", "sluice-2.5mm-verlet", "sluice-2.5mm"],
+        f"The laboratory's curve, the opening under the gate and the removal of the plate are not "
+        f"available: **no agreement with the experiment is claimed**. What can be checked: the "
+        f"front is slower than Ritter's 2 sqrt(gH) = {ritter:.2f} m/s; the gate swings at 4.47 Hz "
+        f"in air; the paper reports oscillations after t = 1 s from vortices at the gate, which "
+        f"depend on the numerical parameters.", "",
+        *report.table(["front (m/s, of Ritter's)", "first contact (s)", "largest M1 (mm)", "at (s)",
+                       "mean after 1 s (mm)",
+                       "deviation after 1 s (mm)", "frequency after 1 s (Hz)", *COST],
+                       starting("sluice"), cells),
+        *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-2mm-verlet", "sluice-2.5mm-verlet",
+                                 "sluice-2.5mm"],
                      "sluice-m1", "Horizontal displacement of the gate's lower end", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["sluice-2.5mm-verlet", "sluice-2.5mm-opening10", "sluice-2.5mm-opening40",
                                  "sluice-2.5mm-slow", "sluice-2.5mm-viscous"], "sluice-sensitivity",
-                     "What the assumptions do: opening, speed of the plate; and what alpha does", "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "sluice-fields", "Pressure and von Mises stress, Verlet and symplectic where both "
-                     "were run", "--time", 0.3, 0.5, 1.0, 1.5, *window),
-        *report.draw("plot_fields", shown, "sluice-vorticity", "Vorticity after 1 s", "--time", 1.1, 1.3, 1.5, 1.7, "--field",
+                     "What the assumptions do: opening, speed of the plate; and what alpha does",
+                     "--column", "M1_dx_m"),
+        *report.draw("plot_fields", shown, "sluice-fields", "Pressure and von Mises stress, Verlet "
+                                                            "and symplectic where both were run",
+        "--time", 0.3, 0.5, 1.0, 1.5, *window),
+        *report.draw("plot_fields", shown, "sluice-vorticity", "Vorticity after 1 s", "--time", 1.1,
+                     1.3, 1.5, 1.7, "--field",
                      "vorticity", *window),
-        *interface(report, ["sluice", "sluice-verlet", "sluice-2mm-verlet", "sluice-2.5mm", "sluice-2.5mm-verlet"]),
+        *interface(report, ["sluice", "sluice-verlet", "sluice-2mm-verlet", "sluice-2.5mm",
+                            "sluice-2.5mm-verlet"]),
         *ledgers(report, ["sluice"])]
 

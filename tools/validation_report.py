@@ -147,8 +147,8 @@ def starting(prefix):
 def ledgers(report, prefixes):
     """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
     from plot_ledger import read_ledger
-    lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, y at the "
-             "end (N s/m) | mass | density |", "|---" * 7 + "|"]
+    lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, "
+             "y at the end (N s/m) | mass | density |", "|---" * 7 + "|"]
     for spec in [s for p in prefixes for s in starting(p)]:
         try:
             run = report.run(spec.name)
@@ -161,8 +161,8 @@ def ledgers(report, prefixes):
         density = np.nanmax(ledger["dens_extreme"])
         mass = ledger["mass"][-1] / ledger["mass"][0] - 1 if ledger["mass"][0] else 0.0
         lines.append(
-            f"| {spec.name} | {play:.4g} | {lost[-1]:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) | "
-            f"{ledger['momentum_x'][-1]:.3g}, {ledger['momentum_y'][-1]:.3g} | {mass:+.1g} | "
+            f"| {spec.name} | {play:.4g} | {lost[-1]:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
+            f"| {ledger['momentum_x'][-1]:.3g}, {ledger['momentum_y'][-1]:.3g} | {mass:+.1g} | "
             f"{100 * density:.2g} % |")
     return [*lines, ""]
 
@@ -222,10 +222,10 @@ def write_report(docs, failed):
     runs = what_was_run(report)
     head = [
         "# Validation", "",
-        "Written by `make validate` (`tools/validate.py`); nothing here is typed by hand, and what is judged is "
-        "computed from the runs. Program " + ", ".join(sorted(report.versions)) +
-        f"; {machine()}; {datetime.date.today()}. Seconds are the clock's of a run's last process, on a machine that "
-        "other work shared: they show ratios at best.", "",
+        "Written by `make validate` (`tools/validate.py`); nothing here is typed by hand, and what "
+        "is judged is computed from the runs. Program " + ", ".join(sorted(report.versions)) +
+        f"; {machine()}; {datetime.date.today()}. Seconds are the clock's of a run's last process, "
+        f"on a machine that other work shared: they show ratios at best.", "",
         "## Targets", "", "| case | target | found | |", "|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in report.targets), "",
         "Why a target is missed is said in the section of its case.", ""]

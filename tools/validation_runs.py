@@ -125,7 +125,8 @@ def verifications():
              for size, name, extra, words in (
                  (10, "10mm-printed", ["water.diffusion_form=molteni"], ", Eq. 6 as printed"),
                  (10, "10mm", [kept], ", Fourtakas"),
-                 (10, "10mm-c20", [kept, "water.max_speed=2*sqrt(g*H)"], ", Fourtakas, c0 = 20 sqrt(gH)"),
+                 (10, "10mm-c20", [kept, "water.max_speed=2*sqrt(g*H)"], ", Fourtakas, c0 = 20 "
+                     "sqrt(gH)"),
                  (5, "5mm", [kept], ", Fourtakas"))
              for h in (1.35, 1.5)]
     specs += [Spec(f"wave-{n}-{h}", "verify/standing_wave",
