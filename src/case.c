@@ -255,7 +255,7 @@ enum err scene_parse(struct scene *s, const char *text, const char *path, int n_
     if (strlen(path) >= sizeof s->path)
         return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
                          sizeof s->path - 1);
-    strcpy(s->path, path);
+    memcpy(s->path, path, strlen(path) + 1);
     struct reader r = {.scene = s, .diag = d};
     const enum err err = read_all(&r, text, n_sets, sets);
     arena_free(&r.temp);

@@ -155,9 +155,10 @@ enum err case_split(struct reader *r, const char *text)
     const size_t room = (size_t)n_lines + 1;
     r->entries = arena_alloc(&r->temp, room, sizeof *r->entries, "case file", r->diag);
     r->sections = arena_alloc(&r->temp, room, sizeof *r->sections, "case file", r->diag);
-    char *copy = arena_alloc(&r->temp, strlen(text) + 1, 1, "case file", r->diag);
+    const size_t bytes = strlen(text) + 1;
+    char *copy = arena_alloc(&r->temp, bytes, 1, "case file", r->diag);
     if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
-    strcpy(copy, text);
+    memcpy(copy, text, bytes);
     if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
     r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
     int line = 1;
@@ -199,7 +200,7 @@ static bool means_section(const struct case_section *s, const char *prefix)
     if (!*s->name) return s->id != SECTION_top && strcmp(word, prefix) == 0;
     if (strcmp(s->name, prefix) == 0) return true;
     const size_t length = strlen(word);
-    if (strncmp(prefix, word, length) || !blank(prefix[length])) return false;
+    if (strncmp(prefix, word, length) != 0 || !blank(prefix[length])) return false;
     while (blank(prefix[length])) prefix++;
     return strcmp(prefix + length, s->name) == 0;
 }
@@ -259,9 +260,10 @@ static void put_entry(struct reader *r, const struct entry *e)
 static enum err apply_set(struct reader *r, const char *set)
 {
     struct entry e = {.set = set, .key = ""};
-    char *copy = arena_alloc(&r->temp, strlen(set) + 1, 1, "--set", r->diag);
+    const size_t bytes = strlen(set) + 1;
+    char *copy = arena_alloc(&r->temp, bytes, 1, "--set", r->diag);
     if (!copy) return ERR_MEMORY;
-    strcpy(copy, set);
+    memcpy(copy, set, bytes);
     for (const char *c = copy; *c; c++)
         if ((unsigned char)*c < ' ' && *c != '\t') return bad_entry(r, &e, "control byte %d", *c);
     char *value = strchr(copy, '=');

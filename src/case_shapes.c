@@ -29,7 +29,7 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
 static enum err read_box(struct reader *r, const struct entry *e, struct slice text,
                          struct shape *shape)
 {
-    double v[4];
+    double v[4] = {0};
     TRY(read_point(r, e, text, 4, v));
     if (!(v[0] < v[2]) || !(v[1] < v[3]))
         return bad_value(r, e,
@@ -46,7 +46,7 @@ static enum err read_box(struct reader *r, const struct entry *e, struct slice t
 static enum err read_circle(struct reader *r, const struct entry *e, struct slice text,
                             struct shape *shape)
 {
-    double v[3];
+    double v[3] = {0};
     TRY(read_point(r, e, text, 3, v));
     if (!(v[2] > 0)) return bad_value(r, e, "the radius of a circle must be above 0 m");
     shape->pt[0][0] = v[0];

@@ -155,7 +155,7 @@ enum err case_all_constants(struct reader *r)
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *e = r->constants[k].entry;
         const struct expr_names names = {r, find_name, EXPR_FIXED};
-        struct quantity q;
+        struct quantity q = {0};
         char why[EXPR_WHY];
         /* Once more from its text, so that the message names what is wrong right here. */
         if (!expr_value(whole(e->value), &names, &q, why)) return bad_value(r, e, "%s", why);
@@ -187,7 +187,7 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
                      double *value)
 {
     const struct expr_names names = {r, find_name, EXPR_FIXED};
-    struct quantity q;
+    struct quantity q = {0};
     char why[EXPR_WHY];
     if (!expr_value(text, &names, &q, why)) return bad_value(r, e, "%s", why);
     TRY(check_dim(r, e, &q.dim, unit));
@@ -210,7 +210,7 @@ static enum err check_range(struct reader *r, const struct entry *e, const struc
 static enum err read_integer(struct reader *r, const struct entry *e, const struct param *p,
                              int *value)
 {
-    double number;
+    double number = 0;
     TRY(case_number(r, e, whole(e->value), "1", &number));
     TRY(check_range(r, e, p, number));
     if (number != floor(number)) return bad_value(r, e, "a whole number is expected");
@@ -311,7 +311,7 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
                                      p->type == PARAM_TIME_EXPR ? EXPR_IN_TIME : EXPR_IN_SPACE};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
-        struct dim dim;
+        struct dim dim = {0};
         const enum err err =
             expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
         if (err == ERR_INPUT) return bad_value(r, e, "%s", why);

@@ -286,7 +286,7 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
     if (two) {
         if (peek(c) != ',') return say(c, "%s needs two values: %s(a, b)", f->name, f->name);
         skip(c, 1);
-        struct dim other;
+        struct dim other = {0};
         if (!parse_sum(c, &other) || !join_dims(c, dim, &other)) return false;
     }
     if (peek(c) != ')') return say(c, "`(` behind %s is not closed", f->name);
@@ -372,7 +372,7 @@ static bool parse_power(struct compiler *c, struct dim *dim)
     if (!parse_primary(c, dim)) return false;
     if (peek(c) != '^') return true;
     skip(c, 1);
-    struct dim exponent;
+    struct dim exponent = {0};
     return parse_factor(c, &exponent) && power_dims(c, dim, &exponent) && operate(c, OP_POW);
 }
 
@@ -399,7 +399,7 @@ static bool parse_product(struct compiler *c, struct dim *dim)
         const int ch = peek(c);
         if (ch != '*' && ch != '/') return true;
         skip(c, 1);
-        struct dim other;
+        struct dim other = {0};
         if (!parse_factor(c, &other)) return false;
         if (!multiply_dims(c, dim, &other, ch == '*' ? 1 : -1)) return false;
         if (!operate(c, ch == '*' ? OP_MUL : OP_DIV)) return false;
@@ -413,7 +413,7 @@ static bool parse_sum(struct compiler *c, struct dim *dim)
         const int ch = peek(c);
         if (ch != '+' && ch != '-') return true;
         skip(c, 1);
-        struct dim other;
+        struct dim other = {0};
         if (!parse_product(c, &other) || !join_dims(c, dim, &other)) return false;
         if (!operate(c, ch == '+' ? OP_ADD : OP_SUB)) return false;
     }
@@ -461,9 +461,8 @@ const char *expr_source(const struct expr *e) { return e->source; }
 
 double scene_expr_at(const struct expr *e, double x, double y)
 {
-    /* The compiler has counted: no operand is missing, MAX_STACK suffices, one value is left. (The
-     * static analysers, who cannot know, call the stack uninitialized.) */
-    double stack[MAX_STACK];
+    /* The compiler has counted: no operand is missing, MAX_STACK suffices, one value is left. */
+    double stack[MAX_STACK] = {0};
     int top = -1;
     for (int k = 0; k < e->n; k++) {
         const struct op *op = &e->op[k];

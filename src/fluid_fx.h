@@ -50,6 +50,7 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, const real *x, con
     q.u = a->u - vload(u);
     q.v = a->v - vload(v);
     q.vx = vfma(q.v, q.y, q.u * q.x);
+    /* cppcheck-suppress uninitvar ; p and dens are loaded by those laws that need them */
     return q;
 }
 

@@ -311,7 +311,7 @@ static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_
 {
     if (o->out) {
         if (o->out[0] && strlen(o->out) < FOLDER_PATH - 300) {
-            strcpy(path, o->out);
+            memcpy(path, o->out, strlen(o->out) + 1);
             for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
             return ERR_OK;
         }

@@ -136,7 +136,7 @@ SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #else
 #define SIMD_LANEWISE(type, name, lanes, value)          \
-    type result;                                         \
+    type result = {0};                                   \
     for (int l = 0; l < (lanes); l++) result[l] = value; \
     return result
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
