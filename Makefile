@@ -4,6 +4,9 @@
 #   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
 #   make test            build and run the tests           (FILTER=cells for some of them)
 #   make test-sanitize   the quick tests under ASan and UBSan
+#   make test-thread     the same under clang's ThreadSanitizer, with an OpenMP runtime that it knows
+#   make memcheck        every shipped case, coarse and short, under valgrind
+#   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
 #   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
@@ -50,9 +53,11 @@ WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
 OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
 OPT-debug    := -O0 -g
+OPT-memcheck := -O1 -g
+OPT-thread   := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
 OPT-sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
                 -fno-sanitize-recover=undefined
-$(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug sanitize))
+$(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug sanitize thread memcheck))
 ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
@@ -79,6 +84,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
 .PHONY: faults fuzz reliability validate
+.PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
 .SECONDARY:
@@ -134,6 +140,21 @@ test: $(PROGRAM) $(TESTS)
 
 test-sanitize:
 	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
+
+# gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher). Tests
+# that only look at results or files say nothing here and would take hours.
+test-thread:
+	@TEST_DIRS='unit agree' TEST_KINDS=c OMP_NUM_THREADS=2 TEST_TIMEOUT=3000 \
+	  TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66' \
+	  $(MAKE) --no-print-directory CONFIG=thread CC=clang test
+
+# valgrind knows no AVX-512.
+memcheck:
+	@$(MAKE) --no-print-directory CONFIG=memcheck ARCH=x86-64-v3 all
+	@tools/memcheck.sh build/memcheck/sphfsi
+
+analyze:
+	@tools/analyze.sh $(ARGS)
 
 faults: $(PROGRAM)
 	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' KILLS=50 FULL_STEPS=40; \
@@ -191,7 +212,7 @@ dist:
 	git archive --prefix=sphfsi-$(VERSION)/ -o build/sphfsi-$(VERSION).tar.gz HEAD
 
 clean:
-	rm -rf sphfsi build/release build/serial build/debug build/sanitize
+	rm -rf sphfsi build/release build/serial build/debug build/sanitize build/thread build/memcheck
 
 # Runs are results, not build products: they stay.
 distclean: clean

@@ -3,7 +3,7 @@
 #
 # Unity programs below BUILD/tests, one for each tests/*/test_*.c, and the scripts
 # tests/*/test_*.{py,sh}, which pass with exit status 0 and are skipped with 77.
-# Environment: FILTER (part of a test's path), TEST_DIRS (groups to run), TEST_JOBS (at a time, 2),
+# Environment: FILTER (part of a test's path), TEST_DIRS (groups to run), TEST_KINDS (c py sh), TEST_JOBS (at a time, 2),
 # TEST_TIMEOUT (seconds each, 600), PYTHON, SPHFSI (the program under test).
 # The last line is always `N passed, N failed, N skipped`; Unity's test cases count one each.
 set -u
@@ -78,6 +78,7 @@ for test in tests/*/test_*.{c,py,sh}; do
     [ -e "$test" ] && [[ $test == *"${FILTER:-}"* ]] || continue
     group=${test#tests/} group=${group%%/*}
     [[ " ${TEST_DIRS:-$group} " == *" $group "* ]] || continue
+    [[ " ${TEST_KINDS:-${test##*.}} " == *" ${test##*.} "* ]] || continue
     printf '%s\0' "$test"
 done | xargs -0 -r -n 1 -P "${TEST_JOBS:-2}" bash tests/run.sh --one
 
