@@ -97,6 +97,17 @@ def check_text(path, lines):
             report(path, number, f"{word[0]} (an issue's number makes the last one acceptable)")
 
 
+# A string of a user must never reach a shell: no other program is started at all.
+PROGRAMS = re.compile(r"\b(system|popen|exec[lv]p?e?|execvpe|fexecve|fork|vfork|posix_spawnp?)\s*\(")
+
+
+def check_programs(path, lines):
+    for number, line in enumerate(lines, 1):
+        call = PROGRAMS.search(line)
+        if call and path.suffix in (".c", ".h", ".def"):
+            report(path, number, f"{call[1]}() starts another program")
+
+
 def check_flags():
     """Makefile and CMakeLists.txt compile with the same flags and carry the same version."""
     make, cmake = ROOT / "Makefile", ROOT / "CMakeLists.txt"
@@ -154,6 +165,7 @@ def main():
         check_text(path, lines)
         if path.parent.name in ("src", "include"):
             check_layers(path, lines)
+            check_programs(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
     check_flags()
