@@ -4,6 +4,7 @@
  * Verlet, with sub-steps, right at an output that has not been written yet, after the last step. Every
  * other time the run goes on behind the checkpoint, so that rows and snapshots have to be dropped. */
 #include "folder.h"
+#include "params.h"
 #include "snapshot_file.h"
 #include "sphfsi.h"
 #include "tiny.h"
@@ -184,29 +185,35 @@ static void sweep(const struct form *f)
     "end_time=3 ms", "output.probe_interval=0.3 ms", "output.ledger_interval=0.5 ms", \
         "output.snapshot_interval=1.5 ms", "numerics.skin=0.002", "water.velocity=1 m/s, 0 m/s"
 
-static void symplectic_with_sub_steps(void)
+/* The integrator of this number, "integrator=NAME", or false: the case knows no more. */
+static bool integrator_of(int k, char text[64])
 {
-    sweep(&(struct form){"tiny symplectic", NULL, 1, {TINY}});
+    const char *at = param_find(SECTION_top, "integrator")->choices;
+    for (; k > 0 && (at = strchr(at, '|')) != NULL; k--) at++;
+    if (at) snprintf(text, 64, "integrator=%.*s", (int)strcspn(at, "|"), at);
+    return at != NULL;
 }
 
-static void symplectic_single_rate(void)
+static void every_integrator_with_sub_steps(void)
 {
-    sweep(&(struct form){"tiny symplectic single", NULL, 1, {TINY, "numerics.multirate=off"}});
+    char integrator[64], name[96];
+    for (int k = 0; integrator_of(k, integrator); k++) {
+        snprintf(name, sizeof name, "tiny, %s", integrator);
+        sweep(&(struct form){name, NULL, 1, {TINY, integrator, "numerics.verlet_reset=7"}});
+    }
 }
 
-static void verlet_with_sub_steps(void)
+static void every_integrator_at_a_single_rate(void)
 {
-    sweep(&(struct form){
-        "tiny verlet", NULL, 1, {TINY, "integrator=verlet", "numerics.verlet_reset=7"}});
-}
-
-static void verlet_single_rate(void)
-{
-    sweep(&(struct form){"tiny verlet single",
-                         NULL,
-                         1,
-                         {TINY, "integrator=verlet", "numerics.verlet_reset=7",
-                          "numerics.multirate=off", "precision=double"}});
+    char integrator[64], name[96];
+    for (int k = 0; integrator_of(k, integrator); k++) {
+        snprintf(name, sizeof name, "tiny, single rate, %s", integrator);
+        sweep(&(struct form){name,
+                             NULL,
+                             1,
+                             {TINY, integrator, "numerics.verlet_reset=7", "numerics.multirate=off",
+                              "precision=double"}});
+    }
 }
 
 /* --- shipped cases: the lines `short NAME END SETTING...` of test_restart_cases.sh --- */
@@ -236,6 +243,7 @@ static char *next_word(char **at)
 /* Three stops each, at steps that no output chose. */
 static void stop_case(char *at)
 {
+    static int cases;
     char name[128], settings[MORE][64], *word;
     const char *const case_name = next_word(&at);
     const double end = strtod(next_word(&at), NULL);
@@ -246,7 +254,8 @@ static void stop_case(char *at)
     snprintf(settings[1], sizeof settings[1], "output.probe_interval=%.12g", 0.15 * end);
     snprintf(settings[2], sizeof settings[2], "output.ledger_interval=%.12g", 0.15 * end);
     snprintf(settings[3], sizeof settings[3], "output.snapshot_interval=%.12g", 0.5 * end);
-    snprintf(settings[4], sizeof settings[4], "integrator=%s", stops % 2 ? "verlet" : "symplectic");
+    if (!integrator_of(cases, settings[4])) integrator_of(cases = 0, settings[4]);
+    cases++;
     struct form f = {name, file, -3, {NULL}};
     int n = 0;
     while (n < MORE) f.sets[n] = settings[n], n++;
@@ -279,10 +288,8 @@ int main(void)
     if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
     UNITY_BEGIN();
     RUN_TEST(shipped_cases);
-    RUN_TEST(symplectic_with_sub_steps);
-    RUN_TEST(symplectic_single_rate);
-    RUN_TEST(verlet_with_sub_steps);
-    RUN_TEST(verlet_single_rate);
+    RUN_TEST(every_integrator_with_sub_steps);
+    RUN_TEST(every_integrator_at_a_single_rate);
     printf("found: %d stops\n", stops);
     return UNITY_END();
 }
