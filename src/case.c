@@ -326,3 +326,10 @@ int scene_find_solid(const struct scene *s, const char *name)
         if (strcmp(s->solid[k].common.name, name) == 0) return k;
     return -1;
 }
+
+int scene_find_wall(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_wall; k++)
+        if (strcmp(s->wall[k].common.name, name) == 0) return k;
+    return -1;
+}

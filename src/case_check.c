@@ -163,32 +163,6 @@ static enum err check_joined(struct reader *r)
     return ERR_OK;
 }
 
-static enum err check_probes(struct reader *r)
-{
-    const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_probe; k++) {
-        const struct scene_probe *p = &s->probe[k];
-        const int line = p->common.line;
-        if (p->quantity == PROBE_PRESSURE) {
-            if (*p->body)
-                return bad_line(r, line,
-                                "[probe %s] measures pressure at a fixed point; `body` is to "
-                                "go",
-                                p->common.name);
-            if (s->n_fluid == 0)
-                return bad_line(r, line, "[probe %s] measures pressure, but there is no fluid",
-                                p->common.name);
-            continue;
-        }
-        if (!*p->body)
-            return bad_line(r, line, "[probe %s] needs `body`, the solid it belongs to",
-                            p->common.name);
-        if (scene_find_solid(s, p->body) < 0)
-            return no_such(r, line, "body", p->body, SECTION_solid);
-    }
-    return ERR_OK;
-}
-
 /* A reference names a column: <probe>_<quantity>_<unit>. */
 static enum err check_references(struct reader *r)
 {
@@ -238,7 +212,7 @@ enum err case_check(struct reader *r)
     TRY(check_fluids(r));
     TRY(check_motions(r));
     TRY(check_joined(r));
-    TRY(check_probes(r));
+    TRY(case_check_probes(r));
     TRY(check_references(r));
     return effects_check(s, r->diag);
 }

@@ -218,13 +218,15 @@ static enum err read_integer(struct reader *r, const struct entry *e, const stru
     return ERR_OK;
 }
 
+enum { CHOICES_MOST = 32 };
+
 static enum err read_choice(struct reader *r, const struct entry *e, const struct param *p,
                             int *value)
 {
     struct slice rest = whole(p->choices), name;
     struct nearest near = {0};
-    char names[8][SCENE_NAME];
-    for (int k = 0; k < 8 && slice_next(&rest, '|', &name); k++) {
+    char names[CHOICES_MOST][SCENE_NAME];
+    for (int k = 0; k < CHOICES_MOST && slice_next(&rest, '|', &name); k++) {
         snprintf(names[k], SCENE_NAME, "%.*s", (int)name.length, name.at);
         if (strcmp(names[k], e->value) == 0) {
             *value = k;

@@ -166,10 +166,9 @@ static enum err check_probes(const struct sampler *g)
     const struct scene *s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *probe = &s->probe[k];
-        if (probe->quantity != PROBE_PRESSURE) {
-            TRY(check_body_probe(g, probe));
-            continue;
-        }
+        const enum probe_target target = scene_probe_target(probe);
+        if (target == TARGET_SOLID_POINT) TRY(check_body_probe(g, probe));
+        if (target != TARGET_FLUID_POINT) continue;
         bool inside = true;
         for (int c = 0; c < 2; c++)
             inside &=

@@ -32,7 +32,7 @@ static void add_solid(const struct simulation *s, struct ledger *row)
         row->momentum_y += b->mass * p->vy[i];
         row->mass += b->mass;
     }
-    solid_energy(&s->solid, p, &row->elastic, &row->hourglass, &row->det_low);
+    solid_energy(&s->solid, p, SOLID_ALL, &row->elastic, &row->hourglass, &row->det_low);
 }
 
 struct ledger simulation_ledger(struct simulation *s)

@@ -5,6 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
+static const char *const endings[PROBE_QUANTITIES] = {
+#define QUANTITY(NAME, name, target, columns, meaning) columns,
+#include "quantities.def"
+#undef QUANTITY
+};
+
 /* Weights of a particle in the local frame of a probe. */
 struct moment {
     double m00, m10, m01, m20, m11, m02;
@@ -13,14 +19,6 @@ struct moment {
 /* Weight over the squared distance in units of the reach; 0 at the reach. Any positive weight
  * reproduces linear fields; this one is smooth. */
 static double nearness(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
-
-static enum err no_body(const struct scene_probe *sp, const struct scene *scene, struct diag *d)
-{
-    const char *one = scene->n_solid > 0 ? scene->solid[0].common.name : "";
-    return diag_fail(d, ERR_INPUT, "line %d: probe %s: body = '%s' names no solid section%s%s%s",
-                     sp->common.line, sp->common.name, sp->body, one[0] ? "; there is '" : "", one,
-                     one[0] ? "'" : "");
-}
 
 /* Particles of the body within `reach` of the probe; `particle` may be NULL to count only. */
 static int find_near(const struct particles *p, int body, const double at[2], double reach,
@@ -81,8 +79,7 @@ static void weigh(struct probe *pr, const struct particles *p, double reach)
 static enum err attach(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
                        struct arena *a, struct diag *d)
 {
-    const int body = scene_find_solid(s->scene, sp->body);
-    if (body < 0) return no_body(sp, s->scene, d);
+    const int body = pr->body;
     const struct particles *p = &s->kind[KIND_SOLID];
     const double h = s->scene->h, reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
@@ -101,47 +98,94 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     return ERR_OK;
 }
 
-static int quantity_columns(int quantity) { return quantity == PROBE_PRESSURE ? 1 : 2; }
+static int quantity_columns(int quantity)
+{
+    int n = 1;
+    for (const char *c = endings[quantity]; *c; c++) n += *c == ',';
+    return n;
+}
+
+/* Whether a quantity is made of fields that are brought up to date for the looking only. */
+static bool needs_refresh(int quantity)
+{
+    return quantity == PROBE_PRESSURE || quantity == PROBE_STRESS || quantity == PROBE_FORCE ||
+           quantity == PROBE_ENERGY;
+}
+
+static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
+                             const struct simulation *s, struct arena *a, struct diag *d)
+{
+    *pr = (struct probe){.quantity = sp->quantity,
+                         .target = scene_probe_target(sp),
+                         .direction = sp->direction,
+                         .columns = quantity_columns(sp->quantity)};
+    memcpy(pr->point, sp->point, sizeof pr->point);
+    memcpy(pr->to, sp->to, sizeof pr->to);
+    pr->kind = KIND_SOLID;
+    pr->body = scene_find_solid(s->scene, sp->body);
+    if (pr->target == TARGET_BODY && pr->body < 0) {
+        pr->kind = KIND_WALL;
+        pr->body = scene_find_wall(s->scene, sp->body);
+    }
+    return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, s, a, d) : ERR_OK;
+}
+
+/* --- files --- */
+
+/* Appends ",<probe>_<ending>" for each column of a probe. */
+static size_t name_columns(char *header, size_t room, size_t at, const char *name, int quantity)
+{
+    for (const char *ending = endings[quantity]; *ending;) {
+        const int length = (int)strcspn(ending, ",");
+        at += (size_t)snprintf(header + at, room - at, ",%s_%.*s", name, length, ending);
+        ending += length + (ending[length] == ',');
+    }
+    return at;
+}
+
+/* The file of the probes that are sampled together: all without an interval of their own, or the one
+ * numbered `only`. */
+static enum err create_file(struct probes *p, const struct scene *scene, int only, struct arena *a,
+                            struct diag *d)
+{
+    struct probe_file *const f = &p->file[p->n_files];
+    const size_t room = 8 + (size_t)p->n * 5 * (SCENE_NAME + 24);
+    char *const header = arena_alloc(a, room, 1, "header of probes.csv", d);
+    if (!header) return ERR_MEMORY;
+    size_t at = (size_t)snprintf(header, room, "time_s");
+    *f = (struct probe_file){.header = header, .columns = 1};
+    for (int k = 0; k < p->n; k++) {
+        const struct scene_probe *const sp = &scene->probe[k];
+        if (only >= 0 ? k != only : sp->interval > 0) continue;
+        p->probe[k].file = p->n_files;
+        at = name_columns(header, room, at, sp->common.name, sp->quantity);
+        f->columns += p->probe[k].columns;
+        f->refresh |= needs_refresh(sp->quantity);
+        f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;
+    }
+    if (f->columns == 1) return ERR_OK;
+    snprintf(f->name, sizeof f->name, only >= 0 ? "probes_%s.csv" : "probes.csv",
+             only >= 0 ? scene->probe[only].common.name : "");
+    p->n_files++;
+    return ERR_OK;
+}
 
 enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
                        struct diag *d)
 {
     const struct scene *scene = s->scene;
-    p->n = scene->n_probe;
-    p->columns = 1;
-    p->pressure = false;
+    *p = (struct probes){.n = scene->n_probe};
     p->probe = arena_alloc(a, (size_t)p->n, sizeof *p->probe, "probes", d);
-    if (!p->probe) return ERR_MEMORY;
-    for (int k = 0; k < p->n; k++) {
-        struct probe *pr = &p->probe[k];
-        pr->quantity = scene->probe[k].quantity;
-        memcpy(pr->point, scene->probe[k].point, sizeof pr->point);
-        p->columns += quantity_columns(pr->quantity);
-        if (pr->quantity == PROBE_PRESSURE)
-            p->pressure = true;
-        else
-            TRY(attach(pr, &scene->probe[k], s, a, d));
-    }
+    p->file = arena_alloc(a, (size_t)p->n + 1, sizeof *p->file, "probes", d);
+    if (!p->probe || !p->file) return ERR_MEMORY;
+    for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], s, a, d));
+    TRY(create_file(p, scene, -1, a, d));
+    for (int k = 0; k < p->n; k++)
+        if (scene->probe[k].interval > 0) TRY(create_file(p, scene, k, a, d));
     return ERR_OK;
 }
 
-const char *probes_header(const struct scene *scene, struct arena *a, struct diag *d)
-{
-    static const char *const endings[][2] = {
-        [PROBE_DISPLACEMENT] = {"dx_m", "dy_m"},
-        [PROBE_VELOCITY] = {"vx_m_per_s", "vy_m_per_s"},
-        [PROBE_PRESSURE] = {"p_Pa", NULL},
-    };
-    const size_t room = 8 + (size_t)scene->n_probe * 2 * (SCENE_NAME + 16);
-    char *const header = arena_alloc(a, room, 1, "header of probes.csv", d);
-    if (!header) return NULL;
-    size_t at = (size_t)snprintf(header, room, "time_s");
-    for (int k = 0; k < scene->n_probe; k++)
-        for (int c = 0; c < quantity_columns(scene->probe[k].quantity); c++)
-            at += (size_t)snprintf(header + at, room - at, ",%s_%s", scene->probe[k].common.name,
-                                   endings[scene->probe[k].quantity][c]);
-    return header;
-}
+/* --- values --- */
 
 static void weighted_sum(const struct probe *pr, const double *fx, const double *fy, double out[2])
 {
@@ -152,19 +196,82 @@ static void weighted_sum(const struct probe *pr, const double *fx, const double 
     }
 }
 
-void probes_sample(const struct probes *p, struct simulation *s, double *row)
+static void stress(const struct probe *pr, const struct simulation *s, double out[5])
 {
-    const struct particles *solid = &s->kind[KIND_SOLID];
-    if (p->pressure) simulation_refresh(s);
-    *row++ = s->state.time;
-    for (int k = 0; k < p->n; k++) {
-        const struct probe *pr = &p->probe[k];
-        if (pr->quantity == PROBE_PRESSURE)
-            row[0] = simulation_pressure_at(s, pr->point[0], pr->point[1]);
-        else if (pr->quantity == PROBE_VELOCITY)
+    double mean[4] = {0};
+    for (int k = 0; k < pr->n; k++) {
+        double sigma[4], det;
+        solid_cauchy(&s->solid, &s->kind[KIND_SOLID], pr->particle[k], sigma, &det);
+        for (int c = 0; c < 4; c++) mean[c] += pr->weight[k] * sigma[c];
+    }
+    out[0] = mean[0], out[1] = mean[1], out[2] = mean[3], out[3] = mean[2];
+    out[4] = solid_von_mises(mean);
+}
+
+static void force(const struct probe *pr, const struct simulation *s, double out[3])
+{
+    const struct particles *const p = &s->kind[pr->kind];
+    out[0] = out[1] = out[2] = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != pr->body) continue;
+        out[0] += p->fx[i];
+        out[1] += p->fy[i];
+        out[2] += (p->x[i] - pr->point[0]) * p->fy[i] - (p->y[i] - pr->point[1]) * p->fx[i];
+    }
+}
+
+static void energy(const struct probe *pr, const struct simulation *s, double out[3])
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    double det, sum = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i] == pr->body) sum += square(p->vx[i]) + square(p->vy[i]);
+    out[0] = 0.5 * s->solid.body[pr->body].mass * sum;
+    solid_energy(&s->solid, p, pr->body, &out[1], &out[2], &det);
+}
+
+static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
+{
+    const struct sample at = simulation_sample(s, pr->point[0], pr->point[1]);
+    out[0] = at.vx;
+    out[1] = at.vy;
+}
+
+static void values(const struct probe *pr, const struct simulation *s, double *row)
+{
+    const struct particles *const solid = &s->kind[KIND_SOLID];
+    switch ((enum probe_quantity)pr->quantity) {
+    case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
+    case PROBE_VELOCITY:
+        if (pr->target == TARGET_SOLID_POINT)
             weighted_sum(pr, solid->vx, solid->vy, row);
         else
-            weighted_sum(pr, solid->ux, solid->uy, row);
-        row += quantity_columns(pr->quantity);
+            fluid_velocity(pr, s, row);
+        break;
+    case PROBE_PRESSURE: *row = simulation_pressure_at(s, pr->point[0], pr->point[1]); break;
+    case PROBE_STRESS: stress(pr, s, row); break;
+    case PROBE_LEVEL: *row = simulation_level(s, pr->point[0], pr->point[1]); break;
+    case PROBE_FORCE: force(pr, s, row); break;
+    case PROBE_FRONT: *row = simulation_front(s, pr->direction); break;
+    case PROBE_ENERGY: energy(pr, s, row); break;
+    case PROBE_FLUX: *row = simulation_flux(s, pr->point, pr->to); break;
+    case PROBE_QUANTITIES: break;
     }
+}
+
+void probes_sample(const struct probes *p, struct simulation *s, int file, double *row)
+{
+    if (p->file[file].refresh) simulation_refresh(s);
+    *row++ = s->state.time;
+    for (int k = 0; k < p->n; k++) {
+        if (p->probe[k].file != file) continue;
+        values(&p->probe[k], s, row);
+        row += p->probe[k].columns;
+    }
+}
+
+void probes_values(const struct probes *p, struct simulation *s, int probe, double *row)
+{
+    if (needs_refresh(p->probe[probe].quantity)) simulation_refresh(s);
+    values(&p->probe[probe], s, row);
 }

@@ -95,6 +95,8 @@ static enum err read_file(struct reference *r, const struct scene *s, struct are
 
 /* --- columns --- */
 
+enum { COLUMN_NAMES = 64 };
+
 /* The k-th name of a header, its length; NULL: there are fewer. */
 static const char *column_name(const char *header, int k, size_t *length)
 {
@@ -107,38 +109,52 @@ static const char *column_name(const char *header, int k, size_t *length)
     return header;
 }
 
-static enum err find_column(struct reference *r, const struct scene *s, const char *header,
-                            struct diag *d)
+/* Looks for the column in one file; its names are offered as near ones. */
+static bool has_column(struct reference *r, int file, const char *header, struct nearest *near,
+                       char names[][2 * SCENE_NAME], int *n_names)
+{
+    const char *const wanted = r->from->probe, *name;
+    size_t length;
+    for (int k = 1; (name = column_name(header, k, &length)) != NULL; k++) {
+        if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) {
+            r->file = file;
+            r->column = k;
+            return true;
+        }
+        if (*n_names >= COLUMN_NAMES) continue;
+        char *const kept = names[(*n_names)++];
+        snprintf(kept, sizeof names[0], "%.*s", (int)length, name);
+        nearest_offer(near, wanted, kept);
+    }
+    return false;
+}
+
+static enum err find_column(struct reference *r, const struct scene *s, int n,
+                            const char *const *header, struct diag *d)
 {
     struct nearest near = {0};
-    char place[PLACE_TEXT], names[64][2 * SCENE_NAME];
-    size_t length;
-    const char *name;
-    for (int k = 1; (name = column_name(header, k, &length)) != NULL; k++) {
-        if (strlen(r->from->probe) == length && strncmp(r->from->probe, name, length) == 0) {
-            r->column = k;
-            return ERR_OK;
-        }
-        if (k >= (int)COUNT_OF(names)) continue;
-        snprintf(names[k], sizeof names[k], "%.*s", (int)length, name);
-        nearest_offer(&near, r->from->probe, names[k]);
-    }
+    char place[PLACE_TEXT], names[COLUMN_NAMES][2 * SCENE_NAME], list[301] = "";
+    int n_names = 0;
+    for (int k = 0; k < n; k++)
+        if (has_column(r, k, header[k], &near, names, &n_names)) return ERR_OK;
+    for (int k = 0; k < n_names; k++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? "," : "", names[k]);
     scene_place(s, r->from->common.line, place);
     return diag_fail(d, ERR_INPUT,
-                     "%s: [reference %s] probe = %.80s: probes.csv has the columns %.300s%s%s",
-                     place, r->from->common.name, r->from->probe, header,
+                     "%s: [reference %s] probe = %.80s: the probes have the columns %s%s%s", place,
+                     r->from->common.name, r->from->probe, list,
                      near.name ? "; the nearest is " : "", near.name ? near.name : "");
 }
 
-enum err references_open(struct references *r, const struct scene *s, const char *header,
-                         struct arena *a, struct diag *d)
+enum err references_open(struct references *r, const struct scene *s, int n,
+                         const char *const *header, struct arena *a, struct diag *d)
 {
     r->n = s->n_reference;
     r->item = arena_alloc(a, (size_t)r->n, sizeof *r->item, "references", d);
     if (!r->item) return ERR_MEMORY;
     for (int k = 0; k < r->n; k++) {
         r->item[k] = (struct reference){.from = &s->reference[k]};
-        TRY(find_column(&r->item[k], s, header, d));
+        TRY(find_column(&r->item[k], s, n, header, d));
         if (*s->reference[k].file) TRY(read_file(&r->item[k], s, a, d));
     }
     return ERR_OK;
@@ -233,12 +249,14 @@ static void compare(const struct reference *r, const struct track *track, struct
     c->rms = sqrt(c->rms);
 }
 
-enum err references_score(const struct references *r, const char *probes_csv, struct score *score,
-                          struct diag *d)
+enum err references_score(const struct references *r, int file, const char *probes_csv,
+                          struct score *score, struct diag *d)
 {
     char *csv;
     size_t size;
-    if (r->n == 0) return ERR_OK;
+    bool any = false;
+    for (int k = 0; k < r->n; k++) any |= r->item[k].file == file;
+    if (!any) return ERR_OK;
     TRY(file_read(probes_csv, &csv, &size, d));
     size_t lines = 1, rows;
     for (const char *at = csv; *at; at = next_line(at)) lines++;
@@ -252,6 +270,7 @@ enum err references_score(const struct references *r, const char *probes_csv, st
     struct track track = {0, numbers, numbers + rows};
     struct track wanted = {0, numbers + 2 * rows, numbers + 3 * rows};
     for (int k = 0; k < r->n; k++) {
+        if (r->item[k].file != file) continue;
         read_track(&track, csv, r->item[k].column);
         compare(&r->item[k], &track, &wanted, &score[k]);
     }

@@ -9,7 +9,7 @@
 /* One [reference] section, ready to be compared. */
 struct reference {
     const struct scene_reference *from;
-    int column;        /* of probes.csv */
+    int file, column;  /* of probes.csv, or of another file of probes */
     int n;             /* rows of the file, in the order of time; 1: constant; 0: a formula */
     double *t, *value; /* [n] */
 };
@@ -30,15 +30,16 @@ struct score {
     double scale; /* largest size of the reference */
 };
 
-/* Reads the files of the scene's references and finds their columns among those of `header`. ERR_INPUT:
- * a file is missing or malformed, or there is no such column. Memory: the arena's. */
-enum err references_open(struct references *r, const struct scene *s, const char *header,
-                         struct arena *a, struct diag *d) SPHFSI_CHECKED;
+/* Reads the files of the scene's references and finds their columns among those of the n files of probes.
+ * ERR_INPUT: a file is missing or malformed, or there is no such column. Memory: the arena's. */
+enum err references_open(struct references *r, const struct scene *s, int n,
+                         const char *const *header, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Compares the rows of probes.csv. A file of several rows is compared at its rows, the probe
- * interpolated linearly between its own; a constant or a formula at the rows of the probe. */
-enum err references_score(const struct references *r, const char *probes_csv, struct score *score,
-                          struct diag *d) SPHFSI_CHECKED;
+/* Compares the rows of one file of probes with the references that it has the columns of. A reference of
+ * several rows is compared at its rows, the probe interpolated linearly between its own; a constant or a
+ * formula at the rows of the probe. */
+enum err references_score(const struct references *r, int file, const char *probes_csv,
+                          struct score *score, struct diag *d) SPHFSI_CHECKED;
 
 /* An object of the scores by name. */
 void references_write(struct json *j, const struct references *r, const struct score *score);

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum output { OUT_PROBES, OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
+enum output { OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
 
 /* An output on the grid k * interval of simulated time. */
 struct due {
@@ -32,12 +32,14 @@ struct run {
     struct arena arena;
     struct probes probes;
     struct references references;
-    struct score *score; /* of each reference */
-    struct series probe_rows, ledger_rows;
+    struct score *score;       /* of each reference */
+    struct series *probe_rows; /* [probes.n_files] */
+    struct series ledger_rows;
     struct snapshots snapshots;
     struct image image; /* state that was sound, for the guard */
     char *case_text;    /* effective case */
     char restarted_from[FOLDER_PATH], checkpoint[FOLDER_PATH];
+    struct due *probe_due; /* [probes.n_files] */
     struct due due[OUT_COUNT];
     struct record record;
     double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
@@ -60,29 +62,40 @@ static double due_time(const struct due *u)
     return u->interval > 0 ? session_time((double)u->k * u->interval) : (double)INFINITY;
 }
 
+/* The time up to which a restart keeps what is written. A row off its grid stands there because a run
+ * ended; one that does not end there does not write it. */
+static double kept_until(double interval, double time)
+{
+    if (interval == 0 || session_time(round(time / interval) * interval) == time) return time;
+    return nextafter(time, -1);
+}
+
 static void pass(struct due *u, double time)
 {
     u->written = time;
     while (due_time(u) <= time) u->k++;
 }
 
+static void set_interval(const struct run *r, struct due *u, double interval, double time)
+{
+    u->interval = interval;
+    u->k = interval > 0 ? (int64_t)(time / interval) : 0;
+    while (r->options->restart && due_time(u) < time) u->k++;
+    /* A run that was stopped right at an output may have written it, or not. */
+    u->k += due_time(u) <= u->written;
+}
+
 static void set_intervals(struct run *r, double time)
 {
     const struct scene_output *out = &r->session.scene.output;
     const double interval[OUT_COUNT] = {
-        [OUT_PROBES] = r->probes.n > 0 ? out->probe_interval : 0,
         [OUT_LEDGER] = out->ledger_interval,
         [OUT_SNAPSHOT] = out->snapshot_interval,
         [OUT_CHECKPOINT] = out->checkpoint_interval,
     };
-    for (int k = 0; k < OUT_COUNT; k++) {
-        struct due *u = &r->due[k];
-        u->interval = interval[k];
-        u->k = u->interval > 0 ? (int64_t)(time / u->interval) : 0;
-        while (r->options->restart && due_time(u) < time) u->k++;
-        /* A run that was stopped right at an output may have written it, or not. */
-        u->k += due_time(u) <= u->written;
-    }
+    for (int k = 0; k < OUT_COUNT; k++) set_interval(r, &r->due[k], interval[k], time);
+    for (int k = 0; k < r->probes.n_files; k++)
+        set_interval(r, &r->probe_due[k], r->probes.file[k].interval, time);
     /* The state at the beginning is the case itself, or the checkpoint that is forked. */
     r->due[OUT_CHECKPOINT].k += !r->options->restart;
 }
@@ -91,17 +104,17 @@ static double next_time(const struct run *r)
 {
     double next = r->session.scene.top.end_time;
     for (int k = 0; k < OUT_COUNT; k++) next = min2(next, due_time(&r->due[k]));
+    for (int k = 0; k < r->probes.n_files; k++) next = min2(next, due_time(&r->probe_due[k]));
     return next;
 }
 
 /* --- what --- */
 
-static enum err write_probes(struct run *r)
+static enum err write_probes(struct run *r, int file)
 {
     double row[SERIES_MAX_COLUMNS];
-    if (r->probes.n == 0) return ERR_OK;
-    probes_sample(&r->probes, r->s, row);
-    return series_row(&r->probe_rows, row, r->diag);
+    probes_sample(&r->probes, r->s, file, row);
+    return series_row(&r->probe_rows[file], row, r->diag);
 }
 
 static enum err write_ledger(struct run *r)
@@ -124,10 +137,12 @@ static void compare(struct run *r)
     r->record.references = &r->references;
     r->record.score = NULL;
     if (r->references.n == 0) return;
-    if (references_score(&r->references, r->probe_rows.path, r->score, &why))
+    r->record.score = r->score;
+    for (int k = 0; k < r->probes.n_files; k++) {
+        if (!references_score(&r->references, k, r->probe_rows[k].path, r->score, &why)) continue;
         diag_warn(&why, "the references were not compared: %s", why.text);
-    else
-        r->record.score = r->score;
+        r->record.score = NULL;
+    }
 }
 
 static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
@@ -182,7 +197,6 @@ static enum err write_snapshot(struct run *r)
 static enum err write_output(struct run *r, enum output what)
 {
     switch (what) {
-    case OUT_PROBES: return write_probes(r);
     case OUT_LEDGER: return write_ledger(r);
     case OUT_SNAPSHOT: return write_snapshot(r);
     case OUT_CHECKPOINT: return write_checkpoint(r);
@@ -191,15 +205,25 @@ static enum err write_output(struct run *r, enum output what)
     return ERR_OK;
 }
 
-/* Writes what is due now; at the end of the run everything that was not just written. */
+static bool is_due(const struct due *u, double time, bool at_end)
+{
+    return due_time(u) <= time || (at_end && u->written < time);
+}
+
+/* Writes what is due now; at the end of the run everything that was not just written. The checkpoint
+ * comes last: a restart takes it that all else has been written. */
 static enum err write_due(struct run *r, bool at_end)
 {
     const double begin = wall_clock(), time = r->s->state.time;
+    for (int k = 0; k < r->probes.n_files; k++) {
+        if (!is_due(&r->probe_due[k], time, at_end)) continue;
+        TRY(write_probes(r, k));
+        pass(&r->probe_due[k], time);
+    }
     for (int k = 0; k < OUT_COUNT; k++) {
-        struct due *u = &r->due[k];
-        if (due_time(u) > time && !(at_end && u->written < time)) continue;
+        if (!is_due(&r->due[k], time, at_end)) continue;
         TRY(write_output(r, (enum output)k));
-        pass(u, time);
+        pass(&r->due[k], time);
     }
     if (!at_end && image_share * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
@@ -355,31 +379,39 @@ static enum err put_case(struct run *r, const char *part)
     return folder_sync(r->folder.path, r->diag);
 }
 
-static enum err start_fresh(struct run *r, const char *header)
+static enum err start_fresh(struct run *r)
 {
     TRY(snapshots_create(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
                          r->diag));
     TRY(series_create(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, r->diag));
-    if (r->probes.n > 0)
-        TRY(series_create(&r->probe_rows, r->folder.path, "probes.csv", header, r->diag));
+    for (int k = 0; k < r->probes.n_files; k++) {
+        const struct probe_file *const f = &r->probes.file[k];
+        TRY(series_create(&r->probe_rows[k], r->folder.path, f->name, f->header, r->diag));
+        r->probe_due[k].written = -1;
+    }
     for (int k = 0; k < OUT_COUNT; k++) r->due[k].written = -1;
     r->record.first = simulation_ledger(r->s);
     return ERR_OK;
 }
 
-static enum err start_again(struct run *r, const char *header)
+static enum err start_again(struct run *r)
 {
     const double time = r->s->state.time;
+    const struct scene_output *const out = &r->session.scene.output;
     double row[SERIES_MAX_COLUMNS];
     /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
     TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
-    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION, time,
-                         &r->due[OUT_SNAPSHOT].written, r->diag));
-    TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, time, row,
-                      &r->due[OUT_LEDGER].written, r->diag));
-    if (r->probes.n > 0)
-        TRY(series_resume(&r->probe_rows, r->folder.path, "probes.csv", header, time, NULL,
-                          &r->due[OUT_PROBES].written, r->diag));
+    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
+                         kept_until(out->snapshot_interval, time), &r->due[OUT_SNAPSHOT].written,
+                         r->diag));
+    TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1,
+                      kept_until(out->ledger_interval, time), row, &r->due[OUT_LEDGER].written,
+                      r->diag));
+    for (int k = 0; k < r->probes.n_files; k++) {
+        const struct probe_file *const f = &r->probes.file[k];
+        TRY(series_resume(&r->probe_rows[k], r->folder.path, f->name, f->header,
+                          kept_until(f->interval, time), NULL, &r->probe_due[k].written, r->diag));
+    }
     r->due[OUT_CHECKPOINT].written = time;
     int k = 0;
 #define LEDGER(name, unit, meaning) r->record.first.name = row[k++];
@@ -429,7 +461,7 @@ static enum err load_checkpoint(struct run *r)
 }
 
 /* A restart touches the files of the run only after its checkpoint has been found sound. */
-static enum err begin(struct run *r, const char *header)
+static enum err begin(struct run *r)
 {
     char part[FOLDER_PATH];
     TRY(write_case(r, part));
@@ -439,7 +471,7 @@ static enum err begin(struct run *r, const char *header)
         return e;
     }
     TRY(put_case(r, part));
-    TRY(r->options->restart ? start_again(r, header) : start_fresh(r, header));
+    TRY(r->options->restart ? start_again(r) : start_fresh(r));
     const double time = r->s->state.time;
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
@@ -492,7 +524,7 @@ static enum err carry_out(struct run *r)
 
 static void end(struct run *r)
 {
-    series_close(&r->probe_rows);
+    for (int k = 0; r->probe_rows && k < r->probes.n_files; k++) series_close(&r->probe_rows[k]);
     series_close(&r->ledger_rows);
     snapshots_close(&r->snapshots);
     checkpoint_free(&r->image);
@@ -501,16 +533,34 @@ static void end(struct run *r)
     folder_close(&r->folder);
 }
 
-static enum err run_session(struct run *r, const char *path, enum folder_use use)
+static enum err create_probes(struct run *r)
 {
     TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
-    const char *header = probes_header(&r->session.scene, &r->arena, r->diag);
+    const size_t n = (size_t)r->probes.n_files;
+    r->probe_rows = arena_alloc(&r->arena, n, sizeof *r->probe_rows, "probes", r->diag);
+    for (size_t k = 0; r->probe_rows && k < n; k++) r->probe_rows[k].fd = -1;
+    r->probe_due = arena_alloc(&r->arena, n, sizeof *r->probe_due, "probes", r->diag);
+    return r->probe_rows && r->probe_due ? ERR_OK : ERR_MEMORY;
+}
+
+static enum err open_references(struct run *r)
+{
+    const int n = r->probes.n_files;
+    const char **const header =
+        arena_alloc(&r->arena, (size_t)n, sizeof *header, "headers", r->diag);
     if (!header) return ERR_MEMORY;
-    TRY(references_open(&r->references, &r->session.scene, header, &r->arena, r->diag));
+    for (int k = 0; k < n; k++) header[k] = r->probes.file[k].header;
+    TRY(references_open(&r->references, &r->session.scene, n, header, &r->arena, r->diag));
     r->score = arena_alloc(&r->arena, (size_t)r->references.n, sizeof *r->score, "scores", r->diag);
-    if (!r->score) return ERR_MEMORY;
+    return r->score ? ERR_OK : ERR_MEMORY;
+}
+
+static enum err run_session(struct run *r, const char *path, enum folder_use use)
+{
+    TRY(create_probes(r));
+    TRY(open_references(r));
     TRY(folder_open(&r->folder, path, use, r->diag));
-    TRY(begin(r, header));
+    TRY(begin(r));
     return carry_out(r);
 }
 
@@ -528,7 +578,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     r->options = o;
     r->diag = d;
     r->s = &r->session.simulation;
-    r->folder.lock = r->probe_rows.fd = r->ledger_rows.fd = -1;
+    r->folder.lock = r->ledger_rows.fd = -1;
     enum err e = session_open(&r->session, o, d);
     if (!e) {
         e = run_session(r, path, use);

@@ -74,7 +74,24 @@ enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
 enum hourglass_form { HOURGLASS_PRINTED, HOURGLASS_VARIATIONAL };
 enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
 enum motion_kind { MOTION_VELOCITY, MOTION_POLYNOMIAL, MOTION_TABLE };
-enum probe_quantity { PROBE_DISPLACEMENT, PROBE_VELOCITY, PROBE_PRESSURE };
+enum probe_quantity {
+#define QUANTITY(NAME, name, target, columns, meaning) PROBE_##NAME,
+#include "quantities.def"
+#undef QUANTITY
+    PROBE_QUANTITIES
+};
+/* What a quantity looks at: a material point of a solid, a point in the fluid, either (by whether a
+ * body is named), a solid, a solid or wall, all fluid, a line in the fluid. */
+enum probe_target {
+    TARGET_SOLID_POINT,
+    TARGET_FLUID_POINT,
+    TARGET_ANY_POINT,
+    TARGET_SOLID,
+    TARGET_BODY,
+    TARGET_FLUID,
+    TARGET_FLUID_LINE
+};
+enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
 
 /* Points sampled from the shapes of one kind. Solids: body after body, each in rows along its
  * longer side, so that neighbours in the lattice are mostly neighbours in memory. */
@@ -164,5 +181,9 @@ struct motion_state motion_at(const struct scene *s, int motion_index, double ti
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
+int scene_find_wall(const struct scene *s, const char *name);
+
+/* What a probe looks at; TARGET_ANY_POINT is resolved. */
+enum probe_target scene_probe_target(const struct scene_probe *probe);
 
 #endif

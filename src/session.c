@@ -43,6 +43,15 @@ double session_time(double time)
     return strtod(text, NULL);
 }
 
+static enum err check_interval(const struct scene *scene, const char *key, double interval,
+                               struct diag *d)
+{
+    const double least = 1e-9 * scene->top.end_time;
+    if (interval == 0 || interval >= least) return ERR_OK;
+    return diag_fail(d, ERR_INPUT, "%s: %s = %g s is less than %g s, a billionth of end_time",
+                     scene->path, key, interval, least);
+}
+
 /* Intervals follow the case's own end_time, so that a run that --until ends early writes the same
  * rows, and takes the same steps, as the whole one. */
 static enum err settle_times(struct scene *scene, double until, struct diag *d)
@@ -53,15 +62,12 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
     if (out->ledger_interval == 0) out->ledger_interval = end / 1000;
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
     scene->top.end_time = session_time(until > 0 ? until : end);
-    const double least = 1e-9 * scene->top.end_time;
-    const double interval[] = {out->probe_interval, out->ledger_interval, out->snapshot_interval,
-                               out->checkpoint_interval};
-    for (size_t k = 0; k < COUNT_OF(interval); k++)
-        if (interval[k] > 0 && interval[k] < least)
-            return diag_fail(d, ERR_INPUT,
-                             "%s: [output] an interval of %g s is less than %g s, a "
-                             "billionth of end_time",
-                             scene->path, interval[k], least);
+    TRY(check_interval(scene, "[output] probe_interval", out->probe_interval, d));
+    TRY(check_interval(scene, "[output] ledger_interval", out->ledger_interval, d));
+    TRY(check_interval(scene, "[output] snapshot_interval", out->snapshot_interval, d));
+    TRY(check_interval(scene, "[output] checkpoint_interval", out->checkpoint_interval, d));
+    for (int k = 0; k < scene->n_probe; k++)
+        TRY(check_interval(scene, "[probe] interval", scene->probe[k].interval, d));
     return ERR_OK;
 }
 

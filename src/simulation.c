@@ -376,30 +376,3 @@ uint64_t simulation_hash(struct simulation *s)
     for (size_t k = 0; k < sizeof s->state; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
     return h;
 }
-
-double simulation_pressure_at(const struct simulation *s, double x, double y)
-{
-    const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
-    const struct particles *const p = &s->kind[KIND_FLUID];
-    const double h = s->fluid.k.h;
-    const int cx = (int)floor((x - s->cells.lower[0]) / s->cells.side[0]);
-    const int cy = (int)floor((y - s->cells.lower[1]) / s->cells.side[1]);
-    double sum_w = 0, sum_p = 0;
-    /* Two cells either way: particles may have strayed since they were sorted. */
-    const int wide = cells_around(&s->cells, 0), high = cells_around(&s->cells, 1);
-    for (int ny = cy - 2; ny < cy - 2 + high; ny++) {
-        for (int nx = cx - 2; nx < cx - 2 + wide; nx++) {
-            const int32_t cell = cell_at(&s->cells, nx, ny);
-            if (cell < 0) continue;
-            for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-                const double dx = cells_short_way(&s->cells, 0, p->x[i] - x);
-                const double dy = cells_short_way(&s->cells, 1, p->y[i] - y);
-                const double w = kernel_w(hypot(dx, dy), h);
-                sum_w += w;
-                sum_p += w * eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
-            }
-        }
-    }
-    /* Below a tenth of a full neighbourhood the point is as good as dry. */
-    return sum_w * square(s->scene->top.dp) > 0.1 ? sum_p / sum_w : 0;
-}

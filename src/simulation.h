@@ -75,7 +75,28 @@ struct ledger simulation_ledger(struct simulation *s);
 /* Hash of every STATE field and state scalar; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *s);
 
+/* The fluid at a fixed point, by the kernel over its particles within reach. Positions and densities
+ * must be up to date, which they are between two steps. */
+struct sample {
+    double fill;     /* sum V W of the fluid: about 1 within it, 0.5 at its surface */
+    double occupied; /* the same of walls and structures */
+    double pressure; /* Pa, mean over the fluid (Shepard); 0 where dry */
+    double vx, vy;   /* m/s, likewise */
+};
+struct sample simulation_sample(const struct simulation *s, double x, double y);
+
 /* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
 double simulation_pressure_at(const struct simulation *s, double x, double y);
+
+/* Height of the free surface above (x, y): where the water first ends on the way up; y itself where
+ * no water is within reach above it. */
+double simulation_level(const struct simulation *s, double x, double y);
+
+/* Coordinate of the foremost fluid in a direction (enum probe_direction), without single drops of one
+ * or two particles, unless there is nothing else. NAN where there is no fluid. */
+double simulation_front(const struct simulation *s, int direction);
+
+/* Fluid through the line from a to b, to the right of that way, m^2/s per depth. */
+double simulation_flux(const struct simulation *s, const double a[2], const double b[2]);
 
 #endif

@@ -15,12 +15,6 @@ enum { VTK_VERTEX = 1 };
 
 /* --- a snapshot --- */
 
-static double von_mises(const double s[4])
-{
-    return sqrt(0.5 * (square(s[0] - s[1]) + square(s[1] - s[3]) + square(s[3] - s[0])) +
-                3 * square(s[2]));
-}
-
 /* Values of a dataset of points, of one particle, where they are floating. */
 static void real_values(enum data what, const struct simulation *s, enum kind kind, int64_t i,
                         double v[SNAPSHOT_WIDTH])
@@ -35,7 +29,7 @@ static void real_values(enum data what, const struct simulation *s, enum kind ki
     case D_POINTS: v[0] = p->x[i], v[1] = p->y[i]; break;
     case D_VELOCITY: v[0] = p->vx[i], v[1] = p->vy[i]; break;
     case D_PRESSURE: v[0] = p->p ? p->p[i] : 0; break;
-    case D_VON_MISES: v[0] = von_mises(sigma); break;
+    case D_VON_MISES: v[0] = solid_von_mises(sigma); break;
     case D_DET_F: v[0] = det; break;
     case D_DENSITY:
         v[0] = solid     ? s->solid.body[p->body[i]].density / det

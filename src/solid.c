@@ -476,13 +476,20 @@ static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pa
     return sum * (0.25 * s->body[pack->body].mass);
 }
 
-void solid_energy(const struct solid *s, const struct particles *p, double *elastic,
+double solid_von_mises(const double sigma[4])
+{
+    const double xx = sigma[0], yy = sigma[1], xy = sigma[2], zz = sigma[3];
+    return sqrt(0.5 * (square(xx - yy) + square(yy - zz) + square(zz - xx)) + 3 * square(xy));
+}
+
+void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
                   double *hourglass, double *det_low)
 {
     *elastic = *hourglass = 0;
     *det_low = INFINITY;
     for (int64_t k = 0; k < s->n_packs; k++) {
         const struct solid_pack *const pack = &s->pack[k];
+        if (body != SOLID_ALL && pack->body != body) continue;
         const struct solid_body *const b = &s->body[pack->body];
         const struct vtensor2 U = load_gradient(p, pack->i);
         const vwide stored = material_energy(b, U), det = vtensor2_det(deformation(U));

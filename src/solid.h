@@ -91,8 +91,13 @@ double solid_stiffening(const struct solid *s, const struct particles *p);
 void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
                   double *det);
 
-/* Strain energy and energy of the hourglass force of all particles, J/m; smallest det F. */
-void solid_energy(const struct solid *s, const struct particles *p, double *elastic,
+/* Von Mises stress, Pa, of a Cauchy stress (xx, yy, xy, zz). */
+double solid_von_mises(const double sigma[4]);
+
+/* Strain energy and energy of the hourglass force of a body, or of all (SOLID_ALL), J/m; smallest
+ * det F. */
+enum { SOLID_ALL = -1 };
+void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
                   double *hourglass, double *det_low);
 
 #endif

@@ -3,9 +3,36 @@
 # whatever the scene and the integrator, with checkpoints in between, and with another number of threads.
 set -u
 sphfsi=${SPHFSI:-./sphfsi}
-case=tests/fault/tiny.cfg
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
+# Every kind of probe, two of them with rates of their own, off the grid of the others.
+case=$dir/tiny.cfg
+cat tests/fault/tiny.cfg - >"$case" <<'END'
+[probe slow]
+quantity = force
+body = tank
+interval = 0.37 ms
+[probe fast]
+quantity = stress
+body = gate
+point = 0.13, 0.1
+interval = 31 us
+[probe front]
+quantity = front
+[probe level]
+quantity = level
+point = 0.05, 0
+[probe body]
+quantity = energy
+body = gate
+[probe flux]
+quantity = flux
+point = 0.15, 0
+to = 0.15, 0.1
+[probe flow]
+quantity = velocity
+point = 0.05, 0.05
+END
 failures=0
 
 fail() {
@@ -23,7 +50,9 @@ hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 
 agree() {
     [ -n "$(hash "$1")" ] && [ "$(hash "$1")" = "$(hash "$2")" ] || fail "$3: the states differ"
-    cmp "$1/probes.csv" "$2/probes.csv" || fail "$3: probes.csv differ"
+    for file in probes.csv probes_slow.csv probes_fast.csv; do
+        cmp "$1/$file" "$2/$file" || fail "$3: $file differ"
+    done
     cmp "$1/ledger.csv" "$2/ledger.csv" || fail "$3: ledger.csv differ"
     cmp "$1/case.cfg" "$2/case.cfg" || fail "$3: case.cfg differ"
 }
@@ -39,6 +68,11 @@ for integrator in symplectic verlet leapfrog; do
         agree "$dir/$name-whole" "$dir/$name-cut" "$name, cut twice"
     done
 done
+
+rows() { wc -l <"$dir/symplectic-mixed-whole/probes$1.csv"; }
+# A header, the rows of the grid from 0 on, and the end.
+[ "$(rows '') $(rows _slow) $(rows _fast)" = "202 57 648" ] ||
+    fail "rows of the three files: $(rows '') $(rows _slow) $(rows _fast)"
 
 set=(--set integrator=symplectic)
 run "${set[@]}" --out "$dir/threads" --threads 3 --until 0.01

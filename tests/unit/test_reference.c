@@ -54,7 +54,7 @@ static enum err open_with(const char *lines, const char *header)
     snprintf(text, sizeof text, "%s%s", head, lines);
     snprintf(path, sizeof path, "%s/a.cfg", folder);
     TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_parse(&scene, text, path, 0, NULL, &diag), diag.text);
-    return references_open(&references, &scene, header, &arena, &diag);
+    return references_open(&references, &scene, 1, &header, &arena, &diag);
 }
 
 static struct score score_of(const char *lines, const char *rows)
@@ -64,7 +64,7 @@ static struct score score_of(const char *lines, const char *rows)
     TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, open_with(lines, "time_s,P_dx_m,P_dy_m"), diag.text);
     put("probes.csv", rows);
     snprintf(path, sizeof path, "%s/probes.csv", folder);
-    TEST_ASSERT_EQUAL(ERR_OK, references_score(&references, path, &score, &diag));
+    TEST_ASSERT_EQUAL(ERR_OK, references_score(&references, 0, path, &score, &diag));
     return score;
 }
 
@@ -146,7 +146,7 @@ static void test_empty_file(void)
 static void test_unknown_column(void)
 {
     refuses("formula = 0\n", "time_s,P_dy_m,Q_p_Pa",
-            "[reference r] probe = P_dx_m: probes.csv has the columns time_s,P_dy_m,Q_p_Pa; the "
+            "[reference r] probe = P_dx_m: the probes have the columns P_dy_m,Q_p_Pa; the "
             "nearest is P_dy_m");
 }
 
