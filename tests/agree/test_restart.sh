@@ -50,8 +50,8 @@ hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 
 agree() {
     [ -n "$(hash "$1")" ] && [ "$(hash "$1")" = "$(hash "$2")" ] || fail "$3: the states differ"
-    for file in probes.csv probes_slow.csv probes_fast.csv; do
-        cmp "$1/$file" "$2/$file" || fail "$3: $file differ"
+    for file in "$1"/probes*.csv; do
+        cmp "$file" "$2/${file##*/}" || fail "$3: ${file##*/} differ"
     done
     cmp "$1/ledger.csv" "$2/ledger.csv" || fail "$3: ledger.csv differ"
     cmp "$1/case.cfg" "$2/case.cfg" || fail "$3: case.cfg differ"
