@@ -15,6 +15,7 @@
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
+#   make docs            write the reference of keys in docs/cases.md
 #   make check | format  style, layers and exported symbols | clang-format in place
 #   make install         to PREFIX (/usr/local), below DESTDIR
 #   make info | dist | clean | distclean
@@ -83,7 +84,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: faults fuzz reliability validate
+.PHONY: faults fuzz reliability validate docs
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -188,8 +189,12 @@ results: $(PROGRAM)
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
 	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)
 
-check: $(LIB)
+check: $(PROGRAM) $(LIB)
 	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)
+	@$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM) --check
+
+docs: $(PROGRAM)
+	$(Q)$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM)
 
 format:
 	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch])

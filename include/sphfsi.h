@@ -160,6 +160,22 @@ SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *option
 SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
                                                const char *path);
 
+/** Draws the scene of a case, before anything is run, as SVG: bodies as they are sampled, with names and
+ * sizes, clamps, probes. To options->out; NULL: preview-<name of the case>.svg. */
+SPHFSI_API enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options);
+
+/** Says, line by line through the message callback, where the methods that a case uses come from. */
+SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
+
+/** Says, line by line through the message callback of the options (all else in them may be zero), what a
+ * case file may hold: every section and key, in Markdown. */
+SPHFSI_API void sphfsi_keys(const struct sphfsi_options *options);
+
+/** A commented case to start from; NULL, with the known names in sphfsi_error(), if there is none of this
+ * name. The k-th name; NULL at the end of the list. */
+SPHFSI_API const char *sphfsi_template(const char *name);
+SPHFSI_API const char *sphfsi_template_name(int k);
+
 /** Says, line by line through the message callback of the options (all else in them may be zero),
  * what a checkpoint holds. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
 SPHFSI_API enum sphfsi_status sphfsi_inspect(const char *file,

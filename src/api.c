@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * The library's face: the public header in terms of the floors below. */
 #include "explain.h"
+#include "folder.h"
 #include "inspect.h"
+#include "manual.h"
 #include "params.h"
+#include "preview.h"
 #include "run.h"
 
 #include <stdio.h>
@@ -191,4 +194,70 @@ enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options 
 {
     struct diag d = session_diag(options);
     return result(&d, inspect_file(file, options, &d));
+}
+
+static void preview_path(const struct sphfsi_options *o, char path[FOLDER_PATH])
+{
+    const char *name = o->case_path ? o->case_path : "case";
+    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
+    const size_t length = strlen(name);
+    const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
+    if (o->out)
+        snprintf(path, FOLDER_PATH, "%s", o->out);
+    else
+        snprintf(path, FOLDER_PATH, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
+}
+
+enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    char path[FOLDER_PATH];
+    struct session *x = calloc(1, sizeof *x);
+    if (!x)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "preview: no memory for %zu bytes", sizeof *x));
+    enum err e = session_read(x, options, &d);
+    if (!e) {
+        preview_path(options, path);
+        e = preview_draw(&x->scene, path, &d);
+        if (!e) session_say(options, "%s: the scene as it would start; any browser shows it", path);
+        scene_free(&x->scene);
+    }
+    free(x);
+    return result(&d, e);
+}
+
+enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
+{
+    struct diag d = session_diag(options);
+    struct session *x = calloc(1, sizeof *x);
+    if (!x)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "cite: no memory for %zu bytes", sizeof *x));
+    const enum err e = session_read(x, options, &d);
+    if (!e) {
+        manual_cite(&x->scene, effects_of_scene(&x->scene), options);
+        scene_free(&x->scene);
+    }
+    free(x);
+    return result(&d, e);
+}
+
+void sphfsi_keys(const struct sphfsi_options *options) { manual_keys(options); }
+
+const char *sphfsi_template_name(int k) { return manual_template_name(k); }
+
+const char *sphfsi_template(const char *name)
+{
+    struct diag d = {.code = ERR_OK};
+    struct nearest near = {0};
+    char list[256] = "";
+    const char *const text = manual_template(name);
+    if (text) return text;
+    for (int k = 0; manual_template_name(k); k++) {
+        const size_t at = strlen(list);
+        snprintf(list + at, sizeof list - at, "%s%s", k ? ", " : "", manual_template_name(k));
+        nearest_offer(&near, name, manual_template_name(k));
+    }
+    result(&d, diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
+                         near.name ? ", but " : "", near.name ? near.name : "", list));
+    return NULL;
 }

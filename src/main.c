@@ -18,24 +18,49 @@ static const char usage[] =
     "  --restart [FILE]  go on from the newest valid checkpoint of the run, or from FILE\n"
     "  --fork FILE       start a new run, with other physics, from the checkpoint (or a run's "
     "newest)\n"
-    "  --inspect FILE    say what a checkpoint holds\n"
-    "  --explain         say what would be simulated and what it would cost; run nothing\n"
-    "  --effective       print the case in effect, every default spelled out; run nothing\n"
     "  --quiet           no progress, warnings only\n"
+    "instead of running:\n"
+    "  --preview         draw the scene with names, sizes, clamps and probes: preview-<case "
+    "name>.svg,\n"
+    "                    or the file that --out names\n"
+    "  --explain         say what would be simulated and what it would cost\n"
+    "  --effective       print the case in effect, every default spelled out\n"
+    "  --cite            print the sources of the methods that the case uses\n"
+    "  --inspect FILE    say what a checkpoint holds\n"
+    "  --new NAME        print a commented case to start from; without a name they are listed\n"
+    "  --keys            print all sections and keys of a case file\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
-static const char *const option_names[] = {"--out",       "--threads", "--until",   "--set",
-                                           "--restart",   "--explain", "--fork",    "--inspect",
-                                           "--effective", "--quiet",   "--version", "--help"};
-enum { OPTION_COUNT = sizeof option_names / sizeof option_names[0] };
+/* What the program does: RUN unless an option says otherwise. */
+enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, VERSION, HELP };
+
+/* Whether an option takes an operand. */
+enum takes { NOTHING, OPERAND, MAYBE };
+
+static const struct option {
+    const char *name;
+    enum takes takes;
+    enum mode mode;
+} options[] = {
+    {"--out", OPERAND, RUN},         {"--threads", OPERAND, RUN},
+    {"--until", OPERAND, RUN},       {"--set", OPERAND, RUN},
+    {"--restart", MAYBE, RUN},       {"--fork", OPERAND, RUN},
+    {"--quiet", NOTHING, RUN},       {"--preview", NOTHING, PREVIEW},
+    {"--explain", NOTHING, EXPLAIN}, {"--effective", NOTHING, EFFECTIVE},
+    {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
+    {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
+    {"--version", NOTHING, VERSION}, {"--help", NOTHING, HELP},
+};
+enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
 struct command {
     struct sphfsi_options options;
-    const char *inspect;
-    int explain, effective, quiet, done; /* done: nothing more to do */
-    int terminal, line_open;             /* a progress line stands on the terminal */
+    enum mode mode;
+    const char *operand; /* of the option that chose the mode */
+    int quiet;
+    int terminal, line_open; /* a progress line stands on the terminal */
     double last_share, last_line;
 };
 
@@ -138,103 +163,125 @@ static int is_checkpoint(const char *text)
     return n > 5 && strcmp(text + n - 5, ".ckpt") == 0;
 }
 
-static int apply(struct command *c, const char *option, const char *operand)
+static int apply(struct command *c, const struct option *option, const char *operand)
 {
     struct sphfsi_options *o = &c->options;
+    const char *const name = option->name;
     double number = 0;
-    if (strcmp(option, "--out") == 0) {
+    if (option->mode != RUN) {
+        c->mode = option->mode;
+        c->operand = operand;
+    } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
-    } else if (strcmp(option, "--threads") == 0) {
-        if (read_number(option, operand, 1, 4096, &number)) return 1;
+    } else if (strcmp(name, "--threads") == 0) {
+        if (read_number(name, operand, 1, 4096, &number)) return 1;
         o->threads = (int)number;
-    } else if (strcmp(option, "--until") == 0) {
-        if (read_number(option, operand, 1e-300, 1e9, &number)) return 1;
+    } else if (strcmp(name, "--until") == 0) {
+        if (read_number(name, operand, 1e-300, 1e9, &number)) return 1;
         o->until = number;
-    } else if (strcmp(option, "--set") == 0) {
+    } else if (strcmp(name, "--set") == 0) {
         if (!strchr(operand, '='))
-            return complain("%s %s: key=value or section.key=value is wanted", option, operand);
+            return complain("%s %s: key=value or section.key=value is wanted", name, operand);
         ((const char **)(uintptr_t)o->sets)[o->n_sets++] = operand;
-    } else if (strcmp(option, "--restart") == 0) {
+    } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
         o->restart_file = operand;
-    } else if (strcmp(option, "--fork") == 0) {
+    } else if (strcmp(name, "--fork") == 0) {
         o->fork = operand;
-    } else if (strcmp(option, "--inspect") == 0) {
-        c->inspect = operand;
-    } else if (strcmp(option, "--explain") == 0) {
-        c->explain = 1;
-    } else if (strcmp(option, "--effective") == 0) {
-        c->effective = 1;
-    } else if (strcmp(option, "--quiet") == 0) {
-        c->quiet = 1;
     } else {
-        fputs(strcmp(option, "--help") == 0 ? usage : sphfsi_version(), stdout);
-        if (strcmp(option, "--version") == 0) putchar('\n');
-        c->done = 1;
+        c->quiet = 1;
     }
     return 0;
 }
 
-/* 1: the option takes an operand; 2: it may have one; 0: none. */
-static int operands(const char *option)
-{
-    static const char *const needing[] = {"--out", "--threads", "--until",
-                                          "--set", "--fork",    "--inspect"};
-    for (size_t k = 0; k < sizeof needing / sizeof needing[0]; k++)
-        if (strcmp(option, needing[k]) == 0) return 1;
-    return strcmp(option, "--restart") == 0 ? 2 : 0;
-}
-
-/* Name of a known option in `argument`, "--name" or "--name=operand", or NULL. */
-static const char *find_option(const char *argument, const char **operand)
+/* The known option in `argument`, "--name" or "--name=operand", or NULL. */
+static const struct option *find_option(const char *argument, const char **operand)
 {
     const size_t length = strcspn(argument, "=");
     *operand = argument[length] == '=' ? argument + length + 1 : NULL;
     for (int k = 0; k < OPTION_COUNT; k++)
-        if (strlen(option_names[k]) == length && strncmp(option_names[k], argument, length) == 0)
-            return option_names[k];
+        if (strlen(options[k].name) == length && strncmp(options[k].name, argument, length) == 0)
+            return &options[k];
     return NULL;
 }
 
 static int unknown_option(const char *argument)
 {
-    const char *near = sphfsi_nearest(argument, option_names, OPTION_COUNT);
+    const char *names[OPTION_COUNT];
+    for (int k = 0; k < OPTION_COUNT; k++) names[k] = options[k].name;
+    const char *near = sphfsi_nearest(argument, names, OPTION_COUNT);
     return near ? complain("unknown option %s; the nearest one is %s", argument, near)
                 : complain("unknown option %s%s", argument, "");
 }
 
+/* Whether the word behind an option that may have an operand is one. Behind --restart stands a
+ * checkpoint, unless it can only be the case. */
+static int is_operand(const struct command *c, const struct option *option, const char *next)
+{
+    if (!next || next[0] == '-') return 0;
+    return option->mode == NEW || c->options.case_path || is_checkpoint(next);
+}
+
+static int parse_option(struct command *c, const char *argument, const char *next, int *used_next)
+{
+    const char *operand;
+    const struct option *option = find_option(argument, &operand);
+    if (!option) return unknown_option(argument);
+    if (option->takes == NOTHING && operand)
+        return complain("%s takes no operand, not '%s'", option->name, operand);
+    if (option->takes == OPERAND && !operand && !next)
+        return complain("%s: its operand is missing%s", option->name, "");
+    *used_next = !operand && (option->takes == OPERAND ||
+                              (option->takes == MAYBE && is_operand(c, option, next)));
+    return apply(c, option, *used_next ? next : operand);
+}
+
 static int parse(struct command *c, int argc, char **argv)
 {
-    for (int k = 1; k < argc && !c->done; k++) {
-        if (argv[k][0] != '-') {
-            if (c->options.case_path)
-                return complain("one case at a time is run, not %s and %s", c->options.case_path,
-                                argv[k]);
+    for (int k = 1; k < argc; k++) {
+        int used_next = 0;
+        if (argv[k][0] == '-') {
+            if (parse_option(c, argv[k], k + 1 < argc ? argv[k + 1] : NULL, &used_next)) return 1;
+            if (c->mode == HELP || c->mode == VERSION) return 0;
+        } else if (c->options.case_path) {
+            return complain("one case at a time is run, not %s and %s", c->options.case_path,
+                            argv[k]);
+        } else {
             c->options.case_path = argv[k];
-            continue;
         }
-        const char *operand, *option = find_option(argv[k], &operand);
-        if (!option) return unknown_option(argv[k]);
-        const char *next = k + 1 < argc ? argv[k + 1] : NULL;
-        const int takes = operands(option);
-        if (takes == 0 && operand)
-            return complain("%s takes no operand, not '%s'", option, operand);
-        if (takes == 1 && !operand && !next)
-            return complain("%s: its operand is missing%s", option, "");
-        /* A word behind --restart is the checkpoint, unless it can only be the case. */
-        const int optional = takes == 2 && !operand && next && next[0] != '-' &&
-                             (c->options.case_path || is_checkpoint(next));
-        if ((takes == 1 && !operand) || optional) {
-            operand = next;
-            k++;
-        }
-        if (apply(c, option, operand)) return 1;
+        k += used_next;
     }
-    if (!c->done && !c->inspect && !c->options.case_path) {
-        fputs(usage, stderr);
-        return complain("%s%s", "no case is given", "");
+    if (c->mode >= INSPECT || c->options.case_path) return 0;
+    fputs(usage, stderr);
+    return complain("%s%s", "no case is given", "");
+}
+
+/* A template on the standard output, or the names of all. */
+static enum sphfsi_status print_template(const struct command *c)
+{
+    const char *text = c->operand ? sphfsi_template(c->operand) : NULL;
+    if (text) fputs(text, stdout);
+    if (text || c->operand) return text ? SPHFSI_OK : SPHFSI_INPUT;
+    for (int k = 0; sphfsi_template_name(k); k++) puts(sphfsi_template_name(k));
+    return SPHFSI_OK;
+}
+
+static enum sphfsi_status carry_out(struct command *c)
+{
+    struct sphfsi_options *const o = &c->options;
+    switch (c->mode) {
+    case RUN: install_signals(); return sphfsi_run(o);
+    case PREVIEW: return sphfsi_preview(o);
+    case EXPLAIN: return sphfsi_explain(o);
+    case EFFECTIVE: return sphfsi_effective(o, "/dev/stdout");
+    case CITE: return sphfsi_cite(o);
+    case INSPECT: return sphfsi_inspect(c->operand, o);
+    case NEW: return print_template(c);
+    case KEYS: sphfsi_keys(o); break;
+    case VERSION: puts(sphfsi_version()); break;
+    case HELP: fputs(usage, stdout); break;
     }
-    return 0;
+    return SPHFSI_OK;
 }
 
 static int execute(struct command *c)
@@ -244,11 +291,7 @@ static int execute(struct command *c)
     c->options.progress = c->quiet ? NULL : on_progress;
     c->options.context = c;
     c->options.requests = &requests;
-    if (!c->explain && !c->inspect && !c->effective) install_signals();
-    const enum sphfsi_status status = c->inspect     ? sphfsi_inspect(c->inspect, &c->options)
-                                      : c->effective ? sphfsi_effective(&c->options, "/dev/stdout")
-                                      : c->explain   ? sphfsi_explain(&c->options)
-                                                     : sphfsi_run(&c->options);
+    const enum sphfsi_status status = carry_out(c);
     clear_line(c);
     if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
     return sphfsi_exit_status(status, requests.stop);
@@ -261,7 +304,7 @@ int main(int argc, char **argv)
     if (!sets) return complain("%s%s", "no memory", "");
     c.options.sets = sets;
     int status = parse(&c, argc, argv);
-    if (!status && !c.done) status = execute(&c);
+    if (!status) status = execute(&c);
     free(sets);
     return status;
 }

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# The command line: what is printed instead of running, exit statuses, quiet, no colour in a file.
+set -u
+sphfsi=$(realpath "${SPHFSI:-./sphfsi}")
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+cd "$dir" || exit 1
+failures=0
+
+fail() {
+    echo "FAILED: $1"
+    failures=$((failures + 1))
+}
+
+# Exit status $1 and, on standard error, one line that has $2 in it.
+refuses() {
+    local status=$1 words=$2
+    shift 2
+    "$sphfsi" "$@" >out 2>err
+    [ $? = "$status" ] || fail "$*: exit status"
+    [ "$(wc -l <err)" = 1 ] && grep -qF -- "$words" err || fail "$*: $(cat err)"
+}
+
+names=$("$sphfsi" --new) || fail "--new without a name"
+[ "$(wc -l <<<"$names")" -ge 4 ] || fail "--new lists '$names'"
+for name in $names; do
+    "$sphfsi" --new "$name" >"$name.cfg" || fail "--new $name"
+    "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] || fail "--preview $name"
+done
+refuses 1 "but dam_break" --new dambreak
+refuses 1 "did you mean \`gravity\`" --preview gate.cfg --set gravty=1,2
+refuses 1 "nearest one is --preview" --previw gate.cfg
+refuses 1 "takes no operand" --keys=all
+
+"$sphfsi" cantilever.cfg --quiet --until 1e-3 --threads 1 >out 2>&1 || fail "a short run"
+[ ! -s out ] || fail "--quiet says: $(cat out)"
+[ -s runs/cantilever/summary.json ] || fail "a run does not go to runs/<case name>"
+"$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out loud >out 2>err || fail "a run"
+grep -q $'\033' out err && fail "colours or cursor movements in a file"
+
+"$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
+"$sphfsi" --keys | grep -qF '| `end_time` | number | s | **needed** |' || fail "--keys"
+"$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "effects that are on" out || fail "--explain"
+"$sphfsi" --version >/dev/null && "$sphfsi" --help >/dev/null || fail "--version, --help"
+"$sphfsi" >out 2>err
+[ $? = 1 ] && grep -q "no case is given" err || fail "no case"
+
+[ $failures = 0 ] || exit 1
