@@ -102,6 +102,8 @@ int slice_count(struct slice text, char separator);
 
 /* case_check.c: what concerns several values at once. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
+/* case_output.c */
+enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case_probes.c */
 enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 

@@ -212,6 +212,7 @@ enum err case_check(struct reader *r)
     TRY(check_fluids(r));
     TRY(check_motions(r));
     TRY(check_joined(r));
+    TRY(case_check_output(r));
     TRY(case_check_probes(r));
     TRY(check_references(r));
     return effects_check(s, r->diag);

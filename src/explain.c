@@ -2,6 +2,7 @@
 #include "explain.h"
 
 #include "params.h"
+#include "snapshot_file.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -79,6 +80,23 @@ static void say_fields(const struct simulation *s, const struct sphfsi_options *
                 1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
 }
 
+static void say_output(const struct simulation *s, const struct sphfsi_options *o)
+{
+    const struct snapshot_layout layout = snapshot_file_layout(s->scene);
+    const double end = s->scene->top.end_time, every = s->scene->output.snapshot_interval;
+    const double snapshots = floor(end / every * (1 + 1e-12)) + 1,
+                 point = (double)snapshot_file_point(&layout);
+    double points = 0;
+    for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
+    session_say(o, "output");
+    session_say(o,
+                "  fields.vtkhdf: %.0f snapshots, %.0f points of %.0f bytes: %.3g MB %s; while the "
+                "run lasts "
+                "there are two of it",
+                snapshots, points, point, 1e-6 * snapshots * points * point,
+                layout.deflate ? "before compression" : "(no compression)");
+}
+
 static void say_bounds(const struct simulation *s, const struct sphfsi_options *o)
 {
     int binding = -1;
@@ -154,6 +172,7 @@ enum err explain_session(struct session *x, const struct sphfsi_options *o, stru
     say_scene(x, o);
     say_effects(s, o);
     say_fields(s, o);
+    say_output(s, o);
     char precision[SCENE_NAME], integrator[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
     param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);

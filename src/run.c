@@ -167,7 +167,7 @@ static enum err capture(struct run *r, struct diag *d)
 /* A checkpoint must not outlive the rows before it through a power cut: they are synced first. */
 static enum err store(struct run *r, struct diag *d)
 {
-    TRY(series_sync(&r->probe_rows, d));
+    for (int k = 0; k < r->probes.n_files; k++) TRY(series_sync(&r->probe_rows[k], d));
     TRY(series_sync(&r->ledger_rows, d));
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }

@@ -27,12 +27,14 @@ static bool has_key(const struct place *p, const char *key)
     return strncmp(p->line, key, n) == 0 && p->line[n] == ' ';
 }
 
-/* The end of a run and how often it writes may change at a restart; all else is another case. */
+/* The end of a run and how often it writes may change at a restart; all else is another case, or another
+ * layout of its file of snapshots. */
 static bool matters_to_restart(const struct place *p)
 {
     if (p->length == 0 || p->line[0] == '#') return false;
     if (!p->section[0]) return !has_key(p, "end_time");
-    return !in_section(p, "output");
+    return !in_section(p, "output") || has_key(p, "snapshot_fields") ||
+           has_key(p, "snapshot_precision");
 }
 
 /* The state: where particles are and what they weigh, the kernel they see, the pressure that their

@@ -66,6 +66,7 @@ enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: 
 enum slip { SLIP_FREE, SLIP_NONE };
 enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum idle { IDLE_SKIP, IDLE_WORK };
+enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
 enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
@@ -182,6 +183,9 @@ struct motion_state motion_at(const struct scene *s, int motion_index, double ti
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
 int scene_find_wall(const struct scene *s, const char *name);
+
+/* Whether the snapshots of a scene have a field of pointdata.def. */
+bool scene_snapshot_has(const struct scene *s, const char *field);
 
 /* What a probe looks at; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);

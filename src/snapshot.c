@@ -103,7 +103,7 @@ static int64_t count_points(const struct simulation *s)
     return n;
 }
 
-static bool append_snapshot(hid_t file, struct simulation *s)
+static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, struct simulation *s)
 {
     int64_t rows[D_COUNT];
     const int64_t n = count_points(s);
@@ -113,6 +113,7 @@ static bool append_snapshot(hid_t file, struct simulation *s)
     bool ok = buffer && root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
               append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]);
     for (int k = D_POINTS; ok && k < D_COUNT; k++) {
+        if (!layout->has[k]) continue;
         const int64_t count = gather((enum data)k, s, buffer);
         ok = snapshot_file_append(root, (enum data)k, count, buffer);
     }
@@ -153,7 +154,7 @@ static bool claim_space(const struct snapshots *w, int64_t points)
 {
 #if _POSIX_ADVISORY_INFO > 0
     const int64_t have = file_bytes(w->spare), named = file_bytes(w->path);
-    const int64_t want = (have > named ? have : named) + snapshot_file_bytes(points);
+    const int64_t want = (have > named ? have : named) + snapshot_file_bytes(&w->layout, points);
     const int fd = folder_open_file(w->spare, O_WRONLY | O_CREAT);
     const int why = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)want);
     if (fd >= 0) close(fd);
@@ -176,8 +177,9 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
     const hid_t named = is_named ? H5Fopen(w->path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
     if (steps < 0) steps = named >= 0 ? snapshot_file_steps(named) : 0;
     const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points) : -1;
-    const bool ok = file >= 0 && (named < 0 || snapshot_file_catch_up(named, file, steps)) &&
-                    (!s || append_snapshot(file, s));
+    const bool ok = file >= 0 &&
+                    (named < 0 || snapshot_file_catch_up(&w->layout, named, file, steps)) &&
+                    (!s || append_snapshot(&w->layout, file, s));
     if (named >= 0) H5Fclose(named);
     return (file < 0 || H5Fclose(file) >= 0) && ok;
 }
@@ -243,6 +245,7 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
                           const char *version, struct diag *d)
 {
     w->scene = scene;
+    w->layout = snapshot_file_layout(scene);
     w->version = version;
     TRY(folder_join(w->folder, folder, ".", d));
     TRY(folder_join(w->path, folder, "fields.vtkhdf", d));

@@ -5,12 +5,14 @@
 
 #include "folder.h"
 #include "simulation.h"
+#include "snapshot_file.h"
 
 /* A snapshot is appended to a spare copy, which then takes the name; so the file with the name is
  * whole at any moment, and the other one lags a snapshot behind and is caught up first. */
 struct snapshots {
     char folder[FOLDER_PATH], path[FOLDER_PATH], spare[FOLDER_PATH];
     const struct scene *scene;
+    struct snapshot_layout layout;
     const char *version; /* of the program */
 };
 

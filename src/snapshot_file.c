@@ -8,7 +8,7 @@
 /* How the rows of a dataset grow with a snapshot of n points. */
 enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
-enum item { F64, F32, I64, I32, I8, U8 };
+enum item { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
 
 /* The datasets below /VTKHDF. Values are handed to HDF5 as double where the file holds a floating
  * type and as int64 otherwise; HDF5 converts. */
@@ -31,16 +31,10 @@ static const struct column {
     [D_CONNECTIVITY] = {"Connectivity", BY_POINT, I64, 1},
     [D_OFFSETS] = {"Offsets", BY_POINT_AND_ONE, I64, 1},
     [D_TYPES] = {"Types", BY_POINT, U8, 1},
-    [D_VELOCITY] = {"PointData/velocity", BY_POINT, F32, 3},
-    [D_DENSITY] = {"PointData/density", BY_POINT, F32, 1},
-    [D_PRESSURE] = {"PointData/pressure", BY_POINT, F32, 1},
-    [D_KIND] = {"PointData/kind", BY_POINT, I8, 1},
-    [D_ID] = {"PointData/id", BY_POINT, I64, 1},
-    [D_BODY] = {"PointData/body", BY_POINT, I32, 1},
-    [D_STRESS] = {"PointData/stress", BY_POINT, F32, 6},
-    [D_VON_MISES] = {"PointData/von_mises", BY_POINT, F32, 1},
-    [D_DISPLACEMENT] = {"PointData/displacement", BY_POINT, F32, 3},
-    [D_DET_F] = {"PointData/det_F", BY_POINT, F32, 1},
+#define POINTDATA(NAME, name, item, width, choice) \
+    [D_##NAME] = {"PointData/" #name, BY_POINT, item, width},
+#include "pointdata.def"
+#undef POINTDATA
 };
 
 enum {
@@ -50,13 +44,12 @@ enum {
     POINT_CHUNK_MOST = 1 << 14,
     METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
 };
-static const unsigned deflate_level = 2;
 
-static hid_t file_type(enum item item)
+static hid_t file_type(enum item item, bool doubles)
 {
     switch (item) {
     case F64: return H5T_IEEE_F64LE;
-    case F32: return H5T_IEEE_F32LE;
+    case REAL: return doubles ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
     case I64: return H5T_STD_I64LE;
     case I32: return H5T_STD_I32LE;
     case I8: return H5T_STD_I8LE;
@@ -67,7 +60,22 @@ static hid_t file_type(enum item item)
 
 static hid_t memory_type(const struct column *c)
 {
-    return c->item == F64 || c->item == F32 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+    return c->item == F64 || c->item == REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+}
+
+struct snapshot_layout snapshot_file_layout(const struct scene *scene)
+{
+    struct snapshot_layout layout = {.doubles = scene->output.snapshot_precision ==
+                                                SNAPSHOT_PRECISION_DOUBLE,
+                                     .deflate = H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0
+                                                    ? (unsigned)scene->output.snapshot_compression
+                                                    : 0};
+    for (int k = 0; k < D_COUNT; k++) layout.has[k] = true;
+#define POINTDATA(NAME, name, item, width, choice) \
+    layout.has[D_##NAME] = !(choice) || scene_snapshot_has(scene, #name);
+#include "pointdata.def"
+#undef POINTDATA
+    return layout;
 }
 
 /* --- one dataset --- */
@@ -77,7 +85,8 @@ static int64_t point_chunk(int64_t n)
     return n < POINT_CHUNK_LEAST ? POINT_CHUNK_LEAST : n < POINT_CHUNK_MOST ? n : POINT_CHUNK_MOST;
 }
 
-static bool create_dataset(hid_t root, const struct column *c, int64_t n)
+static bool create_dataset(hid_t root, const struct snapshot_layout *layout, const struct column *c,
+                           int64_t n)
 {
     const hsize_t width = (hsize_t)c->width;
     const hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width};
@@ -86,11 +95,11 @@ static bool create_dataset(hid_t root, const struct column *c, int64_t n)
     const hid_t space = H5Screate_simple(rank, size, most);
     const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
     bool ok = space >= 0 && how >= 0 && H5Pset_chunk(how, rank, chunk) >= 0;
-    if (ok && c->growth != BY_STEP && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0)
-        ok = H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, deflate_level) >= 0;
-    const hid_t set =
-        ok ? H5Dcreate2(root, c->name, file_type(c->item), space, H5P_DEFAULT, how, H5P_DEFAULT)
-           : -1;
+    if (ok && c->growth != BY_STEP && layout->deflate > 0)
+        ok = H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, layout->deflate) >= 0;
+    const hid_t set = ok ? H5Dcreate2(root, c->name, file_type(c->item, layout->doubles), space,
+                                      H5P_DEFAULT, how, H5P_DEFAULT)
+                         : -1;
     ok = set >= 0 && H5Dclose(set) >= 0;
     H5Pclose(how);
     H5Sclose(space);
@@ -157,7 +166,7 @@ static bool put_numbers(hid_t at, const char *name, enum item item, const void *
 {
     const hsize_t size = (hsize_t)n;
     const hid_t space = n > 1 ? H5Screate_simple(1, &size, NULL) : H5Screate(H5S_SCALAR);
-    const hid_t a = H5Acreate2(at, name, file_type(item), space, H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t a = H5Acreate2(at, name, file_type(item, true), space, H5P_DEFAULT, H5P_DEFAULT);
     const bool ok =
         a >= 0 && H5Awrite(a, item == F64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64, values) >= 0;
     H5Aclose(a);
@@ -192,10 +201,13 @@ bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *pr
         ok = group >= 0 && (k > 0 || put_numbers(group, "NSteps", I64, &none, 1));
         H5Gclose(group);
     }
-    for (int k = 0; ok && k < D_COUNT; k++) ok = create_dataset(root, &columns[k], n);
+    const struct snapshot_layout layout = snapshot_file_layout(scene);
+    for (int k = 0; ok && k < D_COUNT; k++)
+        ok = !layout.has[k] || create_dataset(root, &layout, &columns[k], n);
     /* All arrays of points are read from the same place: their offsets are one dataset. */
-    for (int k = D_VELOCITY; ok && k < D_COUNT; k++) {
+    for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++) {
         char link[64];
+        if (!layout.has[k]) continue;
         snprintf(link, sizeof link, "Steps/PointDataOffsets/%s", strchr(columns[k].name, '/') + 1);
         ok = H5Lcreate_hard(root, columns[D_POINTS_BEFORE].name, root, link, H5P_DEFAULT,
                             H5P_DEFAULT) >= 0;
@@ -267,12 +279,14 @@ static bool copy_rows(hid_t from, hid_t to, const struct column *c, int64_t unti
     return (target < 0 || H5Dclose(target) >= 0) && ok;
 }
 
-bool snapshot_file_catch_up(hid_t from, hid_t to, int64_t steps)
+bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
+                            int64_t steps)
 {
     int64_t rows[D_COUNT];
     void *buffer = malloc((size_t)COPY_ROWS * SNAPSHOT_WIDTH * 8);
     bool ok = buffer && snapshot_file_rows(from, steps, rows);
-    for (int k = 0; ok && k < D_COUNT; k++) ok = copy_rows(from, to, &columns[k], rows[k], buffer);
+    for (int k = 0; ok && k < D_COUNT; k++)
+        ok = !layout->has[k] || copy_rows(from, to, &columns[k], rows[k], buffer);
     free(buffer);
     return ok && snapshot_file_set_steps(to, steps);
 }
@@ -281,11 +295,19 @@ int snapshot_file_width(enum data what) { return columns[what].width; }
 
 bool snapshot_file_real(enum data what) { return memory_type(&columns[what]) == H5T_NATIVE_DOUBLE; }
 
-/* The rows, and once more the last chunk of each dataset, which moves when it grows. */
-int64_t snapshot_file_bytes(int64_t n)
+int64_t snapshot_file_point(const struct snapshot_layout *layout)
 {
-    int64_t row = 0;
+    int64_t bytes = 0;
     for (int k = 0; k < D_COUNT; k++)
-        row += (int64_t)H5Tget_size(file_type(columns[k].item)) * columns[k].width;
-    return row * (n + 1 + point_chunk(n)) + METADATA_BYTES;
+        if (layout->has[k] && columns[k].growth != BY_STEP)
+            bytes += (int64_t)H5Tget_size(file_type(columns[k].item, layout->doubles)) *
+                     columns[k].width;
+    return bytes;
+}
+
+/* The rows, and once more the last chunk of each dataset, which moves when it grows; METADATA_BYTES
+ * cover what grows by the step. */
+int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n)
+{
+    return snapshot_file_point(layout) * (n + 1 + point_chunk(n)) + METADATA_BYTES;
 }

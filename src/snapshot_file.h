@@ -22,20 +22,22 @@ enum data {
     D_CONNECTIVITY,
     D_OFFSETS,
     D_TYPES,
-    D_VELOCITY,
-    D_DENSITY,
-    D_PRESSURE,
-    D_KIND,
-    D_ID,
-    D_BODY,
-    D_STRESS,
-    D_VON_MISES,
-    D_DISPLACEMENT,
-    D_DET_F,
-    D_COUNT
+#define POINTDATA(NAME, name, item, width, choice) D_##NAME,
+#include "pointdata.def"
+#undef POINTDATA
+    D_COUNT,
+    D_FIRST_POINTDATA = D_TYPES + 1
 };
 
 enum { SNAPSHOT_WIDTH = 6 }; /* most columns of one of them */
+
+/* What a scene's file holds. */
+struct snapshot_layout {
+    bool has[D_COUNT];
+    bool doubles; /* arrays of points are float64 */
+    unsigned deflate;
+};
+struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
 /* Makes the groups and empty datasets of a new file for snapshots of about n points. */
 bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n);
@@ -58,9 +60,11 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
 bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT]);
 
 /* Appends to `to` what it lacks of the first `steps` snapshots of `from`. */
-bool snapshot_file_catch_up(hid_t from, hid_t to, int64_t steps);
+bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
+                            int64_t steps);
 
-/* Bytes that a snapshot of n points adds at most. */
-int64_t snapshot_file_bytes(int64_t n);
+/* Bytes of a point before compression; bytes that a snapshot of n points adds at most. */
+int64_t snapshot_file_point(const struct snapshot_layout *layout);
+int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n);
 
 #endif

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS = [
     "base simd tensor2 errors",
     "fields groups particles morton cells smoothing eos",
-    "params effects rules phases quantities case expr units geometry motion scene",
+    "params effects rules phases quantities pointdata case expr units geometry motion scene",
     "fluid variants solid material",
     "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",
     "folder json probes reference snapshot checkpoint report series",

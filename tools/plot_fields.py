@@ -48,7 +48,7 @@ def arguments():
     return args
 
 
-def load_panel(run, snapshots, time, entries):
+def load_panel(run, snapshots, time, entries, quiet=False):
     """What one panel shows: for each kind the positions, bodies and values to colour by."""
     step, dp = snapshots.nearest(time), run.spacing()
     panel = {"time": snapshots.times[step], "dp": dp, "failure": run.failure()}
@@ -60,6 +60,8 @@ def load_panel(run, snapshots, time, entries):
         if name in entries and len(x):
             data = snapshots.load(step, entries[name][0])[here]
             panel[name]["value"] = field_values(entries[name], data, x, dp)
+    if quiet:
+        return panel
     print(f"{run.name}: step {step}, t = {panel['time']:g} s (asked for {time:g} s)")
     return panel
 
@@ -101,7 +103,7 @@ def frame(panels):
     return x0, x1, y0, y1
 
 
-def draw_outline(axes, x, dp):
+def draw_outline(axes, x, dp, **style):
     """Outline of one body: where its particles, smeared over a fine grid, fill half of the area."""
     if not len(x):
         return
@@ -116,7 +118,8 @@ def draw_outline(axes, x, dp):
         share += np.bincount(node[:, 0] * size[1] + node[:, 1],
                              np.exp(-2 * distance2) * 2 / np.pi, len(share))
     axes.contour(corner[0] + step * np.arange(size[0]), corner[1] + step * np.arange(size[1]),
-                 share.reshape(size).T, [0.5], colors="black", linewidths=0.5, zorder=4)
+                 share.reshape(size).T, [0.5],
+                 **{"colors": "black", "linewidths": 0.5, "zorder": 4, **style})
 
 
 def draw_panel(axes, panel, scales, window):
@@ -137,7 +140,9 @@ def draw_panel(axes, panel, scales, window):
             discs.set(array=scale["factor"] * panel[name]["value"][seen], cmap=scale["cmap"],
                       norm=scale["norm"])
         axes.add_collection(discs)
-        if name != "fluid":
+        if name == "fluid":  # its free surface, and where it leaves walls and bodies
+            draw_outline(axes, x, dp, colors="0.3", linewidths=0.3, zorder=1.5)
+        else:
             bodies = panel[name]["body"][seen]
             for body in np.unique(bodies):
                 draw_outline(axes, x[bodies == body], dp)

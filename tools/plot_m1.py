@@ -18,7 +18,14 @@ EXAMPLE = """example:
   tools/plot_m1.py runs/gate --column M1_dy_m --reference lab.csv --label "Lab, test 3"
 """
 WORDS = {"dx": "horizontal displacement", "dy": "vertical displacement", "p": "pressure",
-         "vx": "horizontal velocity", "vy": "vertical velocity"}
+         "vx": "horizontal velocity", "vy": "vertical velocity", "level": "water level",
+         "sxx": "stress $\\sigma_{xx}$", "syy": "stress $\\sigma_{yy}$",
+         "szz": "stress $\\sigma_{zz}$", "sxy": "stress $\\sigma_{xy}$",
+         "mises": "von Mises stress", "front": "front", "q": "flux",
+         "fx": "horizontal force", "fy": "vertical force", "mz": "moment",
+         "kinetic": "kinetic energy", "elastic": "strain energy", "hourglass": "hourglass energy"}
+UNITS = {"SI": "SI", "m_per_s": "m/s", "N_per_m": "N/m", "Nm_per_m": "N m/m", "J_per_m": "J/m",
+         "m2_per_s": "m²/s"}
 DASHES = [(0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (8, 3))]
 GREYS = ["0.25", "0.45", "0.35", "0.55"]
 MARKERS = "osD^v<>"
@@ -50,12 +57,12 @@ def arguments():
 
 
 def choose_columns(args, runs, tables, refs):
-    shared = [name for name in tables[0] if name != "time_s" and all(name in t for t in tables)]
+    shared = [name for name in tables[0] if all(name in t for t in tables)]
     for run, table in zip(runs, tables):
         for name in args.column:
             if name not in table:
-                raise BadFile(f"{run.folder / 'probes.csv'}: no column {name}; "
-                              f"it has {', '.join(table)}")
+                raise BadFile(f"{run.folder}: no column {name} in its probes*.csv; "
+                              f"there are {', '.join(table)}")
     named = [name for name in shared if any(ref.probe == name for ref in refs)]
     usual = [name for name in ("M1_dx_m", "M1_dy_m") if name in shared]
     chosen = args.column or named or usual or shared[:1]
@@ -116,10 +123,10 @@ def reference_style(refs):
 
 def column_words(column, size):
     """Words for the axis, factor and name of the unit of a column <probe>_<quantity>_<unit>."""
-    parts = re.fullmatch(r"(.+)_(dx|dy|vx|vy|p)_(.+)", column)
+    parts = re.fullmatch(rf"(.+?)_({'|'.join(WORDS)})_([^_]+(?:_per_[^_]+)?)", column)
     scale, unit = runfiles.scaled_unit(parts[3] if parts else "", size)
     words = f"{parts[1]} {WORDS[parts[2]]}" if parts else column
-    unit = unit.replace("_per_", "/") or "SI"
+    unit = UNITS.get(unit or "SI", unit)
     return f"{words} ({unit})", scale, unit
 
 
@@ -219,7 +226,7 @@ def write_csv(path, rows):
 def main():
     args = arguments()
     runs = runfiles.make_runs(args.run)
-    tables = [run.table("probes.csv") for run in runs]
+    tables = [run.probes() for run in runs]
     refs = case_references(runs)
     columns = choose_columns(args, runs, tables, refs)
     refs += [Reference(columns[0], path, Path(path).stem, label or Path(path).stem)
@@ -228,10 +235,11 @@ def main():
     for column in columns:
         curves[column] = []
         for run, table in zip(runs, tables):
-            sound = np.isfinite(table[column])
+            time, value = table[column]
+            sound = np.isfinite(value)
             if not sound.any():
-                raise BadFile(f"{run.folder / 'probes.csv'}: {column} holds no number")
-            curves[column].append((run, table["time_s"][sound], table[column][sound]))
+                raise BadFile(f"{run.folder}: {column} holds no number")
+            curves[column].append((run, time[sound], value[sound]))
     figure, units = draw_figure(columns, curves, refs)
     rows = [(run, ref, compare(time, value, ref)) for column in columns
             for run, time, value in curves[column] for ref in refs if ref.probe == column]

@@ -129,6 +129,18 @@ class Run:
             raise BadFile(f"{self.folder / name}: no column time_s")
         return columns
 
+    def probes(self):
+        """What the probes recorded, {column: (time, value)}, in the order of the case: all of
+        probes.csv, then the files of probes with a rate of their own."""
+        found = {}
+        files = [path for path in [self.folder / "probes.csv"] if path.exists()]
+        files += sorted(self.folder.glob("probes_*.csv"))
+        for path in files or [self.folder / "probes.csv"]:
+            table = self.table(path.name)
+            time = table.pop("time_s")
+            found.update((name, (time, value)) for name, value in table.items())
+        return found
+
     def case(self):
         path = self.folder / "case.cfg"
         return read_case(path) if path.exists() else []

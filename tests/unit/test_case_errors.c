@@ -215,6 +215,16 @@ static const struct {
      "bad.cfg:6: [motion lift] start = 2 s must come before stop = 1 s"},
     {TOP FLUID "[motion lift]\nkind = polynomial\n", NULL,
      "bad.cfg:6: [motion lift] kind = polynomial needs `poly_x` or `poly_y`"},
+    {TOP SOLID "[output]\nsnapshot_fields = velocity presure\n", NULL,
+     "bad.cfg:8: [output] snapshot_fields: there is no field `presure`; did you mean `pressure`? "
+     "Known: all, or of velocity density pressure kind id body stress von_mises displacement "
+     "det_F"},
+    {TOP SOLID "[probe F]\nquantity = force\nbody = aa\n", NULL,
+     "bad.cfg:8: body = aa: no [solid] or [wall] of that name"},
+    {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
+     "bad.cfg:6: [probe F] measures front of the fluid, at a fixed place; `body` is to go"},
+    {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
+     "bad.cfg:6: [probe Q] measures through a line: `point` and `to` are its ends and must differ"},
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
      "bad.cfg:8: [probe M1] needs `body`, the solid it belongs to"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,

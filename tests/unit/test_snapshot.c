@@ -161,6 +161,64 @@ static void fewer_particles_are_fewer_points(void)
     TEST_ASSERT_TRUE(counts[0] - counts[1] == 7);
 }
 
+/* Whether a dataset is in the file, and the bytes of one of its items. */
+static size_t item_bytes(const char *name)
+{
+    const hid_t file = H5Fopen(writer.path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    size_t bytes = 0;
+    if (H5Lexists(file, name, H5P_DEFAULT) > 0) {
+        const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set);
+        bytes = H5Tget_size(type);
+        H5Tclose(type);
+        H5Dclose(set);
+    }
+    H5Fclose(file);
+    return bytes;
+}
+
+static void open_with(const char *const *sets, int n)
+{
+    tearDown();
+    diag = (struct diag){.code = ERR_OK};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
+}
+
+static void fields_and_precision_are_chosen(void)
+{
+    static const char *const sets[] = {"output.snapshot_fields=velocity stress",
+                                       "output.snapshot_precision=double",
+                                       "output.snapshot_compression=0"};
+    static double v[3 * 3000];
+    double last;
+    open_with(sets, 3);
+    begin(tiny_path("chosen"));
+    simulation.kind[KIND_FLUID].vx[0] = 1.0 / 3;
+    for (int k = 0; k < 3; k++) write_one(k);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_resume(&writer, tiny_path("chosen"), &scene, "1.2.3", 1,
+                                                   &last, &diag));
+    write_one(5);
+    times_are((double[]){0, 1, 5}, 3);
+    TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/velocity"));
+    TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/stress"));
+    TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/id"));
+    TEST_ASSERT_EQUAL_UINT(0, item_bytes("VTKHDF/PointData/pressure"));
+    TEST_ASSERT_EQUAL_UINT(0, item_bytes("VTKHDF/Steps/PointDataOffsets/pressure"));
+    read_all("VTKHDF/PointData/velocity", v, COUNT_OF(v));
+    TEST_ASSERT_TRUE(v[0] == 1.0 / 3);
+    /* Positions 24, Connectivity 8, Offsets 8, Types 1, velocity 24, stress 48, kind 1, id 8, body 4 */
+    TEST_ASSERT_EQUAL_INT(126, (int)snapshot_file_point(&writer.layout));
+}
+
+static void everything_in_single_precision_unless_chosen(void)
+{
+    begin(tiny_path("all"));
+    write_one(0);
+    TEST_ASSERT_EQUAL_UINT(4, item_bytes("VTKHDF/PointData/velocity"));
+    TEST_ASSERT_EQUAL_UINT(4, item_bytes("VTKHDF/PointData/det_F"));
+    TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/Points"));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -172,5 +230,7 @@ int main(void)
     RUN_TEST(an_open_reader_does_no_harm);
     RUN_TEST(what_cannot_be_written_is_named);
     RUN_TEST(fewer_particles_are_fewer_points);
+    RUN_TEST(fields_and_precision_are_chosen);
+    RUN_TEST(everything_in_single_precision_unless_chosen);
     return UNITY_END();
 }

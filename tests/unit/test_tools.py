@@ -5,6 +5,7 @@
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -179,6 +180,32 @@ def test_fields(tmp, good, halted):
     refuses("not a temporal VTKHDF file", "plot_fields", broken)
 
 
+def test_animate(tmp, good, halted):
+    out = draws(good / "fields.gif", "animate", good, "--out", good / "fields.gif", "--dpi", 60)
+    assert f"{STEPS} frames" in out and "t = 0 to 0.4 s" in out, out
+    status, out, err = tool("animate", good, halted, "--field", "vorticity", "--out",
+                            tmp / "both.mp4", "--dpi", 60)
+    if shutil.which("ffmpeg"):
+        assert status == 0 and (tmp / "both.mp4").stat().st_size > 3000, err
+    else:
+        assert status == 1 and "ffmpeg" in err and err.count("\n") == 1, err
+    refuses("neither .mp4 nor .gif", "animate", good, "--out", tmp / "film.avi")
+
+
+def test_rates(tmp):
+    """A probe with a rate of its own stands in a file of its own, and is drawn all the same."""
+    run = write_run(tmp / "rates")
+    t = np.linspace(0, END, 1001)
+    np.savetxt(run / "probes_load.csv", np.stack([t, 1e3 * t, -t, 0 * t], axis=1), delimiter=",",
+               header="time_s,load_fx_N_per_m,load_fy_N_per_m,load_mz_Nm_per_m", comments="")
+    draws(run / "m1.png", "plot_m1", run, "--column", "load_fx_N_per_m", "--column", "M1_dx_m")
+    refuses("load_mz_Nm_per_m", "plot_m1", run, "--column", "load_mz")
+    from plot_m1 import column_words
+    assert column_words("a_b_mz_Nm_per_m", 1.0) == ("a_b moment (N m/m)", 1.0, "N m/m")
+    assert column_words("gauge_level_m", 0.1)[0] == "gauge water level (mm)"
+    assert column_words("Q_q_m2_per_s", 1.0)[2] == "m²/s"
+
+
 def test_vorticity():
     """Exact for a linear velocity, at a free surface and out of order too; none in a row."""
     from snapshots import vorticity
@@ -213,6 +240,8 @@ def main():
         test_vorticity()
         test_m1(tmp, good, halted)
         test_fields(tmp, good, halted)
+        test_animate(tmp, good, halted)
+        test_rates(tmp)
         test_ledger(tmp, good)
     print("the tools draw what they are given and refuse what is broken")
 
