@@ -8,6 +8,7 @@
 #   make memcheck        every shipped case, coarse and short, under valgrind
 #   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
 #   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
+#   make absence         an effect that is off costs nothing: instructions and bytes (ARGS=--quick: together)
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make bench           build and run bench/*.c
@@ -84,7 +85,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: faults fuzz reliability validate docs
+.PHONY: absence faults fuzz reliability validate docs
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -160,6 +161,9 @@ analyze:
 faults: $(PROGRAM)
 	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' KILLS=50 FULL_STEPS=40; \
 	 for t in kill full fork; do bash tests/fault/test_$$t.sh; done; bash tests/agree/test_restart_cases.sh
+
+absence:
+	@ABSENCE=1 SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py $(ARGS)
 
 fuzz:
 	@tools/fuzz.sh $(ARGS)

@@ -117,6 +117,14 @@ static enum err check_motions(struct reader *r)
         if (!(m->start < m->stop))
             return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                             m->common.name, m->start, m->stop);
+        if (m->kind == MOTION_SINE && m->period == 0)
+            return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
+        if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)
+            return bad_line(r, line, "[motion %s] angle_amplitude needs `period`", m->common.name);
+        if (m->kind == MOTION_ROTATION && m->angle_amplitude == 0 && m->angle.n == 0 && !*m->file)
+            return bad_line(
+                r, line, "[motion %s] kind = rotation needs `angle`, `angle_amplitude` or `file`",
+                m->common.name);
         if (m->kind == MOTION_TABLE && !*m->file)
             return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
         if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)

@@ -75,18 +75,20 @@ bool cells_outgrown(const struct cells *c, double reach);
 SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
 SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }
 
-/* The cell at (cx, cy), up to one step beyond the grid through joined sides; -1: there is none. */
+/* A column (axis 0) or row up to one step beyond the grid, brought through joined sides; -1: none. */
+SPHFSI_INLINE int cells_place(const struct cells *c, int axis, int place)
+{
+    const int n = axis ? c->ny : c->nx;
+    if (place >= 0 && place < n) return place;
+    if (!c->joined[axis]) return -1;
+    return place < 0 ? place + n : place - n;
+}
+
+/* The cell at (cx, cy), up to one step beyond the grid; -1: there is none. */
 SPHFSI_INLINE int32_t cell_at(const struct cells *c, int cx, int cy)
 {
-    if (cx < 0 || cx >= c->nx) {
-        if (!c->joined[0]) return -1;
-        cx += cx < 0 ? c->nx : -c->nx;
-    }
-    if (cy < 0 || cy >= c->ny) {
-        if (!c->joined[1]) return -1;
-        cy += cy < 0 ? c->ny : -c->ny;
-    }
-    return cy * c->nx + cx;
+    const int x = cells_place(c, 0, cx), y = cells_place(c, 1, cy);
+    return x < 0 || y < 0 ? -1 : y * c->nx + x;
 }
 
 /* Cells along an axis from two before a cell to two behind it, none twice through joined sides. */

@@ -6,16 +6,6 @@
 #include "params.h"
 #include "particles.h"
 
-/* -DSPHFSI_WITHOUT=NAME leaves an effect out of the program: its bit is no bit, and the compiler takes
- * out what asks for it. For the proof that an effect costs nothing where it is off. */
-#ifdef SPHFSI_WITHOUT
-#define EFFECT_NUMBER_OF(name) EFFECT_##name
-#define EFFECT_NUMBER(name) EFFECT_NUMBER_OF(name)
-#define EFFECT_LEFT_OUT (1 << EFFECT_NUMBER(SPHFSI_WITHOUT))
-#else
-#define EFFECT_LEFT_OUT 0
-#endif
-
 enum effect {
 #define EFFECT(name, when, key, equation, groups, kind, meaning) EFFECT_##name,
 #include "effects.def"
@@ -23,9 +13,21 @@ enum effect {
     EFFECT_COUNT
 };
 
+/* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP leaves effects out of the program: their bits are no bits, and
+ * the compiler takes out what asks for them. For the proof that an effect costs nothing where it is off
+ * (tests/agree/test_absence.py). */
+enum {
+#define EFFECT(name, when, key, equation, groups, kind, meaning) OUT_##name = 1 << EFFECT_##name,
+#include "effects.def"
+#undef EFFECT
+};
+#ifndef SPHFSI_WITHOUT
+#define SPHFSI_WITHOUT 0
+#endif
+
 enum {
 #define EFFECT(name, when, key, equation, groups, kind, meaning) \
-    FX_##name = 1 << EFFECT_##name & ~EFFECT_LEFT_OUT,
+    FX_##name = 1 << EFFECT_##name & ~(SPHFSI_WITHOUT),
 #include "effects.def"
 #undef EFFECT
 };

@@ -42,9 +42,10 @@ SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lan
                vload((const real *)lanes->field[LANE_Y] + start + k) + shift_y);
         for (int m = LANE_U; m < LANE_FIELDS; m++)
             vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
-        for (int m = LANE_FIELDS; m < lanes->n; m++)
-            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
     }
+    for (int m = LANE_FIELDS; m < lanes->n; m++)
+        for (int32_t k = 0; k < count; k += LANES)
+            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
     return n + count;
 }
 
@@ -55,10 +56,14 @@ static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
     const struct cell_list *list = &c->kind[kind];
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
     const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
+    const int column[3] = {cells_place(c, 0, cx - 1), cx, cells_place(c, 0, cx + 1)};
     for (int dy = -1; dy <= 1; dy++) {
+        const int row = cells_place(c, 1, cy + dy);
+        if (row < 0) continue;
         for (int dx = -1; dx <= 1; dx++) {
-            const int32_t other = cell_at(c, cx + dx, cy + dy);
-            if (other < 0 || list->count[other] == 0) continue;
+            if (column[dx + 1] < 0) continue;
+            const int32_t other = row * c->nx + column[dx + 1];
+            if (list->count[other] == 0) continue;
             n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
                             (real)(dx * side_x), (real)(dy * side_y));
         }
@@ -70,7 +75,8 @@ static void tile_close(struct SWEEP(tile) * tile, int n)
 {
     const int padded = (n + LANES - 1) / LANES * LANES;
     for (; n < padded; n++) {
-        for (int m = 0; m < tile->fields; m++) tile->field[m][n] = 0;
+        for (int m = 0; m < LANE_FIELDS; m++) tile->field[m][n] = 0;
+        for (int m = LANE_FIELDS; m < tile->fields; m++) tile->field[m][n] = 0;
         tile->field[LANE_X][n] = TILE_FAR;
     }
     tile->n = padded;

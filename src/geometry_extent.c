@@ -33,8 +33,11 @@ static void include_motion(const struct scene *s, int wall, double low[2], doubl
     if (at_low[0] > at_high[0]) return;
     for (int k = 0; k < TIMES; k++) {
         const struct motion_state m = motion_at(s, motion, s->top.end_time * k / (TIMES - 1));
-        include(low, high, (const double[]){at_low[0] + m.d[0], at_low[1] + m.d[1]});
-        include(low, high, (const double[]){at_high[0] + m.d[0], at_high[1] + m.d[1]});
+        for (int corner = 0; corner < 4; corner++) {
+            const double x = corner & 1 ? at_high[0] : at_low[0];
+            const double y = corner & 2 ? at_high[1] : at_low[1];
+            include(low, high, motion_of_point(&m, x, y).x);
+        }
     }
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Prescribed motion of walls: constant velocity, a polynomial of time, or a table. */
+ * Prescribed motion: constant velocity, a polynomial of time, a table, a sine, or a rotation. */
 #include "case.h"
 
 #include <errno.h>
@@ -126,7 +126,8 @@ enum err motion_load(struct scene *s, struct diag *d)
     if (!s->motion_data) return ERR_MEMORY;
     for (int k = 0; k < s->n_motion; k++) {
         const struct scene_motion *m = &s->motion[k];
-        if (m->kind != MOTION_TABLE) continue;
+        const bool tabled = m->kind == MOTION_TABLE || (m->kind == MOTION_ROTATION && *m->file);
+        if (!tabled) continue;
         char path[4096 + SCENE_TEXT], place[PLACE_TEXT];
         scene_place(s, m->common.line, place);
         if (!scene_file(s, m->file, path, sizeof path))
@@ -179,7 +180,7 @@ static void hermite_at(const double *t, const double *d, const double *v, int k,
 
 static struct motion_state table_at(const struct motion_table *table, double t)
 {
-    struct motion_state m = {{0}, {0}, {0}};
+    struct motion_state m = {0};
     const int n = table->n;
     if (n == 0 || t <= table->t[0]) return m;
     if (t >= table->t[n - 1]) {
@@ -200,10 +201,33 @@ static struct motion_state table_at(const struct motion_table *table, double t)
     return m;
 }
 
+/* sin(w t + phase) - sin(phase) with its first two derivatives. */
+static void sine_at(const struct scene_motion *motion, double t, double *d, double *v, double *a)
+{
+    const double phase = motion->phase;
+    const double w = motion->period > 0 ? 2 * 3.14159265358979323846 / motion->period : 0;
+    *d = sin(w * t + phase) - sin(phase);
+    *v = w * cos(w * t + phase);
+    *a = -w * w * sin(w * t + phase);
+}
+
+static void turning_at(const struct scene_motion *motion, const struct motion_table *table,
+                       double t, struct motion_state *m)
+{
+    double d, v, a;
+    sine_at(motion, t, &d, &v, &a);
+    polynomial_at(&motion->angle, t, &m->angle, &m->rate, &m->angular_acceleration);
+    const struct motion_state tabled = table_at(table, t);
+    m->angle += motion->angle_amplitude * d + tabled.d[0];
+    m->rate += motion->angle_amplitude * v + tabled.v[0];
+    m->angular_acceleration += motion->angle_amplitude * a + tabled.a[0];
+    memcpy(m->centre, motion->centre, sizeof m->centre);
+}
+
 static struct motion_state moving_at(const struct scene_motion *motion,
                                      const struct motion_table *table, double t)
 {
-    struct motion_state m = {{0}, {0}, {0}};
+    struct motion_state m = {0};
     switch ((enum motion_kind)motion->kind) {
     case MOTION_VELOCITY:
         for (int c = 0; c < 2; c++) {
@@ -216,20 +240,47 @@ static struct motion_state moving_at(const struct scene_motion *motion,
         polynomial_at(&motion->poly_y, t, &m.d[1], &m.v[1], &m.a[1]);
         return m;
     case MOTION_TABLE: return table_at(table, t);
+    case MOTION_SINE:
+        for (int c = 0; c < 2; c++) {
+            sine_at(motion, t, &m.d[c], &m.v[c], &m.a[c]);
+            m.d[c] *= motion->amplitude[c];
+            m.v[c] *= motion->amplitude[c];
+            m.a[c] *= motion->amplitude[c];
+        }
+        return m;
+    case MOTION_ROTATION: turning_at(motion, table, t, &m); return m;
     }
     return m;
 }
 
+struct motion_point motion_of_point(const struct motion_state *m, double X, double Y)
+{
+    struct motion_point p;
+    const double from[2] = {X - m->centre[0], Y - m->centre[1]}, place[2] = {X, Y};
+    const double c = cos(m->angle), s = sin(m->angle);
+    const double arm[2] = {c * from[0] - s * from[1], s * from[0] + c * from[1]};
+    for (int k = 0; k < 2; k++) {
+        const double across = k == 0 ? -arm[1] : arm[0];
+        /* So that what does not turn keeps its bits. */
+        p.x[k] = m->angle == 0 ? place[k] + m->d[k] : m->centre[k] + arm[k] + m->d[k];
+        p.v[k] = m->v[k] + m->rate * across;
+        p.a[k] = m->a[k] + m->angular_acceleration * across - m->rate * m->rate * arm[k];
+    }
+    return p;
+}
+
 struct motion_state motion_at(const struct scene *s, int motion_index, double time)
 {
-    struct motion_state m = {{0}, {0}, {0}};
+    struct motion_state m = {0};
     if (motion_index < 0 || motion_index >= s->n_motion) return m;
     const struct scene_motion *motion = &s->motion[motion_index];
     if (time < motion->start) return m;
     const bool over = time >= motion->stop;
     const double end = over ? motion->stop : time;
     m = moving_at(motion, &s->motion_data[motion_index], end - motion->start);
-    if (over) memset(m.v, 0, sizeof m.v);
-    if (over) memset(m.a, 0, sizeof m.a);
+    if (!over) return m;
+    memset(m.v, 0, sizeof m.v);
+    memset(m.a, 0, sizeof m.a);
+    m.rate = m.angular_acceleration = 0;
     return m;
 }

@@ -32,9 +32,27 @@ static bool same_place(const struct motion_state *a, const struct motion_state *
     return memcmp(a, b, sizeof *a) == 0;
 }
 
+static void turn_body(const struct moving_body *b, struct particles *p)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t i = b->first; i < b->end; i++) {
+        const struct motion_point at = motion_of_point(&b->placed, p->X[i], p->Y[i]);
+        p->x[i] = at.x[0];
+        p->y[i] = at.x[1];
+        p->vx[i] = at.v[0];
+        p->vy[i] = at.v[1];
+        p->ax[i] = at.a[0];
+        p->ay[i] = at.a[1];
+    }
+}
+
 static void place_body(const struct moving_body *b, struct particles *p)
 {
     const struct motion_state *const m = &b->placed;
+    if (m->angle != 0 || m->rate != 0 || m->angular_acceleration != 0) {
+        turn_body(b, p);
+        return;
+    }
 #pragma omp parallel for schedule(static)
     for (int64_t i = b->first; i < b->end; i++) {
         p->x[i] = p->X[i] + m->d[0];
@@ -54,7 +72,7 @@ void moving_place(struct moving *m, const struct scene *s, struct particles *wal
         if (b->known && same_place(&now, &b->placed) && !m->idle_is_work) continue;
         b->placed = now;
         b->known = true;
-        b->rests = now.v[0] == 0 && now.v[1] == 0;
+        b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
         m->moved[b->section] = true;
         place_body(b, walls);
     }

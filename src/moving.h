@@ -12,7 +12,7 @@ struct moving_body {
     int64_t first, end;
     struct motion_state placed; /* where it was put last, if `known` */
     bool known;
-    bool rests; /* placed.v == 0 */
+    bool rests; /* placed without velocity */
 };
 
 struct moving {

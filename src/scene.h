@@ -74,7 +74,7 @@ enum plane { PLANE_STRAIN, PLANE_STRESS };
 enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
 enum hourglass_form { HOURGLASS_PRINTED, HOURGLASS_VARIATIONAL };
 enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
-enum motion_kind { MOTION_VELOCITY, MOTION_POLYNOMIAL, MOTION_TABLE };
+enum motion_kind { MOTION_VELOCITY, MOTION_POLYNOMIAL, MOTION_TABLE, MOTION_SINE, MOTION_ROTATION };
 enum probe_quantity {
 #define QUANTITY(NAME, name, target, columns, meaning) PROBE_##NAME,
 #include "quantities.def"
@@ -173,11 +173,19 @@ double scene_expr_at(const struct expr *e, double x, double y);
  * an equal scene. */
 enum err scene_write(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Prescribed motion: displacement from the initial place, velocity and acceleration at a time. */
+/* Prescribed motion: displacement from the initial place, velocity and acceleration at a time; and the
+ * angle about a centre with its first two derivatives. */
 struct motion_state {
     double d[2], v[2], a[2];
+    double centre[2], angle, rate, angular_acceleration;
 };
 struct motion_state motion_at(const struct scene *s, int motion_index, double time);
+
+/* Where a motion puts a point that began at (X, Y): x, v and a. */
+struct motion_point {
+    double x[2], v[2], a[2];
+};
+struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
 
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);

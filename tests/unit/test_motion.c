@@ -72,6 +72,67 @@ static void test_polynomial(void)
     TEST_ASSERT_EQUAL_DOUBLE(4, motion_at(&scene, 0, 9).d[1]);
 }
 
+/* A sine from its turning point: A (sin(w t - pi/2) + 1), w = 4 pi: at t = 1/8 s half way up. */
+static void test_sine(void)
+{
+    must_read("kind = sine\namplitude = 0.3, -0.1\nperiod = 0.5\nphase = -pi/2\n");
+    const double w = 4 * M_PI;
+    expect(0, 0, 0, 0.3 * w * w);
+    expect(0.125, 0.3, 0.3 * w, 0);
+    expect(0.25, 0.6, 0, -0.3 * w * w);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.2, motion_at(&scene, 0, 0.25).d[1]);
+}
+
+static struct motion_point point_at(double t, double X, double Y)
+{
+    const struct motion_state m = motion_at(&scene, 0, t);
+    return motion_of_point(&m, X, Y);
+}
+
+/* A quarter turn a second about (1, 2): (3, 2) goes to (1, 4), with velocity (pi/2) 2 to the left and
+ * acceleration (pi/2)^2 2 towards the centre. */
+static void test_rotation_by_hand(void)
+{
+    must_read("kind = rotation\ncentre = 1, 2\nangle = pi/2\nstop = 2\n");
+    const struct motion_point p = point_at(1, 3, 2);
+    const double x[2] = {1, 4}, v[2] = {-M_PI, 0}, a[2] = {0, -M_PI * M_PI / 2};
+    for (int c = 0; c < 2; c++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, x[c], p.x[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[c], p.v[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, a[c], p.a[c]);
+    }
+    const struct motion_point late = point_at(7, 3, 2); /* after the stop: half a turn, at rest */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -1, late.x[0]);
+    TEST_ASSERT_TRUE(late.v[0] == 0 && late.v[1] == 0 && late.a[0] == 0 && late.a[1] == 0);
+}
+
+/* Velocity and acceleration are the derivatives of the place (central differences over 2e-4 s are good
+ * to 1e-8 of f'''), and distances do not change. All three sources of the angle together. */
+static void test_rotation_is_rigid_and_smooth(void)
+{
+    write_table("0 0 0\n0.5 0.4 0\n1 0.2 0\n");
+    must_read("kind = rotation\ncentre = 0.01, 0.02\nangle = 0.5, -1\nangle_amplitude = 0.2\n"
+              "period = 1\nphase = 0.3\nfile = test_motion.tmp\n");
+    const double h = 1e-4;
+    for (double t = 0.1; t < 0.95; t += 0.17) {
+        const struct motion_point before = point_at(t - h, 0.3, -0.1), p = point_at(t, 0.3, -0.1);
+        const struct motion_point after = point_at(t + h, 0.3, -0.1), q = point_at(t, 0, 0.2);
+        for (int c = 0; c < 2; c++) {
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.x[c] - before.x[c]) / (2 * h), p.v[c]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.v[c] - before.v[c]) / (2 * h), p.a[c]);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, hypot(0.3, 0.3), hypot(p.x[0] - q.x[0], p.x[1] - q.x[1]));
+    }
+}
+
+/* An angle of zero leaves the bits of a place alone. */
+static void test_no_rotation_is_the_limit(void)
+{
+    must_read("kind = rotation\ncentre = 0.1, 0.7\nangle = 0\n");
+    const struct motion_point p = point_at(0.5, 0.3, 1.0 / 3);
+    TEST_ASSERT_TRUE(p.x[0] == 0.3 && p.x[1] == 1.0 / 3 && p.v[0] == 0 && p.a[1] == 0);
+}
+
 static void test_table_is_smooth_and_does_not_overshoot(void)
 {
     write_table("time,dx,dy\n# a comment\n0, 0, 0\n0.1 0.01 0\n0.2; 0.04; 0\n0.3, 0.04, 0\n"
@@ -130,6 +191,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_velocity_between_start_and_stop);
     RUN_TEST(test_polynomial);
+    RUN_TEST(test_sine);
+    RUN_TEST(test_rotation_by_hand);
+    RUN_TEST(test_rotation_is_rigid_and_smooth);
+    RUN_TEST(test_no_rotation_is_the_limit);
     RUN_TEST(test_table_is_smooth_and_does_not_overshoot);
     RUN_TEST(test_bad_tables);
     RUN_TEST(test_no_motion_is_rest);

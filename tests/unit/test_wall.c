@@ -123,6 +123,13 @@ static void test_fluid_sticks_to_a_wall(void)
     assert_near(1e-9, -640 * 2.5 * 0.12083221653174106, fy[1] - fy[0], "force on the wall");
 }
 
+/* Where the first wall particle began. */
+static double wall_at(int axis)
+{
+    const struct particles *const p = &rig.sim.kind[KIND_WALL];
+    return axis ? p->Y[0] : p->X[0];
+}
+
 static void test_dry_walls_have_no_pressure(void)
 {
     place(0, "w.density=1000");
@@ -177,6 +184,35 @@ static void test_moving_walls_follow_their_motion(void)
     }
 }
 
+/* Water in a tank that turns quickly by a quarter and back lags behind, but none of it gets through the
+ * walls, which do work on it. */
+static void test_a_turning_tank_holds_its_water(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 0.2, 0.1\nsurface = 0.1\nsound_speed = 30\n"
+             "artificial_viscosity = 0.1\ndensity_diffusion = 0.1\n"
+             "[wall tank]\nshape = box -0.04, -0.04, 0.24, 0\nshape = box -0.04, 0.3, 0.24, 0.34\n"
+             "shape = box -0.04, 0, 0, 0.3\nshape = box 0.2, 0, 0.24, 0.3\nmotion = roll\n"
+             "[motion roll]\nkind = rotation\ncentre = 0.1, 0\nangle_amplitude = 0.4\n"
+             "period = 0.5\nphase = -pi/2\n",
+             NULL);
+    fluid = &rig.sim.kind[KIND_FLUID];
+    const int64_t n = fluid->n;
+    rig_run(&rig, 0.25);
+    TEST_ASSERT_EQUAL_INT64(n, fluid->n);
+    const double c = cos(0.8), s = sin(0.8); /* the other turning point; seen from the tank ... */
+    for (int64_t i = 0; i < n; i++) {
+        const double dx = fluid->x[i] - 0.1, dy = fluid->y[i];
+        const double x = c * dx + s * dy + 0.1, y = -s * dx + c * dy;
+        /* ... within its faces, but for a quarter of dp: the wall's own particles begin at half of it. */
+        TEST_ASSERT_TRUE(x > -0.0025 && x < 0.2025 && y > -0.0025 && y < 0.3025);
+    }
+    TEST_ASSERT_TRUE(rig.sim.state.wall_work != 0);
+    assert_near(1e-15, 0.1 + c * (wall_at(0) - 0.1) - s * wall_at(1), rig.sim.kind[KIND_WALL].x[0],
+                "x of a wall particle");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -188,5 +224,6 @@ int main(void)
     RUN_TEST(test_dry_walls_have_no_pressure);
     RUN_TEST(test_hydrostatic_pressure_continues_into_the_wall);
     RUN_TEST(test_moving_walls_follow_their_motion);
+    RUN_TEST(test_a_turning_tank_holds_its_water);
     return UNITY_END();
 }
