@@ -37,7 +37,7 @@ comma   := ,
 IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
-  NEEDS := $(strip build $(if $(filter test% validate,$(GOALS)),test) \
+  NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
              $(if $(filter gate results validate,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
@@ -144,16 +144,20 @@ test-sanitize:
 	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
 
 # gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher). Tests
-# that only look at results or files say nothing here and would take hours.
+# that look at files or at long runs say nothing here and would take hours.
+test-thread: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=66
+test-thread: export OMP_NUM_THREADS := 2
 test-thread:
-	@TEST_DIRS='unit agree' TEST_KINDS=c OMP_NUM_THREADS=2 TEST_TIMEOUT=3000 \
-	  TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66' \
-	  $(MAKE) --no-print-directory CONFIG=thread CC=clang test
+	@$(MAKE) --no-print-directory CONFIG=thread CC=clang all
+	@tools/short_runs.sh build/thread/sphfsi
+	@TEST_DIRS=unit TEST_KINDS=c $(MAKE) --no-print-directory CONFIG=thread CC=clang test
 
 # valgrind knows no AVX-512.
+memcheck: export OMP_NUM_THREADS := 1
 memcheck:
 	@$(MAKE) --no-print-directory CONFIG=memcheck ARCH=x86-64-v3 all
-	@tools/memcheck.sh build/memcheck/sphfsi
+	@tools/short_runs.sh build/memcheck/sphfsi valgrind --quiet --error-exitcode=99 \
+	  --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
 
 analyze:
 	@tools/analyze.sh $(ARGS)
@@ -168,7 +172,7 @@ absence:
 fuzz:
 	@tools/fuzz.sh $(ARGS)
 
-reliability: $(PROGRAM)
+reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
 bench: $(BENCHES)

@@ -240,6 +240,7 @@ static int parse(struct command *c, int argc, char **argv)
 {
     for (int k = 1; k < argc; k++) {
         int used_next = 0;
+        /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): argv has argc words */
         if (argv[k][0] == '-') {
             if (parse_option(c, argv[k], k + 1 < argc ? argv[k + 1] : NULL, &used_next)) return 1;
             if (c->mode == HELP || c->mode == VERSION) return 0;

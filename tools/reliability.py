@@ -1,43 +1,153 @@
 #!/usr/bin/env python3
 """Runs the rehearsed faults and writes docs/reliability.md: what was tried, how often, what came out.
 
-What other tools found (fuzzers, sanitizers, valgrind, static analysis) is taken from a file of
-`name | what was run | outcome` lines, by default docs/reliability.txt, kept by whoever ran them.
+Fuzzers log their counts in tests/fuzz/counts.txt. Sanitizers and analysers take long; their last
+outcome is kept in tests/fault/checks.json and run anew by --run (a part of the command, or `all`).
 """
 import argparse
+import json
 import os
 import platform
+import re
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+CHECKS = ROOT / "tests" / "fault" / "checks.json"
+COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
 LONG = {"KILLS": "50", "FULL_STEPS": "40"}
-SCRIPTS = [
-    ("tests/fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run is through"),
-    ("tests/fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed"),
-    ("tests/fault/test_fork.sh", "`--inspect`, `--fork`, other formats, byte orders, dp"),
-    ("tests/fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
-    ("tests/agree/test_restart.sh", "cut runs against whole ones, bit for bit"),
-    ("tests/agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
+REHEARSALS = [
+    ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run is through"),
+    ("agree/test_stops.c", "a stop after every step, for every integrator, with sub-steps and without, and "
+     "after some steps of every shipped case; every other one goes on from an older checkpoint; two "
+     "threads instead of one: state, rows and snapshots compared bit for bit"),
+    ("agree/test_restart.sh", "cut runs against whole ones, bit for bit; another number of threads"),
+    ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
+    ("unit/test_checkpoint.c", "a checkpoint with every byte flipped in turn, cut at every length, of "
+     "another case: found, and the one before it used"),
+    ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed under a run"),
+    ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain fails "
+     "once"),
+    ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
+    ("fault/test_hostile.sh", "pipes, devices, links, giants and odd names in the place of files; storms of "
+     "signals"),
+    ("fault/test_audit.sh", "what the system says a run touches; clocks that step back"),
+    ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
+    ("fault/test_fork.sh", "`--inspect`, `--fork`, other formats, byte orders, dp"),
+    ("unit/test_case_errors.c", "bad case files against the exact sentence"),
+    ("fault/test_bad_input.c", "damaged, shuffled, huge and cut case files"),
+    ("fault/test_corpus.c", "every input that the fuzzers kept"),
 ]
+CHECKED = [
+    ("AddressSanitizer and UndefinedBehaviorSanitizer", "make test-sanitize"),
+    ("ThreadSanitizer (clang, libomp)", "make test-thread"),
+    ("valgrind memcheck", "make memcheck"),
+    ("cppcheck, clang-tidy, gcc -fanalyzer", "make analyze"),
+]
+FUZZED = {
+    "case": "case reader (shapes wider than 40 dp are not sampled)",
+    "expr": "expressions",
+    "motion": "motion tables",
+    "checkpoint": "checkpoint reader: every input as it is, then with its sums put right, loaded and "
+    "stepped once",
+}
 
 
-def run(script, environment):
+def found_in(text):
+    return [line[7:] for line in text.splitlines() if line.startswith("found: ")]
+
+
+def program_version(program):
+    return subprocess.run([program, "--version"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+
+
+def rehearse(test, environment):
+    """Outcome, what it found, seconds."""
     start = time.time()
-    result = subprocess.run(["bash", script], cwd=ROOT, env=environment, capture_output=True,
-                            text=True)
-    found = [line[7:] for line in result.stdout.splitlines() if line.startswith("found: ")]
+    path = ROOT / "tests" / test
+    command = {".sh": ["bash", path], ".py": [sys.executable, path],
+               ".c": [ROOT / "build" / "release" / "tests" / test.removesuffix(".c")]}[path.suffix]
+    result = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
+    found = found_in(result.stdout)
+    cases = re.findall(r"^(\d+) Tests (\d+) Failures", result.stderr, re.M)
+    if cases:
+        found.insert(0, f"{cases[-1][0]} test cases, {cases[-1][1]} failures")
     verdict = {0: "passed", 77: "skipped"}.get(result.returncode, "FAILED")
-    print(f"{verdict} {script} {time.time() - start:.0f} s")
-    return verdict, found[-1] if found else "", time.time() - start
+    print(f"{verdict} {test} {time.time() - start:.0f} s", flush=True)
+    return verdict, "; ".join(found), time.time() - start
+
+
+def check(command, version):
+    """Runs a target and keeps what it says of itself."""
+    start = time.time()
+    result = subprocess.run(command.split(), cwd=ROOT, capture_output=True, text=True)
+    found = found_in(result.stdout)
+    found += re.findall(r"^\d+ passed, \d+ failed, \d+ skipped$", result.stdout, re.M)
+    reports = len(re.findall(r"(?:WARNING: ThreadSanitizer|ERROR: AddressSanitizer|runtime error:|"
+                             r"ERROR: LeakSanitizer)", result.stdout + result.stderr))
+    if "test-" in command:
+        found.append(f"{reports} reports")
+    records = json.loads(CHECKS.read_text()) if CHECKS.exists() else {}
+    records[command] = {"outcome": "passed" if result.returncode == 0 else "FAILED", "found": found,
+                        "version": version, "date": time.strftime("%Y-%m-%d"),
+                        "seconds": round(time.time() - start)}
+    CHECKS.write_text(json.dumps(records, indent=1, sort_keys=True) + "\n")
+    print(f"{records[command]['outcome']} {command}: {'; '.join(found)}", flush=True)
+    if result.returncode:
+        (ROOT / "build" / "failed-check.log").write_text(result.stdout + result.stderr)
+    return result.returncode != 0
+
+
+def fuzz_rows():
+    total, rows = 0, {}
+    for line in COUNTS.read_text().splitlines() if COUNTS.exists() else []:
+        if line.startswith("#"):
+            continue
+        target, count, seconds, status, version, compiler, _ = line.split()
+        row = rows.setdefault(target, [0, 0, 0, set(), compiler])
+        row[0] += int(count)
+        row[1] += int(seconds)
+        row[2] += status != "0"
+        row[3].add(version)
+        total += int(count)
+    for target, (count, seconds, bad, versions, compiler) in sorted(rows.items()):
+        outcome = "no crash, hang, leak or report" if not bad else f"{bad} RUNS FAILED"
+        yield (f"| {FUZZED.get(target, target)} | {count:,} | {seconds} | {outcome} | "
+               f"{', '.join(sorted(versions))} |")
+    yield f"| all | {total:,} | | | |"
+
+
+def report(rows, version):
+    lines = ["# Reliability", "",
+             f"Written by `make reliability`, sphfsi {version}, {platform.system()} {platform.machine()}, "
+             f"{time.strftime('%Y-%m-%d')}. Nothing in it is typed by hand.", "",
+             "## Faults rehearsed", "", "Times are those of a machine that did other things as well.", "",
+             "| test | what | outcome | found | s |", "|---|---|---|---|---|"]
+    lines += [f"| tests/{test} | {what} | {verdict} | {found} | {seconds:.0f} |"
+              for test, what, verdict, found, seconds in rows]
+    lines += ["", "## Fuzzers", "",
+              "libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer (`make fuzz`); sums "
+              "of tests/fuzz/counts.txt, which the tool writes from the fuzzers' own logs.", "",
+              "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
+    lines += ["", "## Sanitizers and analysers", "",
+              "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
+    records = json.loads(CHECKS.read_text()) if CHECKS.exists() else {}
+    for name, command in CHECKED:
+        r = records.get(command)
+        lines.append(f"| {name} | `{command}` | {r['outcome']} | {'; '.join(r['found'])} | {r['version']}, "
+                     f"{r['date']} | {r['seconds']} |" if r else
+                     f"| {name} | `{command}` | not run | | | |")
+    return "\n".join(lines) + "\n"
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--short", action="store_true", help="the forms that make test runs")
-    parser.add_argument("--notes", type=Path, default=ROOT / "docs" / "reliability.txt")
+    parser.add_argument("--run", metavar="PART", help="also run the sanitizers and analysers whose command "
+                        "has this part, or all of them; `--only` those")
+    parser.add_argument("--only", action="store_true", help="no rehearsals, no report")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "reliability.md")
     args = parser.parse_args()
 
@@ -45,25 +155,19 @@ def main():
     environment.setdefault("SPHFSI", "./sphfsi")
     if not args.short:
         environment.update(LONG)
-    version = subprocess.run([environment["SPHFSI"], "--version"], cwd=ROOT, capture_output=True,
-                             text=True).stdout.strip()
-    lines = ["# Reliability", "",
-             f"Written by `make reliability`, sphfsi {version}, {platform.system()} "
-             f"{platform.machine()}, {time.strftime('%Y-%m-%d')}. Not edited by hand; the second table "
-             f"is [reliability.txt]({args.notes.name}), where runs of other tools are noted down.", "",
-             "## Faults rehearsed", "", "| script | what | outcome | found | s |",
-             "|---|---|---|---|---|"]
+    version = program_version(environment["SPHFSI"])
     failed = 0
-    for script, what in SCRIPTS:
-        verdict, found, seconds = run(script, environment)
+    for _, command in CHECKED:
+        if args.run and (args.run == "all" or args.run in command):
+            failed += check(command, version)
+    if args.only:
+        return failed > 0
+    rows = []
+    for test, what in REHEARSALS:
+        verdict, found, seconds = rehearse(test, environment)
         failed += verdict == "FAILED"
-        lines.append(f"| {script} | {what} | {verdict} | {found} | {seconds:.0f} |")
-    lines += ["", "## Fuzzers, sanitizers, analysers", "", "| tool | what was run | outcome |",
-              "|---|---|---|"]
-    for note in args.notes.read_text().splitlines() if args.notes.exists() else []:
-        if note.strip() and not note.startswith("#"):
-            lines.append("| " + " | ".join(part.strip() for part in note.split("|")) + " |")
-    args.out.write_text("\n".join(lines) + "\n")
+        rows.append((test, what, verdict, found, seconds))
+    args.out.write_text(report(rows, version))
     print(f"written: {args.out}")
     return failed > 0
 

@@ -306,6 +306,7 @@ static void test_each_is_refused_with_its_sentence(void)
         d.text[strlen(bad[k].message)] = '\0';
         TEST_ASSERT_EQUAL_STRING_MESSAGE(bad[k].message, d.text, bad[k].text);
     }
+    printf("found: %zu bad case files, each refused with its sentence\n", COUNT_OF(bad));
 }
 
 static void read_bytes(const char *bytes, size_t n, const char *message)
