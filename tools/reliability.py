@@ -128,8 +128,8 @@ def report(rows, version):
     lines += [f"| tests/{test} | {what} | {verdict} | {found} | {seconds:.0f} |"
               for test, what, verdict, found, seconds in rows]
     lines += ["", "## Fuzzers", "",
-              "libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer (`make fuzz`); sums "
-              "of tests/fuzz/counts.txt, which the tool writes from the fuzzers' own logs.", "",
+              "libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer (`make fuzz`); "
+              "sums of tests/fuzz/counts.txt, which the tool writes from the fuzzers' own logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
     lines += ["", "## Sanitizers and analysers", "",
               "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
