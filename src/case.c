@@ -333,3 +333,18 @@ int scene_find_wall(const struct scene *s, const char *name)
         if (strcmp(s->wall[k].common.name, name) == 0) return k;
     return -1;
 }
+
+bool scene_pair(const char *text, char name[2][SCENE_TEXT])
+{
+    const char *comma = strchr(text, ',');
+    if (!comma || strchr(comma + 1, ',')) return false;
+    const char *const from[2] = {text, comma + 1}, *const end[2] = {comma, text + strlen(text)};
+    for (int k = 0; k < 2; k++) {
+        const char *a = from[k], *b = end[k];
+        while (a < b && (*a == ' ' || *a == '\t')) a++;
+        while (b > a && (b[-1] == ' ' || b[-1] == '\t')) b--;
+        if (a == b) return false;
+        snprintf(name[k], SCENE_TEXT, "%.*s", (int)(b - a), a);
+    }
+    return true;
+}

@@ -171,6 +171,38 @@ static enum err check_joined(struct reader *r)
     return ERR_OK;
 }
 
+/* Two different bodies, one of them a solid. */
+static enum err check_contacts(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_contact; k++) {
+        const struct scene_contact *c = &s->contact[k];
+        const int line = c->common.line;
+        char name[2][SCENE_TEXT];
+        if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
+            return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
+                            c->common.name);
+        if (!*c->between) continue;
+        if (!scene_pair(c->between, name))
+            return bad_line(r, line, "between = %.100s: two names with a comma between them",
+                            c->between);
+        bool solid = false;
+        for (int j = 0; j < 2; j++) {
+            solid |= scene_find_solid(s, name[j]) >= 0;
+            if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
+                return no_such(r, line, "between", name[j], SECTION_solid);
+        }
+        if (!solid)
+            return bad_line(r, line,
+                            "between = %.100s: walls do not move each other; one of the two "
+                            "must be a solid",
+                            c->between);
+        if (strcmp(name[0], name[1]) == 0)
+            return bad_line(r, line, "between = %.100s: a body does not touch itself", c->between);
+    }
+    return ERR_OK;
+}
+
 /* A reference names a column: <probe>_<quantity>_<unit>. */
 static enum err check_references(struct reader *r)
 {
@@ -222,6 +254,7 @@ enum err case_check(struct reader *r)
     TRY(check_joined(r));
     TRY(case_check_output(r));
     TRY(case_check_probes(r));
+    TRY(check_contacts(r));
     TRY(check_references(r));
     return effects_check(s, r->diag);
 }

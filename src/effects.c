@@ -31,6 +31,20 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
                   at;                                                \
               }))
 #define LATER false
+#define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
+
+/* The first contact that a wall takes part in; -1: none. */
+static int first_with_wall(const struct scene *s)
+{
+    for (int k = 0; k < s->n_contact; k++) {
+        char name[2][SCENE_TEXT];
+        if (!scene_pair(s->contact[k].between, name)
+                ? s->n_wall > 0
+                : scene_find_solid(s, name[0]) < 0 || scene_find_solid(s, name[1]) < 0)
+            return k;
+    }
+    return -1;
+}
 
 #define EFFECT(name, when, key, equation, groups, kind, meaning)                  \
     static bool calls_for_##name(const struct scene *s, struct effect_caller *by) \

@@ -41,8 +41,10 @@ struct ledger simulation_ledger(struct simulation *s)
     struct ledger row = {.time = s->state.time, .det_low = 1, .dt = s->state.dt};
     if (s->effects & FX_FLUID) add_fluid(s, &row);
     if (s->effects & FX_SOLID) add_solid(s, &row);
+    if (s->effects & FX_CONTACT)
+        row.contact = contact_energy(&s->contact, &s->kind[KIND_SOLID], s->state.time);
     row.dissipated = s->state.energy_start + s->state.wall_work + s->state.carried -
                      s->state.lost_energy - row.kinetic - row.potential - row.internal -
-                     row.elastic - row.hourglass;
+                     row.elastic - row.hourglass - row.contact;
     return row;
 }

@@ -5,7 +5,7 @@
 
 /* One row of ledger.csv. Per depth. */
 struct ledger {
-    double time, kinetic, potential, internal, elastic, hourglass, dissipated;
+    double time, kinetic, potential, internal, elastic, hourglass, contact, dissipated;
     double momentum_x, momentum_y, mass, dens_extreme, det_low, dt;
 };
 
@@ -18,6 +18,7 @@ struct ledger {
     LEDGER(internal, "J_per_m", "compression energy of the fluid")                                \
     LEDGER(elastic, "J_per_m", "strain energy of the solid")                                      \
     LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                 \
+    LEDGER(contact, "J_per_m", "energy of bodies pressed onto each other or a wall")              \
     LEDGER(dissipated, "J_per_m", "energy at the start and work of walls, less all that is left") \
     LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                              \
     LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                              \

@@ -148,6 +148,12 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "beside its body it is faster than ten times the speed of sound: the solid is "
             "unstable (a smaller solid_safety may help), or far too soft for its load",
             d);
+    if (s->contact.crowded)
+        return diag_fail(d, ERR_GUARD,
+                         "t = %.6g s, step %lld: more than %d particles push at one particle of a "
+                         "solid's surface: bodies have gone into each other; a larger stiffness in "
+                         "[contact] may help",
+                         s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
     if (s->state.steps % LOOK_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);
@@ -216,7 +222,8 @@ enum err monitor_check(struct simulation *s, struct diag *d)
 
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
 {
-    const double active = row->kinetic + row->internal + row->elastic + row->hourglass;
+    const double active =
+        row->kinetic + row->internal + row->elastic + row->hourglass + row->contact;
     const double gained = -row->dissipated;
     const double noise = 1e-9 * fabs(s->state.energy_start); /* round-off of the sums */
     if (gained > ENERGY_LIMIT * active + noise)

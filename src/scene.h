@@ -198,4 +198,7 @@ bool scene_snapshot_has(const struct scene *s, const char *field);
 /* What a probe looks at; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 
+/* The two names of `a, b`; false: it is something else. */
+bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
+
 #endif

@@ -227,13 +227,30 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Says once what a scene may expect and will not get. */
+/* Says once what a scene may expect and does not ask for. */
 static void warn_of_contact(const struct simulation *s, struct diag *d)
 {
+    if (s->effects & FX_CONTACT) return;
     int loose = 0;
     for (int k = 0; k < s->scene->n_solid; k++) loose += s->scene->solid[k].clamp.n == 0;
     if (s->scene->n_solid > 1 || (loose && s->scene->n_wall > 0))
-        diag_warn(d, "contact is not simulated: solids pass through each other and through walls");
+        diag_warn(d,
+                  "contact is not simulated: solids pass through each other and through walls; a "
+                  "[contact] section calls for it");
+}
+
+static enum err create_contact(struct simulation *s, struct diag *d)
+{
+    static const struct particles none = {0};
+    const bool walls = s->effects & FX_CONTACT_WALL;
+    TRY(contact_create(&s->contact, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID],
+                       walls ? &s->kind[KIND_WALL] : &none, d));
+    s->solid.contact = &s->contact;
+    s->solid.outer_omega2 = s->contact.omega2;
+    s->solid.outer_damping = s->contact.damping;
+    s->solid.stable_step = solid_step_of(square(s->solid.omega_max) + s->contact.omega2,
+                                         s->solid.damping_max + s->contact.damping);
+    return ERR_OK;
 }
 
 static enum err build(struct simulation *s, struct diag *d)
@@ -249,6 +266,7 @@ static enum err build(struct simulation *s, struct diag *d)
         TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
         start_solid(s);
         solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
+        if (s->effects & FX_CONTACT) TRY(create_contact(s, d));
         s->state.solid_stiffening = s->state.solid_slowing = 1;
         timestep_set_solid(s);
     }
@@ -262,8 +280,8 @@ static enum err build(struct simulation *s, struct diag *d)
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
     const struct ledger start = simulation_ledger(s);
-    s->state.energy_start =
-        start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
+    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
+                            start.hourglass + start.contact;
     s->state.det_low = 1;
     return ERR_OK;
 }
@@ -298,10 +316,20 @@ static void add_exchange(struct simulation *s)
     s->state.exchanged += s->state.dt * sqrt(fx * fx + fy * fy);
 }
 
+/* Work on the solid from outside in the last step. */
+static void take_work(struct simulation *s)
+{
+    s->state.wall_work += s->solid.work;
+    s->solid.work = 0;
+}
+
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 {
+    s->solid.time = s->state.time;
     if (!(s->effects & FX_FLUID)) {
         solid_only_step(s, t_limit);
+        take_work(s);
+        if (s->effects & FX_MOTION) move_walls(s, s->state.time);
         find_speed(s);
         TRY(monitor_check(s, d));
         timestep_recheck_solid(s);
@@ -319,6 +347,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
+    take_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
     if (!e && (s->effects & FX_SOLID) && s->state.steps % LOOK_INTERVAL == 0)
         timestep_recheck_solid(s);

@@ -5,6 +5,7 @@
 #define SPHFSI_SIMULATION_H
 
 #include "cells.h"
+#include "contact.h"
 #include "effects.h"
 #include "fluid.h"
 #include "ledger.h"
@@ -39,7 +40,8 @@ struct simulation {
     struct fluid fluid;   /* model and sweeps of fluid, walls and coupling; unused without fluid */
     struct moving moving; /* walls that move; unused where none does */
     struct solid solid;   /* model of the solid; unused without one */
-    unsigned effects;     /* bits of effects.h */
+    struct contact contact; /* of the solid; unused without it */
+    unsigned effects;       /* bits of effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
     double dt_solid;              /* stable step of the solid times its safety, s */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact.h"
 #include "material.h"
 #include "smoothing.h"
 #include "solid_stencil.h"
@@ -395,6 +396,12 @@ static void forces_loop(const struct solid *s, struct particles *p)
     for (int64_t k = 0; k < s->n_packs; k++) forces_of_pack(s, &s->pack[k], p);
 }
 
+/* What acts on the solid from outside, each a pass of its own. */
+static void outer_forces(const struct solid *s, struct particles *p, double time)
+{
+    if (s->contact) contact_forces(s->contact, s, p, time);
+}
+
 static void kick_and_drift(struct particles *p, double kick, double drift)
 {
 #pragma omp for schedule(static)
@@ -415,10 +422,18 @@ void solid_stress(const struct solid *s, struct particles *p)
 void solid_forces(const struct solid *s, struct particles *p)
 {
 #pragma omp parallel num_threads(s->threads)
-    forces_loop(s, p);
+    {
+        forces_loop(s, p);
+        outer_forces(s, p, s->time);
+    }
 }
 
-void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred)
+void solid_book_work(struct solid *s, double dt)
+{
+    if (s->contact) s->work += dt * contact_power(s->contact);
+}
+
+void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     const double first = centred ? 0.5 * dt : 0;
 #pragma omp parallel num_threads(s->threads)
@@ -427,9 +442,13 @@ void solid_advance(const struct solid *s, struct particles *p, double dt, int n,
         for (int k = 0; k < n; k++) {
             stress_loop(s, p);
             forces_loop(s, p);
+            outer_forces(s, p, s->time + k * dt + first);
+#pragma omp single nowait
+            solid_book_work(s, dt);
             kick_and_drift(p, dt, k + 1 < n ? dt : dt - first);
         }
     }
+    s->time += n * dt;
 }
 
 void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],

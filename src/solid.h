@@ -43,6 +43,8 @@ struct solid_pack {
     int32_t first_slot, n_slots;
 };
 
+struct contact;
+
 struct solid {
     int n_bodies;
     struct solid_body *body;
@@ -58,6 +60,10 @@ struct solid {
     double stable_step; /* the largest stable step that follows from both, s */
     double paper_step;  /* Eq. 29, s */
     double *scratch[4]; /* room for the search of the step */
+    double time; /* of the displacements, s: walls that are touched stand where they are then */
+    struct contact *contact;            /* NULL: none */
+    double outer_omega2, outer_damping; /* what contact can add to omega_max^2 and damping_max */
+    double work; /* of moving walls on the solid since it was last asked for, J/m */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
@@ -73,7 +79,13 @@ void solid_forces(const struct solid *s, struct particles *p);
 
 /* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With
  * `centred`: half drift, kick, half drift, which is second order in time. */
-void solid_advance(const struct solid *s, struct particles *p, double dt, int n, bool centred);
+void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
+
+/* Books the work of what pushes from outside over a step of dt with the last forces. */
+void solid_book_work(struct solid *s, double dt);
+
+/* The largest stable step for the square of a frequency and a rate of damping, s. */
+double solid_step_of(double omega2, double damping);
 
 /* Largest frequency and damping rate of the operator linearised about the present deformation, by power
  * iteration on the force routine, and the stable step that follows, s. Leaves u and v as they were. */

@@ -92,21 +92,23 @@ static double largest_factor(const struct solid *s, struct particles *p, double 
 /* An oscillation of frequency w, damped explicitly at the rate m, does not grow while
  * (w dt)^2 + 2 m dt < 4: just that for semi-implicit Euler, a little less than the limit for the
  * predictor-corrector (docs/theory.md). */
-static double step_of(double omega, double damping)
+double solid_step_of(double omega2, double damping)
 {
-    const double w2 = square(omega);
-    return w2 > 0 ? (sqrt(damping * damping + 4 * w2) - damping) / w2 : (double)INFINITY;
+    if (!(omega2 > 0)) return (double)INFINITY;
+    return (sqrt(damping * damping + 4 * omega2) - damping) / omega2;
 }
 
 double solid_stable_step(const struct solid *s, struct particles *p, double *omega, double *damping)
 {
-    /* Without the fluid's force and gravity, which do not depend on the field. */
+    /* Without the fluid's force and gravity, which do not depend on the field, and without contact, which
+     * has bounds of its own. */
     struct solid bare = *s;
     struct solid_body body[s->n_bodies];
     memcpy(body, s->body, sizeof body);
     for (int k = 0; k < s->n_bodies; k++) body[k].gravity[0] = body[k].gravity[1] = 0;
     bare.body = body;
     bare.coupled = false;
+    bare.contact = NULL;
 
     const size_t bytes = (size_t)p->n * sizeof *p->vx;
     double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};
@@ -130,7 +132,8 @@ double solid_stable_step(const struct solid *s, struct particles *p, double *ome
         if (s->body[k].viscosity > 0 && *damping == 0)
             *damping = largest_factor(&bare, p, v, base, true);
     keep(v, kept[0], kept[1], p->n);
-    return step_of(*omega, *damping);
+    /* Eigenvalues of two operators together are no larger than the sum of the largest of each. */
+    return solid_step_of(square(*omega) + s->outer_omega2, *damping + s->outer_damping);
 }
 
 void solid_find_step(struct solid *s, struct particles *p)

@@ -109,6 +109,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     if (coupled && multirate) carry_solid(solid, 0.5 * dt);
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
+        s->solid.time = time + 0.5 * dt;
         show_solid(solid, 0);
     }
     phase_add(s, PHASE_update, clock);
@@ -122,6 +123,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     correct_fluid(fluid, dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
+        solid_book_work(&s->solid, dt);
         show_solid(solid, acceleration_weight(s, dt));
         s->state.solid_substeps++;
         s->substeps = 1;
@@ -135,6 +137,9 @@ void symplectic_solid(struct simulation *s, double dt)
     struct particles *const p = &s->kind[KIND_SOLID];
     rates_of_solid(s);
     predict_solid(p, 0.5 * dt);
+    s->solid.time += 0.5 * dt;
     rates_of_solid(s);
     correct_solid(p, dt);
+    solid_book_work(&s->solid, dt);
+    s->solid.time += 0.5 * dt;
 }

@@ -13,7 +13,7 @@ EXAMPLE = """example:
 """
 SHARES = {"kinetic": "kinetic", "potential": "potential, from its lowest",
           "internal": "fluid's compression", "elastic": "solid's strain",
-          "hourglass": "hourglass", "dissipated": "dissipated"}
+          "hourglass": "hourglass", "contact": "contact", "dissipated": "dissipated"}
 SIMPLE = ["time", "momentum_x", "momentum_y", "mass", "dens_extreme", "det_low", "dt"]
 
 
@@ -36,6 +36,9 @@ def read_ledger(run):
     ledger = {}
     for name in [*SHARES, *SIMPLE]:
         column = next((c for c in table if c == name or c.startswith(name + "_")), None)
+        if column is None and name == "contact":  # runs of earlier versions lack it
+            ledger[name] = 0 * table[next(iter(table))]
+            continue
         if column is None:
             raise BadFile(f"{run.folder / 'ledger.csv'}: no column {name}")
         ledger[name] = table[column]

@@ -139,6 +139,21 @@ static void test_joined_bodies(void)
     text = scene;
 }
 
+/* Two bodies pressed into each other by a fifth of dp, which the deformation turns into up to a half. */
+static void test_contact(void)
+{
+    static const char pair[] =
+        "dp = 1 cm\nend_time = 1\n"
+        "[solid bar]\nshape = box 0, 0, 0.15, 0.05\nclamp = box 0, 0, 0.02, 0.05\n"
+        "density = 1100\nyoung = 2e6\npoisson = 0.4\ngradient = linear\n"
+        "[solid plug]\nlike = bar\nshape = box 0.1, 0.048, 0.18, 0.098\n"
+        "density = 2700\nyoung = 5e6\npoisson = 0.25\n[contact all]\n";
+    text = pair;
+    compare("all.stiffness=1", "all.damping=0", "all.friction=0");
+    compare("all.stiffness=3", "all.damping=0.4", "all.friction=0.5");
+    text = scene;
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -147,5 +162,6 @@ int main(void)
     RUN_TEST(test_hourglass_forms);
     RUN_TEST(test_viscosity_forms);
     RUN_TEST(test_joined_bodies);
+    RUN_TEST(test_contact);
     return UNITY_END();
 }

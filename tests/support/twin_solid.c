@@ -133,6 +133,7 @@ void twin_solid_copy(struct twin_solid *t, const struct simulation *s)
     *t = (struct twin_solid){.h = s->scene->numerics.h_over_dp * s->scene->top.dp,
                              .dp = s->scene->top.dp,
                              .body = s->scene->solid,
+                             .contact = s->scene->n_contact ? s->scene->contact : NULL,
                              .n = p->n};
     t->point = calloc((size_t)p->n, sizeof *t->point);
     TEST_ASSERT_NOT_NULL(t->point);
@@ -287,6 +288,26 @@ static void force_of_pair(const struct twin_solid *t, struct twin_solid_point *a
     a->ay += f[1] / body->density;
 }
 
+/* Every particle of another body nearer than dp pushes: k (dp - r) with k = stiffness E of the softer one,
+ * less the dashpot; and the friction, at most Coulomb's. */
+static void touch(const struct twin_solid *t, struct twin_solid_point *a,
+                  const struct twin_solid_point *b)
+{
+    const struct scene_solid *const A = &t->body[a->body], *const B = &t->body[b->body];
+    const double x = a->x - b->x, y = a->y - b->y, r = sqrt(x * x + y * y), V = t->dp * t->dp;
+    if (bonded(t, a->body, b->body) || r >= t->dp) return;
+    const double k = t->contact->stiffness * fmin(A->young, B->young);
+    const double m = 1 / (1 / (A->density * V) + 1 / (B->density * V)), c = sqrt(k * m);
+    const double u = a->u - b->u, v = a->v - b->v, speed = (u * x + v * y) / r;
+    const double push = fmax(0, k * (t->dp - r) - 2 * t->contact->damping * c * speed);
+    const double across = (v * x - u * y) / r; /* along (-y, x)/r */
+    const double drag = fmin(t->contact->friction * push, c * fabs(across)) * (across > 0 ? 1 : -1);
+    const double on = t->contact->friction > 0 ? 1 : 0;
+    a->ax += (push * x / r + on * drag * y / r) / (A->density * V);
+    a->ay += (push * y / r - on * drag * x / r) / (A->density * V);
+    a->size += push / (A->density * V);
+}
+
 void twin_solid_evaluate(struct twin_solid *t)
 {
     for (int64_t i = 0; i < t->n; i++) deform(t, &t->point[i]);
@@ -302,4 +323,6 @@ void twin_solid_evaluate(struct twin_solid *t)
         for (int64_t k = 0; k < t->n; k++)
             if (neighbours(t, &t->point[i], &t->point[k], &q))
                 force_of_pair(t, &t->point[i], &t->point[k], &q);
+    for (int64_t i = 0; i < t->n && t->contact; i++)
+        for (int64_t k = 0; k < t->n; k++) touch(t, &t->point[i], &t->point[k]);
 }

@@ -21,6 +21,7 @@ struct twin_solid_point {
 struct twin_solid {
     double h, dp;
     const struct scene_solid *body;
+    const struct scene_contact *contact; /* NULL: none; between all bodies */
     int64_t n;
     struct twin_solid_point *point;
 };
