@@ -26,6 +26,7 @@ static struct solid_body body_of(const struct scene *scene, const struct scene_s
         .sound_speed = sqrt(bulk / c->density), /* Eq. 29 */
         .viscosity = c->artificial_viscosity * sqrt(bulk / c->density) * h,
         .kappa = c->hourglass,
+        .damping_time = c->damping_time,
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
         .law = c->law,
         .plane = c->plane,
@@ -92,6 +93,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         s->body[k] = body_of(scene, &scene->solid[k]);
         warn_of_flutter(&s->body[k], scene->solid[k].common.name, d);
         s->variational |= s->body[k].variational;
+        s->kelvin_voigt |= s->body[k].damping_time > 0;
         s->paper_step =
             min2(s->paper_step, 0.6 * s->body[k].h / s->body[k].sound_speed); /* Eq. 29 */
         s->dp = min2(s->dp, s->body[k].dp);
@@ -129,18 +131,17 @@ SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i
                              vload_wide(&p->Uyy[i])};
 }
 
-/* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
-SPHFSI_INLINE struct vtensor2 displacement_gradient(const struct solid *s,
-                                                    const struct solid_pack *pack,
-                                                    const struct particles *p)
+/* Eq. 13b for any field (u, v), such as the displacement: U = F - I = sum of (u_b - u_a) G_ab^T. */
+SPHFSI_INLINE struct vtensor2 gradient_of(const struct solid *s, const struct solid_pack *pack,
+                                          const double *u, const double *v)
 {
-    const vwide ux = vload_wide(&p->ux[pack->i]), uy = vload_wide(&p->uy[pack->i]);
+    const vwide ux = vload_wide(&u[pack->i]), uy = vload_wide(&v[pack->i]);
     struct vtensor2 sum = {vset_wide(0), vset_wide(0), vset_wide(0), vset_wide(0)};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
         const int64_t j = pack->i + slot->offset;
         const vwide Gx = vload_wide(slot->Gx), Gy = vload_wide(slot->Gy);
-        const vwide dx = vload_wide(&p->ux[j]) - ux, dy = vload_wide(&p->uy[j]) - uy;
+        const vwide dx = vload_wide(&u[j]) - ux, dy = vload_wide(&v[j]) - uy;
         sum.xx = vfma_wide(dx, Gx, sum.xx);
         sum.xy = vfma_wide(dx, Gy, sum.xy);
         sum.yx = vfma_wide(dy, Gx, sum.yx);
@@ -153,7 +154,7 @@ static void stress_of_pack(const struct solid *s, const struct solid_pack *pack,
                            struct particles *p)
 {
     const int64_t i = pack->i;
-    const struct vtensor2 U = displacement_gradient(s, pack, p);
+    const struct vtensor2 U = gradient_of(s, pack, p->ux, p->uy);
     const struct vtensor2 P = material_pk1(&s->body[pack->body], U);
     store_lanes(&p->Uxx[i], U.xx, pack->lanes);
     store_lanes(&p->Uxy[i], U.xy, pack->lanes);
@@ -163,6 +164,27 @@ static void stress_of_pack(const struct solid *s, const struct solid_pack *pack,
     store_lanes(&p->Pxy[i], P.xy, pack->lanes);
     store_lanes(&p->Pyx[i], P.yx, pack->lanes);
     store_lanes(&p->Pyy[i], P.yy, pack->lanes);
+}
+
+/* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C : dE/dt with the
+ * tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a) G_ab^T. P gains F times it. */
+static void damping_stress(const struct solid *s, const struct solid_pack *pack,
+                           struct particles *p)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const int64_t i = pack->i;
+    const struct vtensor2 F = deformation(load_gradient(p, i));
+    const struct vtensor2 rate = gradient_of(s, pack, p->vx, p->vy);
+    const vwide shear = (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx) * 0.5;
+    const struct vtensor2 strain_rate = {F.xx * rate.xx + F.yx * rate.yx, shear, shear,
+                                         F.xy * rate.xy + F.yy * rate.yy};
+    const double tau = body->damping_time;
+    const struct vtensor2 P =
+        vtensor2_mul(F, hooke(strain_rate, tau * plane_lambda(body), tau * body->mu));
+    store_lanes(&p->Pxx[i], vload_wide(&p->Pxx[i]) + P.xx, pack->lanes);
+    store_lanes(&p->Pxy[i], vload_wide(&p->Pxy[i]) + P.xy, pack->lanes);
+    store_lanes(&p->Pyx[i], vload_wide(&p->Pyx[i]) + P.yx, pack->lanes);
+    store_lanes(&p->Pyy[i], vload_wide(&p->Pyy[i]) + P.yy, pack->lanes);
 }
 
 /* Particles a of a pack, as the pair laws see them. */
@@ -384,10 +406,16 @@ static void stress_loop(const struct solid *s, struct particles *p)
 {
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < s->n_packs; k++) stress_of_pack(s, &s->pack[k], p);
-    if (!s->variational) return;
+    if (s->kelvin_voigt) {
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < s->n_packs; k++)
-        if (s->body[s->pack[k].body].variational) hourglass_stress(s, &s->pack[k], p);
+        for (int64_t k = 0; k < s->n_packs; k++)
+            if (s->body[s->pack[k].body].damping_time > 0) damping_stress(s, &s->pack[k], p);
+    }
+    if (s->variational) {
+#pragma omp for schedule(static)
+        for (int64_t k = 0; k < s->n_packs; k++)
+            if (s->body[s->pack[k].body].variational) hourglass_stress(s, &s->pack[k], p);
+    }
 }
 
 static void forces_loop(const struct solid *s, struct particles *p)

@@ -12,10 +12,11 @@ struct solid_body {
     double dp, h;      /* spacing and smoothing length of its particles */
     double lambda, mu; /* Lame constants */
     double density, young;
-    double mass;        /* of a particle per depth, rho0 dp^2 */
-    double viscosity;   /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
-    double sound_speed; /* c_s of Eq. 29 */
-    double kappa;       /* Eq. 17 */
+    double mass;         /* of a particle per depth, rho0 dp^2 */
+    double viscosity;    /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
+    double sound_speed;  /* c_s of Eq. 29 */
+    double kappa;        /* Eq. 17 */
+    double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
     int bond;         /* bodies joined to each other share this number, that of the first of them */
@@ -55,6 +56,7 @@ struct solid {
     struct solid_slot *slot;
     bool coupled;       /* meets fluid */
     bool variational;   /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;  /* some body has a damping_time */
     double omega_max;   /* largest frequency of the linearised operator, 1/s */
     double damping_max; /* largest rate of its viscous part, 1/s */
     double stable_step; /* the largest stable step that follows from both, s */

@@ -55,9 +55,11 @@ static void answer(const struct solid *s, struct particles *p, double *const fie
          * opposite field. */
         set_field(field, base, p->sx, p->sy, p->n, -factor);
         keep(other, p->sx, p->sy, p->n);
+        if (s->kelvin_voigt) solid_stress(s, p);
         solid_forces(s, p);
         set_field(field, base, other[0], other[1], p->n, factor);
         keep(other, p->sx, p->sy, p->n);
+        if (s->kelvin_voigt) solid_stress(s, p);
     } else {
         set_field(field, base, p->sx, p->sy, p->n, factor);
         solid_stress(s, p);
@@ -128,8 +130,10 @@ double solid_stable_step(const struct solid *s, struct particles *p, double *ome
     memset(base[0], 0, bytes);
     memset(base[1], 0, bytes);
     *damping = 0;
+    /* Linear damping answers to both signs. */
+    for (int k = 0; k < s->n_bodies; k++) body[k].damping_time *= 0.5;
     for (int k = 0; k < s->n_bodies; k++)
-        if (s->body[k].viscosity > 0 && *damping == 0)
+        if (s->body[k].viscosity + s->body[k].damping_time > 0 && *damping == 0)
             *damping = largest_factor(&bare, p, v, base, true);
     keep(v, kept[0], kept[1], p->n);
     /* Eigenvalues of two operators together are no larger than the sum of the largest of each. */

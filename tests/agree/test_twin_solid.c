@@ -44,6 +44,12 @@ static void deform(struct particles *p)
     }
 }
 
+/* The viscous stress counts in: it is large, since velocities are at random. */
+static double scale_of_stress(const struct scene_solid *b)
+{
+    return b->young * (1 + b->damping_time * 1000);
+}
+
 static double difference(struct twin_mat t, double xx, double xy, double yx, double yy)
 {
     return fmax(fmax(fabs(t.m[0][0] - xx), fabs(t.m[0][1] - xy)),
@@ -54,7 +60,7 @@ static void compare_stress(const struct particles *p)
 {
     for (int64_t i = 0; i < p->n; i++) {
         const struct twin_solid_point *const q = &twin.point[i];
-        const double young = twin.body[q->body].young;
+        const double young = scale_of_stress(&twin.body[q->body]);
         const double off = difference(q->F, 1 + p->Uxx[i], p->Uxy[i], p->Uyx[i], 1 + p->Uyy[i]);
         assert_at_most(1e-12, off, "deformation gradient");
         assert_at_most(1e-12 * young, difference(q->P, p->Pxx[i], p->Pxy[i], p->Pyx[i], p->Pyy[i]),
@@ -122,6 +128,12 @@ static void test_viscosity_forms(void)
     compare("bar.artificial_viscosity=0", "plug.artificial_viscosity=0", "bar.hourglass=0");
 }
 
+static void test_kelvin_voigt(void)
+{
+    compare("bar.damping_time=1 ms", "bar.law=svk", "plug.plane=stress");
+    compare("plug.damping_time=0.1 ms", "plug.plane=stress", "bar.damping_time=2 ms");
+}
+
 /* Two materials bonded to each other. */
 static void test_joined_bodies(void)
 {
@@ -161,6 +173,7 @@ int main(void)
     RUN_TEST(test_laws_in_plane_stress);
     RUN_TEST(test_hourglass_forms);
     RUN_TEST(test_viscosity_forms);
+    RUN_TEST(test_kelvin_voigt);
     RUN_TEST(test_joined_bodies);
     RUN_TEST(test_contact);
     return UNITY_END();

@@ -175,6 +175,26 @@ static bool neighbours(const struct twin_solid *t, const struct twin_solid_point
     return true;
 }
 
+/* F tau C : sym(F^T dF/dt), with dF/dt from the velocities as F is from the positions. */
+static void damp(const struct twin_solid *t, struct twin_solid_point *a)
+{
+    struct twin_mat rate = {{{0}}};
+    struct reference q;
+    for (int64_t k = 0; k < t->n; k++) {
+        const struct twin_solid_point *const b = &t->point[k];
+        if (!neighbours(t, a, b, &q)) continue;
+        const double v[2] = {b->u - a->u, b->v - a->v};
+        for (int j = 0; j < 2; j++) {
+            const double g =
+                a->inverse_L.m[j][0] * q.gradient[0] + a->inverse_L.m[j][1] * q.gradient[1];
+            for (int i = 0; i < 2; i++) rate.m[i][j] += t->dp * t->dp * v[i] * g;
+        }
+    }
+    const struct twin_mat C = mul(transpose(a->F), rate);
+    const struct twin_mat E = add(add((struct twin_mat){{{0}}}, 0.5, C), 0.5, transpose(C));
+    a->P = add(a->P, t->body[a->body].damping_time, mul(a->F, hooke(&t->body[a->body], E)));
+}
+
 /* Eqs. 13b and 13c, then the stress. */
 static void deform(const struct twin_solid *t, struct twin_solid_point *a)
 {
@@ -199,6 +219,7 @@ static void deform(const struct twin_solid *t, struct twin_solid_point *a)
         }
     }
     a->P = twin_solid_stress(&t->body[a->body], a->F, &a->sigma);
+    damp(t, a);
 }
 
 /* Eqs. 15-16: e_ab. */
