@@ -108,12 +108,23 @@ static enum err check_motions(struct reader *r)
     for (int k = 0; k < s->n_wall; k++)
         if (*s->wall[k].motion && scene_find_motion(s, s->wall[k].motion) < 0)
             return no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion, SECTION_motion);
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *b = &s->solid[k];
+        if (!*b->clamp_motion) continue;
+        if (scene_find_motion(s, b->clamp_motion) < 0)
+            return no_such(r, b->common.line, "clamp_motion", b->clamp_motion, SECTION_motion);
+        if (b->clamp.n == 0)
+            return bad_line(r, b->common.line, "[solid %s] has a `clamp_motion` but no `clamp`",
+                            b->common.name);
+    }
     for (int k = 0; k < s->n_motion; k++) {
         const struct scene_motion *m = &s->motion[k];
         const int line = m->common.line;
         bool used = false;
         for (int w = 0; w < s->n_wall; w++) used |= strcmp(s->wall[w].motion, m->common.name) == 0;
-        if (!used) warn(r, line, "[motion %s] moves no wall", m->common.name);
+        for (int b = 0; b < s->n_solid; b++)
+            used |= strcmp(s->solid[b].clamp_motion, m->common.name) == 0;
+        if (!used) warn(r, line, "[motion %s] moves no wall and no clamp", m->common.name);
         if (!(m->start < m->stop))
             return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                             m->common.name, m->start, m->stop);
@@ -203,6 +214,27 @@ static enum err check_contacts(struct reader *r)
     return ERR_OK;
 }
 
+static enum err check_loads(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_load; k++) {
+        const struct scene_load *l = &s->load[k];
+        const int line = l->common.line;
+        if (!*l->body)
+            return bad_line(r, line, "[load %s] needs `body`, the solid it acts on",
+                            l->common.name);
+        if (scene_find_solid(s, l->body) < 0)
+            return no_such(r, line, "body", l->body, SECTION_solid);
+        if (l->shape.n == 0)
+            return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
+                            l->common.name);
+        if (!l->force.e[0] == !l->traction.e[0])
+            return bad_line(r, line, "[load %s] needs one of `force` and `traction`",
+                            l->common.name);
+    }
+    return ERR_OK;
+}
+
 /* A reference names a column: <probe>_<quantity>_<unit>. */
 static enum err check_references(struct reader *r)
 {
@@ -255,6 +287,7 @@ enum err case_check(struct reader *r)
     TRY(case_check_output(r));
     TRY(case_check_probes(r));
     TRY(check_contacts(r));
+    TRY(check_loads(r));
     TRY(check_references(r));
     return effects_check(s, r->diag);
 }

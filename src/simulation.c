@@ -267,6 +267,10 @@ static enum err build(struct simulation *s, struct diag *d)
         start_solid(s);
         solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
         if (s->effects & FX_CONTACT) TRY(create_contact(s, d));
+        if (s->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
+            TRY(drive_create(&s->drive, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID], d));
+            s->solid.drive = &s->drive;
+        }
         s->state.solid_stiffening = s->state.solid_slowing = 1;
         timestep_set_solid(s);
     }

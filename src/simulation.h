@@ -6,6 +6,7 @@
 
 #include "cells.h"
 #include "contact.h"
+#include "drive.h"
 #include "effects.h"
 #include "fluid.h"
 #include "ledger.h"
@@ -41,6 +42,7 @@ struct simulation {
     struct moving moving; /* walls that move; unused where none does */
     struct solid solid;   /* model of the solid; unused without one */
     struct contact contact; /* of the solid; unused without it */
+    struct drive drive;     /* of the solid; unused without loads and moving clamps */
     unsigned effects;       /* bits of effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */

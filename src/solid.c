@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "contact.h"
+#include "drive.h"
 #include "material.h"
 #include "smoothing.h"
 #include "solid_stencil.h"
@@ -428,6 +429,10 @@ static void forces_loop(const struct solid *s, struct particles *p)
 static void outer_forces(const struct solid *s, struct particles *p, double time)
 {
     if (s->contact) contact_forces(s->contact, s, p, time);
+    if (s->drive) {
+#pragma omp single
+        drive_forces(s->drive, s, p, time);
+    }
 }
 
 static void kick_and_drift(struct particles *p, double kick, double drift)
@@ -456,9 +461,31 @@ void solid_forces(const struct solid *s, struct particles *p)
     }
 }
 
-void solid_book_work(struct solid *s, double dt)
+void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
+                     double dt)
 {
     if (s->contact) s->work += dt * contact_power(s->contact);
+    if (s->drive) s->work += drive_work(s->drive, p, vx, vy, dt);
+}
+
+void solid_place_driven(const struct solid *s, struct particles *p, double time)
+{
+    if (s->drive) drive_place(s->drive, p, time);
+}
+
+/* Between the sub-steps: all threads together. */
+static void place_driven(const struct solid *s, struct particles *p, double time)
+{
+    if (!s->drive) return;
+#pragma omp single
+    drive_place(s->drive, p, time);
+}
+
+static void book_work(struct solid *s, const struct particles *p, double dt)
+{
+    if (!s->contact && !s->drive) return;
+#pragma omp single
+    solid_book_work(s, p, p->vx, p->vy, dt);
 }
 
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
@@ -466,14 +493,17 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     const double first = centred ? 0.5 * dt : 0;
 #pragma omp parallel num_threads(s->threads)
     {
-        if (centred) kick_and_drift(p, 0, first);
+        if (centred) {
+            kick_and_drift(p, 0, first);
+            place_driven(s, p, s->time + first);
+        }
         for (int k = 0; k < n; k++) {
             stress_loop(s, p);
             forces_loop(s, p);
             outer_forces(s, p, s->time + k * dt + first);
-#pragma omp single nowait
-            solid_book_work(s, dt);
+            book_work(s, p, dt);
             kick_and_drift(p, dt, k + 1 < n ? dt : dt - first);
+            place_driven(s, p, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
         }
     }
     s->time += n * dt;

@@ -45,6 +45,7 @@ struct solid_pack {
 };
 
 struct contact;
+struct drive;
 
 struct solid {
     int n_bodies;
@@ -63,9 +64,11 @@ struct solid {
     double paper_step;  /* Eq. 29, s */
     double *scratch[4]; /* room for the search of the step */
     double time; /* of the displacements, s: walls that are touched stand where they are then */
-    struct contact *contact;            /* NULL: none */
+    /* What acts from outside, each NULL where there is none. */
+    struct contact *contact;
+    struct drive *drive;
     double outer_omega2, outer_damping; /* what contact can add to omega_max^2 and damping_max */
-    double work; /* of moving walls on the solid since it was last asked for, J/m */
+    double work; /* of walls, clamps and loads on the solid since it was last asked for, J/m */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
@@ -83,8 +86,13 @@ void solid_forces(const struct solid *s, struct particles *p);
  * `centred`: half drift, kick, half drift, which is second order in time. */
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
 
-/* Books the work of what pushes from outside over a step of dt with the last forces. */
-void solid_book_work(struct solid *s, double dt);
+/* Books the work of what pushes from outside over a kick of dt with the last forces, from the velocities
+ * before it. */
+void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
+                     double dt);
+
+/* Puts what is driven where it is at a time. */
+void solid_place_driven(const struct solid *s, struct particles *p, double time);
 
 /* The largest stable step for the square of a frequency and a rate of damping, s. */
 double solid_step_of(double omega2, double damping);

@@ -110,6 +110,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
         s->solid.time = time + 0.5 * dt;
+        solid_place_driven(&s->solid, solid, s->solid.time);
         show_solid(solid, 0);
     }
     phase_add(s, PHASE_update, clock);
@@ -123,7 +124,8 @@ void symplectic_step(struct simulation *s, double t_limit)
     correct_fluid(fluid, dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
-        solid_book_work(&s->solid, dt);
+        solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
+        solid_place_driven(&s->solid, solid, time + dt);
         show_solid(solid, acceleration_weight(s, dt));
         s->state.solid_substeps++;
         s->substeps = 1;
@@ -138,8 +140,10 @@ void symplectic_solid(struct simulation *s, double dt)
     rates_of_solid(s);
     predict_solid(p, 0.5 * dt);
     s->solid.time += 0.5 * dt;
+    solid_place_driven(&s->solid, p, s->solid.time);
     rates_of_solid(s);
     correct_solid(p, dt);
-    solid_book_work(&s->solid, dt);
+    solid_book_work(&s->solid, p, p->vx0, p->vy0, dt);
     s->solid.time += 0.5 * dt;
+    solid_place_driven(&s->solid, p, s->solid.time);
 }
