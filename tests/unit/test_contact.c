@@ -20,7 +20,8 @@ void tearDown(void) { rig_close(&rig); }
     } while (0)
 
 #define BLOCKS                                                                                    \
-    "dp = 1 cm\nend_time = 1\n[contact all]\n[solid a]\nshape = box 0, 0, 0.04, 0.04\ndensity = " \
+    "dp = 1 cm\nend_time = 1\nintegrator = symplectic\n[contact all]\n[solid a]\nshape = box 0, " \
+    "0, 0.04, 0.04\ndensity = "                                                                   \
     "1000\n"                                                                                      \
     "young = 2e6\npoisson = 0.3\nartificial_viscosity = 0\nlaw = svk\n"                           \
     "[solid b]\nlike = a\nyoung = 1e6\ndensity = 2000\n"
