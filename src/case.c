@@ -327,6 +327,11 @@ int scene_find_solid(const struct scene *s, const char *name)
     return -1;
 }
 
+double scene_solid_dp(const struct scene *s, int solid)
+{
+    return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
+}
+
 int scene_find_wall(const struct scene *s, const char *name)
 {
     for (int k = 0; k < s->n_wall; k++)

@@ -153,6 +153,7 @@ static enum err check_joint(struct reader *r, const struct scene_solid *a,
         const char *key;
         double mine, its;
     } same[] = {
+        {"dp", a->dp, b->dp},
         {"hourglass", a->hourglass, b->hourglass},
         {"hourglass_form", a->hourglass_form, b->hourglass_form},
         {"viscosity_form", a->viscosity_form, b->viscosity_form},
@@ -166,11 +167,26 @@ static enum err check_joint(struct reader *r, const struct scene_solid *a,
     return ERR_OK;
 }
 
+/* Cells hold room for so many. */
+static enum err check_spacing(struct reader *r, int solid)
+{
+    const struct scene *s = r->scene;
+    const double ratio = s->top.dp / scene_solid_dp(s, solid);
+    if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || s->n_fluid == 0)) return ERR_OK;
+    return bad_line(
+        r, s->solid[solid].common.line,
+        "[solid %s] dp = %g m: from a third of the dp at the top, %g m, to all of it is "
+        "possible%s",
+        s->solid[solid].common.name, s->solid[solid].dp, s->top.dp,
+        s->n_fluid ? "" : ", or finer without fluid");
+}
+
 static enum err check_joined(struct reader *r)
 {
     const struct scene *s = r->scene;
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *a = &s->solid[k];
+        TRY(check_spacing(r, k));
         if (!*a->joined) continue;
         const int other = scene_find_solid(s, a->joined);
         if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);

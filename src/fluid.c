@@ -82,6 +82,11 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
         f->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity, sizeof *f->near_fluid[k],
                                        "cells near fluid", d);
         if (!f->near_fluid[k]) return ERR_MEMORY;
+        const int sections = k == KIND_WALL ? s->n_wall : s->n_solid;
+        f->volume[k] = arena_alloc(a, (size_t)sections, sizeof(double), "volumes", d);
+        if (!f->volume[k]) return ERR_MEMORY;
+        for (int b = 0; b < sections; b++)
+            f->volume[k][b] = k == KIND_WALL ? 1 : square(scene_solid_dp(s, b) / s->top.dp);
     }
     return ERR_OK;
 }

@@ -79,7 +79,8 @@ extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 struct fluid {
     struct fluid_constants k;
     unsigned effects;
-    bool idle_is_work;                 /* numerics.idle = work: dry walls are visited as well */
+    bool idle_is_work;          /* numerics.idle = work: dry walls are visited as well */
+    double *volume[KIND_COUNT]; /* [sections] of a dummy at rest over that of a fluid particle */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct lanes lanes[KIND_COUNT];
     int32_t

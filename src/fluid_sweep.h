@@ -217,7 +217,9 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_Y][place] = y;
     out[LANE_U][place] = (real)u[i];
     out[LANE_V][place] = (real)v[i];
-    out[LANE_VOLUME][place] = (real)(f->k.mass / f->k.rho0 * square(inv_h) / (1 + p->dens[i]));
+    /* Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the fluid. */
+    const double volume = f->k.mass / f->k.rho0 * square(inv_h) * f->volume[kind][p->body[i]];
+    out[LANE_VOLUME][place] = (real)(volume / (1 + p->dens[i]));
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
     const bool sticks = f->effects & FX_NO_SLIP && f->sticks[kind][p->body[i]];

@@ -37,7 +37,7 @@ static void bounding_box(struct region *region)
 static void choose_lattice(struct sampler *g, struct region *region)
 {
     const struct scene *s = g->scene;
-    const double dp = s->top.dp;
+    const double dp = region->dp;
     bool shifted = false;
     for (int c = 0; c < 2; c++) {
         region->origin[c] = s->numerics.lattice_origin[c];
@@ -51,7 +51,7 @@ static void choose_lattice(struct sampler *g, struct region *region)
     char place[PLACE_TEXT];
     scene_place(s, region->line, place);
     diag_warn(g->diag,
-              "%s: [solid %s] begins at (%.6g, %.6g), off the common lattice of dp = %.6g m; "
+              "%s: [solid %s] begins at (%.6g, %.6g), off the lattice of dp = %.6g m; "
               "its own lattice begins there",
               place, region->name, region->low[0], region->low[1], dp);
 }
@@ -74,13 +74,14 @@ static enum err check_size(struct sampler *g)
     double total = 0, cells = 0;
     for (int k = 0; k < g->n_regions; k++) {
         const struct region *region = &g->regions[k];
+        const double own = region->dp;
         for (int j = 0; j < region->add.n; j++)
-            total += piece_area(&region->add.item[j]) / square(dp);
+            total += piece_area(&region->add.item[j]) / square(own);
         double wide[2];
         for (int c = 0; c < 2; c++) {
-            const double low = fabs(region->low[c] - region->origin[c]) / dp;
-            const double high = fabs(region->high[c] - region->origin[c]) / dp;
-            wide[c] = (region->high[c] - region->low[c]) / dp + 3;
+            const double low = fabs(region->low[c] - region->origin[c]) / own;
+            const double high = fabs(region->high[c] - region->origin[c]) / own;
+            wide[c] = (region->high[c] - region->low[c]) / own + 3;
             if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
         }
         cells += wide[0] * wide[1];
@@ -110,6 +111,7 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
     struct region *region = &g->regions[g->n_regions++];
     *region = (struct region){
         .kind = kind, .body = body, .name = common->name, .line = common->line, .list = shape};
+    region->dp = kind == KIND_SOLID ? scene_solid_dp(g->scene, body) : g->scene->top.dp;
     if (shape->n == 0) {
         char place[PLACE_TEXT];
         scene_place(g->scene, common->line, place);
@@ -143,14 +145,14 @@ static enum err list_regions(struct sampler *g)
 /* --- rows --- */
 
 /* The first lattice index whose centre lies at or behind x. */
-static int64_t index_from(const struct sampler *g, const struct region *region, int c, double x)
+static int64_t index_from(const struct region *region, int c, double x)
 {
-    return (int64_t)ceil((x - region->origin[c]) / g->scene->top.dp - 0.5 - nudge_x);
+    return (int64_t)ceil((x - region->origin[c]) / region->dp - 0.5 - nudge_x);
 }
 
-static double centre(const struct sampler *g, const struct region *region, int c, int64_t index)
+static double centre(const struct region *region, int c, int64_t index)
 {
-    return region->origin[c] + ((double)index + 0.5) * g->scene->top.dp;
+    return region->origin[c] + ((double)index + 0.5) * region->dp;
 }
 
 /* x, brought between the region's left and right end. */
@@ -167,8 +169,8 @@ static int64_t mark(struct sampler *g, const struct region *region, const struct
     const int n = outline_crossings(o, y, g->scratch);
     int64_t marked = 0;
     for (int k = 0; k + 1 < n; k += 2) {
-        const int64_t from = index_from(g, region, 0, inside(region, g->scratch[k]));
-        const int64_t to = index_from(g, region, 0, inside(region, g->scratch[k + 1]));
+        const int64_t from = index_from(region, 0, inside(region, g->scratch[k]));
+        const int64_t to = index_from(region, 0, inside(region, g->scratch[k + 1]));
         if (to <= from) continue;
         memset(g->mask + (from - region->first[0]), value, (size_t)(to - from));
         marked += to - from;
@@ -179,7 +181,7 @@ static int64_t mark(struct sampler *g, const struct region *region, const struct
 /* Fills the mask for row j; counts the points that each shape covers, if asked. */
 static void mark_row(struct sampler *g, const struct region *region, int64_t j, int64_t *per_shape)
 {
-    const double y = centre(g, region, 1, j) + nudge_y * g->scene->top.dp;
+    const double y = centre(region, 1, j) + nudge_y * region->dp;
     memset(g->mask, 0, (size_t)region->count[0]);
     for (int k = 0; k < region->add.n; k++) {
         const int64_t marked = mark(g, region, &region->add.item[k], y, 1);
@@ -195,8 +197,8 @@ static enum err prepare_rows(struct sampler *g)
     for (int k = 0; k < g->n_regions; k++) {
         struct region *region = &g->regions[k];
         for (int c = 0; c < 2; c++) {
-            region->first[c] = index_from(g, region, c, region->low[c]) - 1;
-            region->count[c] = index_from(g, region, c, region->high[c]) + 1 - region->first[c];
+            region->first[c] = index_from(region, c, region->low[c]) - 1;
+            region->count[c] = index_from(region, c, region->high[c]) + 1 - region->first[c];
         }
         widest = region->count[0] > widest ? region->count[0] : widest;
         const int add = outlines_room(&region->add), minus = outlines_room(&region->minus);
@@ -228,7 +230,7 @@ static enum err count_points(struct sampler *g, struct region *region)
         return diag_fail(g->diag, ERR_INPUT,
                          "%s: shape %d of [%s %s] holds no particle: it is "
                          "narrower than dp = %g m, or lies between the lattice's centres",
-                         place, k + 1, kind_names[region->kind], region->name, g->scene->top.dp);
+                         place, k + 1, kind_names[region->kind], region->name, region->dp);
     }
     if (region->n) return ERR_OK;
     scene_place(g->scene, region->line, place);
@@ -257,8 +259,8 @@ static enum err append_points(struct sampler *g, const struct region *region, bo
         for (int64_t i = 0; i < region->count[0]; i++) {
             if (!g->mask[i]) continue;
             const int64_t k = p->n + (upright ? next[i]++ : filled);
-            p->x[k] = centre(g, region, 0, region->first[0] + i);
-            p->y[k] = centre(g, region, 1, region->first[1] + j);
+            p->x[k] = centre(region, 0, region->first[0] + i);
+            p->y[k] = centre(region, 1, region->first[1] + j);
             p->region[k] = (int32_t)(region - g->regions);
             filled++;
         }
@@ -279,7 +281,7 @@ static enum err clamp_points(struct sampler *g, const struct region *region, int
     int64_t *held = arena_alloc(&g->temp, (size_t)clamps->n, sizeof *held, "clamps", g->diag);
     if (!held) return ERR_MEMORY;
     for (int64_t k = from; k < p->n; k++) {
-        const double x = p->x[k] + nudge_x * s->top.dp, y = p->y[k] + nudge_y * s->top.dp;
+        const double x = p->x[k] + nudge_x * region->dp, y = p->y[k] + nudge_y * region->dp;
         for (int c = 0; c < o.n; c++) {
             if (!outline_contains(&o.item[c], x, y, g->scratch)) continue;
             p->clamped[k] = 1;

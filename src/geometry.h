@@ -15,6 +15,7 @@ struct region {
     int line;
     const struct shape_list *list;
     struct outlines add, minus;
+    double dp; /* of its lattice, m */
     double origin[2];
     double low[2], high[2];     /* bounding box of the shapes */
     int64_t first[2], count[2]; /* lattice points that the box spans */

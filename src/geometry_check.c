@@ -7,9 +7,9 @@
 
 #include <math.h>
 
-static double cells_to(const struct sampler *g, const struct region *region, int c, double x)
+static double cells_to(const struct region *region, int c, double x)
 {
-    return (x - region->origin[c]) / g->scene->top.dp;
+    return (x - region->origin[c]) / region->dp;
 }
 
 static bool on_lattice(double cells)
@@ -18,23 +18,22 @@ static bool on_lattice(double cells)
 }
 
 /* Number of lattice columns (c = 0) or rows (c = 1) between two coordinates. */
-static double points_between(const struct sampler *g, const struct region *region, int c,
-                             double low, double high)
+static double points_between(const struct region *region, int c, double low, double high)
 {
-    return ceil(cells_to(g, region, c, high) - 0.5 - 1e-6) -
-           ceil(cells_to(g, region, c, low) - 0.5 - 1e-6);
+    return ceil(cells_to(region, c, high) - 0.5 - 1e-6) -
+           ceil(cells_to(region, c, low) - 0.5 - 1e-6);
 }
 
 static void warn_box(struct sampler *g, const struct region *region, const struct shape *shape)
 {
-    const double dp = g->scene->top.dp;
+    const double dp = region->dp;
     char place[PLACE_TEXT];
     scene_place(g->scene, shape->line, place);
     for (int c = 0; c < 2; c++) {
         const double low = shape->pt[0][c], high = shape->pt[1][c];
-        const double a = cells_to(g, region, c, low), b = cells_to(g, region, c, high);
+        const double a = cells_to(region, c, low), b = cells_to(region, c, high);
         if (on_lattice(a) && on_lattice(b)) continue;
-        const double n = points_between(g, region, c, low, high);
+        const double n = points_between(region, c, low, high);
         const double from = region->origin[c] + ceil(a - 0.5 - 1e-6) * dp;
         diag_warn(g->diag,
                   "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
@@ -54,16 +53,16 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
         for (int j = 0; j < o->n; j++) {
             const double *a = o->pt[j], *b = o->pt[(j + 1) % o->n];
             const int c = a[0] == b[0] ? 0 : 1;
-            const double cells = cells_to(g, region, c, a[c]);
+            const double cells = cells_to(region, c, a[c]);
             if (a[c] != b[c] || on_lattice(cells)) continue;
             char place[PLACE_TEXT];
             scene_place(g->scene, region->list->item[shape].line, place);
-            const double fit = region->origin[c] + round(cells) * g->scene->top.dp;
+            const double fit = region->origin[c] + round(cells) * region->dp;
             diag_warn(g->diag,
                       "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
                       "%c = %g m would fit",
-                      place, kind_names[region->kind], region->name, "xy"[c], a[c],
-                      g -> scene -> top.dp, "xy"[c], fit);
+                      place, kind_names[region->kind], region->name, "xy"[c], a[c], region -> dp,
+                      "xy"[c], fit);
             return;
         }
     }
@@ -98,22 +97,22 @@ static enum err check_solid(struct sampler *g, const struct region *region)
 {
     double across = HUGE_VAL;
     for (int c = 0; c < 2; c++)
-        across = min2(across, points_between(g, region, c, region->low[c], region->high[c]));
+        across = min2(across, points_between(region, c, region->low[c], region->high[c]));
     for (int k = 0; k < region->list->n; k++)
         if (region->list->item[k].kind == SHAPE_POLYLINE)
-            across = min2(across, round(thinnest(&region->list->item[k]) / g->scene->top.dp));
+            across = min2(across, round(thinnest(&region->list->item[k]) / region->dp));
     char place[PLACE_TEXT];
     scene_place(g->scene, region->line, place);
     if (across < 2)
         return diag_fail(g->diag, ERR_INPUT,
                          "%s: [solid %s] is %.0f particle thick at dp = %g m; "
                          "bending needs at least 2, better 4",
-                         place, region->name, across, g->scene->top.dp);
+                         place, region->name, across, region->dp);
     if (across < 4)
         diag_warn(g->diag,
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
                   "will be inaccurate",
-                  place, region->name, across, g->scene->top.dp);
+                  place, region->name, across, region->dp);
     return ERR_OK;
 }
 

@@ -153,7 +153,7 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
         if (p->body[k] == body)
             nearest = min2(nearest, hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));
     /* A corner of a body is sqrt(1/2) dp away from its particle's centre. */
-    const double dp = s->top.dp, outside = nearest - sqrt(0.5) * dp;
+    const double dp = scene_solid_dp(s, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;
     char place[PLACE_TEXT];
     scene_place(s, probe->common.line, place);

@@ -48,16 +48,24 @@ static void table_insert(struct near_table *t, int64_t k)
     t->head[slot] = (int32_t)(k + 1);
 }
 
-/* The first point in the table, of another region, in one place with point k; -1: none. */
-static int64_t table_find(const struct near_table *t, const struct samples *p, int64_t k)
+/* Mean of the spacings of two points' lattices. */
+static double spacing(const struct region *regions, const struct samples *p, int64_t a, int64_t b)
 {
-    const double x = t->x[k], y = t->y[k], reach = square(same_place * t->side);
+    return 0.5 * (regions[p->region[a]].dp + regions[p->region[b]].dp);
+}
+
+/* The first point in the table, of another region, in one place with point k; -1: none. */
+static int64_t table_find(const struct near_table *t, const struct region *regions,
+                          const struct samples *p, int64_t k)
+{
+    const double x = t->x[k], y = t->y[k];
     const int64_t ci = cell_of(t, x), cj = cell_of(t, y);
     for (int64_t j = cj - 1; j <= cj + 1; j++)
         for (int64_t i = ci - 1; i <= ci + 1; i++)
             for (int32_t n = t->head[slot_of(t, i, j)]; n; n = t->next[n - 1])
                 if (p->region[n - 1] != p->region[k] &&
-                    square(t->x[n - 1] - x) + square(t->y[n - 1] - y) < reach)
+                    square(t->x[n - 1] - x) + square(t->y[n - 1] - y) <
+                        square(same_place * spacing(regions, p, k, n - 1)))
                     return n - 1;
     return -1;
 }
@@ -101,7 +109,7 @@ static enum err find_overlaps(struct sampler *g, const struct samples *p, struct
     for (int region = 0; region < g->n_regions; region++) {
         int64_t wrong = 0, first = -1, first_other = -1;
         for (; k < p->n && p->region[k] == region; k++) {
-            const int64_t other = table_find(t, p, k);
+            const int64_t other = table_find(t, g->regions, p, k);
             kept[k] = other < 0;
             if (kept[k]) table_insert(t, k);
             if (kept[k] || gives_way(g, p, k, other)) continue;

@@ -190,6 +190,8 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
+/* Spacing of a solid's particles, m. */
+double scene_solid_dp(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);
 
 /* Whether the snapshots of a scene have a field of pointdata.def. */

@@ -10,9 +10,10 @@
 #include "smoothing.h"
 #include "solid_stencil.h"
 
-static struct solid_body body_of(const struct scene *scene, const struct scene_solid *c)
+static struct solid_body body_of(const struct scene *scene, int k)
 {
-    const double dp = scene->top.dp, h = scene->h;
+    const struct scene_solid *const c = &scene->solid[k];
+    const double dp = scene_solid_dp(scene, k), h = scene->numerics.h_over_dp * dp;
     const double E = c->young, nu = c->poisson;
     const double bulk = E / (3 * (1 - 2 * nu));
     const double on = c->gravity ? 1 : 0;
@@ -91,7 +92,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     if (!s->body) return ERR_MEMORY;
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
-        s->body[k] = body_of(scene, &scene->solid[k]);
+        s->body[k] = body_of(scene, k);
         warn_of_flutter(&s->body[k], scene->solid[k].common.name, d);
         s->variational |= s->body[k].variational;
         s->kelvin_voigt |= s->body[k].damping_time > 0;
