@@ -45,6 +45,7 @@ static const char scene_text[] =
     "[solid more]\nlike = post\nshape = box 0.7, 0, 0.72, 0.1\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
     "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
+    "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
     "[reference more]\nprobe = tip_dx_m\nformula = 0\n";
 
 static bool is(const struct param *p, const char *section, const char *key)
@@ -59,6 +60,7 @@ static const char *companion(const struct param *p)
     if (is(p, "domain", "upper")) return "domain.lower=-0.2,-0.1";
     if (is(p, "solid", "minus") || is(p, "solid", "clamp"))
         return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
+    if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(p, "probe", "point") || is(p, "probe", "to")) return "probe more.quantity=flux";
     if (is(p, "reference", "file")) return "reference more.label=x";
@@ -87,6 +89,7 @@ static void example_is_accepted(const struct param *p)
     snprintf(text, sizeof text, "%s", scene_text);
     /* Of the two ways to give a reference one is to go, as `body` is where the fluid is probed. */
     if (is(p, "reference", "file")) *strstr(text, "formula") = '#';
+    if (is(p, "load", "traction")) *strstr(text, "force") = '#';
     if (is(p, "probe", "point") || is(p, "probe", "to"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);
     diag.code = ERR_OK;
