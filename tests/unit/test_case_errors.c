@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Bad case files, and the sentence that each of them is answered with (or how it begins). */
+#include "params.h"
 #include "scene.h"
 #include "unity.h"
 
@@ -309,6 +310,56 @@ static void test_each_is_refused_with_its_sentence(void)
     printf("found: %zu bad case files, each refused with its sentence\n", COUNT_OF(bad));
 }
 
+/* What is wrong with `*value` for a key of this type, or NULL where every text is right. */
+static const char *wrong(const struct param *p, const char **value)
+{
+    static char why[400];
+    switch (p->type) {
+    case PARAM_REAL:
+    case PARAM_INTEGER: *value = "9e300"; return "out of range: it must be ";
+    case PARAM_CHOICE:
+        *value = "zebra";
+        snprintf(why, sizeof why, "unknown choice; known: %s", p->choices);
+        return why;
+    case PARAM_VECTOR:
+        *value = "1";
+        snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1", p->key);
+        return why;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR:
+    case PARAM_NUMBERS: *value = "(1"; return p->count > 1 ? "" : "`(` is not closed";
+    case PARAM_SHAPES: *value = "cube 1"; return "";
+    case PARAM_TEXT: break;
+    }
+    return NULL;
+}
+
+/* Keys that are added to params.def are tried without another line here. */
+static void test_each_key_refuses_a_wrong_value_by_name(void)
+{
+    int tried = 0;
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *p = &param_table[k];
+        const struct section_info *section = &section_table[p->section];
+        const char *value, *why = wrong(p, &value);
+        if (!why) continue;
+        char text[1000], message[600], head[100] = "";
+        if (p->section != SECTION_top)
+            snprintf(head, sizeof head, section->named ? "[%s a]\n" : "[%s]\n", section->word);
+        snprintf(text, sizeof text, "%s%s = %s\n", head, p->key, value);
+        snprintf(message, sizeof message, "bad.cfg:%d: %s = %s: %s", *head ? 2 : 1, p->key, value,
+                 why);
+        struct scene s;
+        struct diag d = {0};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_parse(&s, text, "bad.cfg", 0, NULL, &d),
+                                      text);
+        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(message, d.text, strlen(message), text);
+        tried++;
+    }
+    TEST_ASSERT_TRUE(tried > 60);
+    printf("found: %d keys, each refuses a wrong value by name\n", tried);
+}
+
 static void read_bytes(const char *bytes, size_t n, const char *message)
 {
     const char *path = "test_case_errors.tmp";
@@ -348,6 +399,7 @@ static void test_a_folder_is_no_file(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_each_key_refuses_a_wrong_value_by_name);
     RUN_TEST(test_each_is_refused_with_its_sentence);
     RUN_TEST(test_a_zero_byte_is_refused);
     RUN_TEST(test_a_file_that_is_not_there);
