@@ -163,8 +163,9 @@ analyze:
 	@tools/analyze.sh $(ARGS)
 
 faults: $(PROGRAM)
-	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' KILLS=50 FULL_STEPS=40; \
-	 for t in kill full fork; do bash tests/fault/test_$$t.sh; done; bash tests/agree/test_restart_cases.sh
+	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)'; \
+	 export KILLS=50 FULL_STEPS=40 INJECT_STRIDE=1; \
+	 for t in kill full inject fork; do bash tests/fault/test_$$t.sh; done; bash tests/agree/test_restart_cases.sh
 
 absence:
 	@ABSENCE=1 SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py $(ARGS)

@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 CHECKS = ROOT / "tests" / "fault" / "checks.json"
 COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
-LONG = {"KILLS": "50", "FULL_STEPS": "40"}
+LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "1"}
 REHEARSALS = [
     ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run is through"),
     ("agree/test_stops.c", "a stop after every step, for every integrator, with sub-steps and without, and "
@@ -28,6 +28,8 @@ REHEARSALS = [
     ("unit/test_checkpoint.c", "a checkpoint with every byte flipped in turn, cut at every length, of "
      "another case: found, and the one before it used"),
     ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed under a run"),
+    ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file fails, or "
+     "kills the program before it is done (strace)"),
     ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain fails "
      "once"),
     ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),

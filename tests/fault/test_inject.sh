@@ -1,0 +1,88 @@
+#!/usr/bin/env bash
+# The n-th call of the system that makes, writes, syncs, renames or removes a file fails, or kills the
+# program before it is done (strace --inject), for n from 1 to the last: a sentence and status 2, or no
+# harm; afterwards the run goes on, or is begun anew where there was no checkpoint, to the same bits.
+# INJECT_STRIDE=1 tries every n (make faults), 9 every ninth.
+set -u
+sphfsi=$(realpath "${SPHFSI:-./sphfsi}")
+stride=${INJECT_STRIDE:-9}
+dir=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+strace -f -qq -o "$dir/trace" -e trace=none -e inject=fsync:error=EIO true 2>/dev/null || {
+    echo "strace is not there, or cannot inject"
+    exit 77
+}
+failures=0
+arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=1ms --set output.probe_interval=0.1ms
+    --set output.ledger_interval=0.2ms --set output.snapshot_interval=0.4ms
+    --set output.checkpoint_interval=0.3ms)
+run=$dir/run
+
+fail() {
+    echo "FAILED: $1"
+    sed 's/^/    /' "$dir/output" | head -n 5
+    failures=$((failures + 1))
+}
+
+hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json" 2>/dev/null; }
+
+"$sphfsi" "${arguments[@]}" --out "$dir/whole" >"$dir/output" 2>&1 || fail "the run itself"
+
+# inject CALL WHAT N: a run in which the N-th CALL meets WHAT. 1: there are not so many calls.
+inject() {
+    rm -rf "$run"
+    # Calls of the dynamic linker come first; none of those that are looked at here is among them.
+    # The shell's remark on a killed program goes with the braces.
+    { strace -f -qq -o "$dir/trace" -e trace="$1" -e inject="$1:$2:when=$3" \
+        "$sphfsi" "${arguments[@]}" --out "$run" >"$dir/output" 2>&1; } 2>/dev/null
+    status=$?
+    grep -q 'INJECTED\|SIGKILL' "$dir/trace"
+}
+
+finish() {
+    local what=$1
+    if compgen -G "$run/step-*.ckpt" >/dev/null; then
+        "$sphfsi" "${arguments[@]}" --out "$run" --restart >"$dir/output" 2>&1 || fail "$what: no restart"
+        again=$((again + 1))
+    else
+        rm -rf "$run"
+        "$sphfsi" "${arguments[@]}" --out "$run" >"$dir/output" 2>&1 || fail "$what: no new run"
+        anew=$((anew + 1))
+    fi
+    [ "$(hash "$run")" = "$(hash "$dir/whole")" ] || fail "$what: other bits"
+    cmp "$run/probes.csv" "$dir/whole/probes.csv" || fail "$what: probes.csv"
+    cmp "$run/ledger.csv" "$dir/whole/ledger.csv" || fail "$what: ledger.csv"
+    compgen -G "$run/*.part" >/dev/null && fail "$what: an unfinished file stays"
+}
+
+again=0 anew=0 kills=0 errors=0 harmless=0
+for call in rename fsync unlink link ftruncate write; do
+    for ((n = 1 + RANDOM % stride; ; n += stride)); do
+        inject $call signal=SIGKILL $n || break
+        kills=$((kills + 1))
+        [ $status = 137 ] || fail "killed at $call $n: exit status $status"
+        finish "killed at $call $n"
+    done
+done
+
+# HDF5's own writes (pwrite64) are left out: it does not survive their failure, so that the space is
+# claimed before they are made (fallocate).
+for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:ENOSPC fallocate:ENOSPC \
+    mkdir:EACCES; do
+    for ((n = 1 + RANDOM % stride; ; n += stride)); do
+        what="${call#*:} at ${call%:*} $n"
+        inject "${call%:*}" "error=${call#*:}" $n || break
+        errors=$((errors + 1))
+        case $status in
+            0) harmless=$((harmless + 1)) ;;
+            1 | 2) grep -q "^sphfsi: .*$dir" "$dir/output" || fail "$what: no path is named" ;;
+            *) fail "$what: exit status $status" ;;
+        esac
+        [ ! -e "$run/.lock" ] || [ "${call%:*}" = unlink ] || fail "$what: the lock is left"
+        finish "$what"
+    done
+done
+[ $kills -gt 5 ] && [ $errors -gt 5 ] || fail "only $kills kills and $errors errors"
+echo "found: $kills kills within a call, $errors calls that failed ($harmless of them harmless);" \
+    "$again runs gone on and $anew begun anew with the same bits; $failures failures"
+[ $failures = 0 ] || exit 1
