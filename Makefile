@@ -165,7 +165,8 @@ analyze:
 faults: $(PROGRAM)
 	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)'; \
 	 export KILLS=50 FULL_STEPS=40 INJECT_STRIDE=1; \
-	 for t in kill full inject fork; do bash tests/fault/test_$$t.sh; done; bash tests/agree/test_restart_cases.sh
+	 for t in fault/test_kill fault/test_full fault/test_inject fault/test_fork \
+	   agree/test_restart_cases; do bash tests/$$t.sh; done
 
 absence:
 	@ABSENCE=1 SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py $(ARGS)
