@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 CHECKS = ROOT / "tests" / "fault" / "checks.json"
 COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
-LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "1"}
+LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "5"}
 REHEARSALS = [
     ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run is through"),
     ("agree/test_stops.c", "a stop after every step, for every integrator, with sub-steps and without, and "
