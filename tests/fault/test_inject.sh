@@ -31,10 +31,12 @@ hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json" 2>/dev/nul
 # inject CALL WHAT N: a run in which the N-th CALL meets WHAT. 1: there are not so many calls.
 inject() {
     rm -rf "$run"
+    [ -z "$begun" ] || cp -r "$begun" "$run"
     # Calls of the dynamic linker come first; none of those that are looked at here is among them.
     # The shell's remark on a killed program goes with the braces.
     { strace -f -qq -o "$dir/trace" -e trace="$1" -e inject="$1:$2:when=$3" \
-        "$sphfsi" "${arguments[@]}" --out "$run" >"$dir/output" 2>&1; } 2>/dev/null
+        "$sphfsi" "${arguments[@]}" --out "$run" ${begun:+--restart "$run/$older"} \
+        >"$dir/output" 2>&1; } 2>/dev/null
     status=$?
     grep -q 'INJECTED\|SIGKILL' "$dir/trace"
 }
@@ -55,6 +57,7 @@ finish() {
     compgen -G "$run/*.part" >/dev/null && fail "$what: an unfinished file stays"
 }
 
+begun='' older=$(cd "$dir/whole" && ls step-*.ckpt | head -n 1)
 again=0 anew=0 kills=0 errors=0 harmless=0
 for call in rename fsync unlink link ftruncate write pwrite64; do
     for ((n = 1 + RANDOM % stride; ; n += stride)); do
@@ -64,6 +67,18 @@ for call in rename fsync unlink link ftruncate write pwrite64; do
         finish "killed at $call $n"
     done
 done
+
+# A restart from the older of two checkpoints, while it removes the later one and cuts rows and snapshots:
+# a kill must not leave the later one beside rows that were cut.
+begun=$dir/whole
+for call in unlink ftruncate rename; do
+    for ((n = 1; n < 20; n += 1 + stride / 10)); do
+        inject $call signal=SIGKILL $n || break
+        kills=$((kills + 1))
+        finish "restart killed at $call $n"
+    done
+done
+begun=''
 
 # HDF5 writes by pwrite64 and cuts by ftruncate; all else is of the program itself.
 for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:ENOSPC fallocate:ENOSPC \
