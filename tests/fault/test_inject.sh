@@ -15,7 +15,7 @@ strace -f -qq -o "$dir/trace" -e trace=none -e inject=fsync:error=EIO true 2>/de
 failures=0
 arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=1ms --set output.probe_interval=0.1ms
     --set output.ledger_interval=0.2ms --set output.snapshot_interval=0.4ms
-    --set output.checkpoint_interval=0.3ms)
+    --set output.checkpoint_interval=0.4ms)
 run=$dir/run
 
 fail() {
