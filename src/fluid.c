@@ -20,6 +20,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .rho0 = s->rho0,
         .mass = s->rho0 * square(s->top.dp),
         .alpha = fluid->artificial_viscosity,
+        .shifting = fluid->shifting,
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
@@ -89,6 +90,25 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
             f->volume[k][b] = k == KIND_WALL ? 1 : square(scene_solid_dp(s, b) / s->top.dp);
     }
     return ERR_OK;
+}
+
+/* Skillen et al. 2013 for the size; at the free surface, where the divergence of the positions falls from 2
+ * to below 1.5, the shift fades out as it does in Dominguez et al. 2022. */
+double fluid_shift(const struct fluid *f, struct particles *p, double dt)
+{
+    const double full = 2, none = 1.5;
+    double longest2 = 0;
+#pragma omp parallel for schedule(static) num_threads(f->threads) reduction(max : longest2)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double fade = min2(1, max2(0, (p->spread[i] - none) / (full - none)));
+        const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+        const double size = -f->k.shifting * f->k.h * speed * dt * fade;
+        const double dx = size * p->crowd_x[i], dy = size * p->crowd_y[i];
+        p->x[i] += dx;
+        p->y[i] += dy;
+        longest2 = max2(longest2, dx * dx + dy * dy);
+    }
+    return sqrt(longest2);
 }
 
 static bool fluid_around(const struct cells *c, int32_t cell)

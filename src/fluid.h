@@ -11,8 +11,9 @@ struct fluid_constants {
     double h, c0, rho0;
     double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double alpha; /* Eq. 7 */
-    double nu;    /* laminar viscosity, m^2/s */
-    double delta; /* Eq. 6 */
+    double shifting; /* A of Lind et al. 2012 */
+    double nu;       /* laminar viscosity, m^2/s */
+    double delta;    /* Eq. 6 */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };
@@ -72,7 +73,8 @@ struct fluid_sweeps {
 #define ANY_EFFECTS (~0u)
 
 /* Pair effects that kernels are stamped for. */
-#define PAIR_EFFECTS (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP)
+#define PAIR_EFFECTS \
+    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
@@ -96,6 +98,10 @@ struct fluid {
 /* Chooses the kernel and makes room for lanes and tiles. */
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
                       const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
+
+/* Moves particles by A h |v| dt down the gradient of their concentration, as of the last evaluation, but
+ * for those at the free surface; returns the longest way, m. */
+double fluid_shift(const struct fluid *f, struct particles *p, double dt);
 
 /* After sorting: finds the cells of walls and solids that have fluid within reach. */
 void fluid_find_near(struct fluid *f, const struct cells *c);

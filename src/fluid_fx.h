@@ -24,9 +24,10 @@ struct pair {
 };
 
 struct sums {
-    vreal ax, ay;   /* Pa */
-    vreal rate;     /* m/s */
-    vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
+    vreal ax, ay;                   /* Pa */
+    vreal rate;                     /* m/s */
+    vreal crowd_x, crowd_y, spread; /* 1: sums of slope xi and of slope |xi|^2 */
+    vreal approach;                 /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
 /* Constants of the sweep, spread over the lanes. */
@@ -100,6 +101,15 @@ SPHFSI_INLINE void fx_diffusion(const struct receiver *a, const struct pair *q, 
     vreal step = a->dens - q->dens;
     if (hydrostatic) step = step - vfma(k->gy, q->y, k->gx * q->x);
     s->rate = vfma(a->diffusion * step, q->slope * (q->r2 * inv), s->rate);
+}
+
+/* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
+ * - sum of V_b x_ab . grad W. */
+SPHFSI_INLINE void fx_crowd(const struct pair *q, struct sums *s)
+{
+    s->crowd_x = vfma(q->slope, q->x, s->crowd_x);
+    s->crowd_y = vfma(q->slope, q->y, s->crowd_y);
+    s->spread = vfma(q->slope, q->r2, s->spread);
 }
 
 /* Eq. 28b: the pair's rate of approach or parting. */

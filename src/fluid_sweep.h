@@ -282,6 +282,7 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
             s->ax = s->ax - weight * q.u;
             s->ay = s->ay - weight * q.v;
         }
+        if (fx & FX_SHIFTING) fx_crowd(&q, s);
         fx_approach(&q, inv, s);
         const vreal g = q.slope * stress;
         s->ax = vfma(g, q.x, s->ax);
@@ -305,6 +306,7 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
             s->ax = s->ax - weight * (a->u - vload(&tile->field[LANE_MIRROR_U][j]));
             s->ay = s->ay - weight * (a->v - vload(&tile->field[LANE_MIRROR_V][j]));
         }
+        if (fx & FX_SHIFTING) fx_crowd(&q, s);
         fx_approach(&q, inv, s);
         const vreal g = q.slope * fx_pressure(a, &q);
         s->ax = vfma(g, q.x, s->ax);
@@ -324,6 +326,14 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
     p->ddens[i] = -slope * (1 + dens) * (double)vsum(s->rate);
     top->acceleration2 = max2(top->acceleration2, ax * ax + ay * ay);
     top->approach = max2(top->approach, (double)vtop(s->approach));
+}
+
+SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles *p, int32_t i,
+                               const struct sums *s)
+{
+    p->crowd_x[i] = -KERNEL_SLOPE / k->h * (double)vsum(s->crowd_x);
+    p->crowd_y[i] = -KERNEL_SLOPE / k->h * (double)vsum(s->crowd_y);
+    p->spread[i] = KERNEL_SLOPE * (double)vsum(s->spread);
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
@@ -349,10 +359,11 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
                                    vset(own[LANE_P][i]),
                                    vset(own[LANE_DENS][i]),
                                    vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
-        struct sums s = {vset(0), vset(0), vset(0), vset(0)};
+        struct sums s = {.approach = vset(0)};
         sum_fluid(tile, &a, k, fx, &s);
         sum_dummies(dummies, &a, k, fx, &s);
         rates_store(&f->k, p, i, &s, top);
+        if (fx & FX_SHIFTING) crowd_store(&f->k, p, i, &s);
     }
 }
 

@@ -327,6 +327,13 @@ static void take_work(struct simulation *s)
     s->solid.work = 0;
 }
 
+/* Moves fluid particles to where they are fewer. */
+static double shift_fluid(struct simulation *s, double clock)
+{
+    fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+    return phase_add(s, PHASE_shift, clock);
+}
+
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 {
     s->solid.time = s->state.time;
@@ -347,6 +354,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         leapfrog_step(s, t_limit);
     double clock = wall_clock();
     /* So that the state does not depend on whether anybody looks at it between two steps. */
+    if (s->effects & FX_SHIFTING) clock = shift_fluid(s, clock);
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
     const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
     find_speed(s);

@@ -141,6 +141,9 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     a->ax += factor * gx;
     a->ay += factor * gy;
     if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
+    a->cx += V * gx;
+    a->cy += V * gy;
+    a->spread -= V * (dx * gx + dy * gy);
     a->drho += moved + diffused;
     a->size_a +=
         t->mass * ((fabs(a->p) + fabs(b->p)) / (a->rho * b->rho) + fabs(Pi)) * hypot(gx, gy);

@@ -7,11 +7,12 @@
 #include "simulation.h"
 
 struct twin_point {
-    double x, y, u, v; /* m, m/s; of a solid: the velocity that the fluid sees */
-    double ax, ay;     /* m/s^2: of a fluid particle the result, of the others given */
-    double rho, p;     /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
-    double drho;       /* kg/(m^3 s) */
-    double mu, mv;     /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
+    double x, y, u, v;     /* m, m/s; of a solid: the velocity that the fluid sees */
+    double ax, ay;         /* m/s^2: of a fluid particle the result, of the others given */
+    double rho, p;         /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
+    double cx, cy, spread; /* 1/m, 1: gradient of the concentration, divergence of the positions */
+    double drho;           /* kg/(m^3 s) */
+    double mu, mv;         /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
     bool sticks;
     double fx, fy; /* N/m: force of the fluid on a solid particle, Eq. 21b */
     /* Sums of the sizes of the terms: what round-off is relative to. */

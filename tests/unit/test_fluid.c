@@ -203,6 +203,71 @@ static void test_coincident_and_lone_particles(void)
     TEST_ASSERT_TRUE(isfinite(rig.sim.fluid.extremes.approach));
 }
 
+/* Lind et al. 2012, on b: grad C = m/rho_a grad_b W = 640/1010 * 0.3481514380135211 (0.6, 0.8), and the
+ * divergence of the positions 640/1010 * 0.3481514 |x|^2 = 0.2206108122065876: too little for a shift. */
+static void test_concentration_by_hand(void)
+{
+    place("w.shifting=2", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    const double size = 0.2206108122065876;
+    assert_near(1e-14, 0.6 * size, p->crowd_x[b], "gradient, x");
+    assert_near(1e-14, 0.8 * size, p->crowd_y[b], "gradient, y");
+    assert_near(1e-14, size, p->spread[b], "divergence");
+    const double x = p->x[b];
+    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, p, 0.1) == 0 && p->x[b] == x);
+}
+
+static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
+                            "[domain]\nlower = -2, -2\nupper = 4, 4\n"
+                            "[fluid w]\nshape = box 0, 0, 2, 2\nsound_speed = 10\nshifting = 2\n";
+
+/* Inside of a lattice all is even and nothing is shifted; a particle that is out of its place by
+ * 0.01 = 0.1 dp goes back by A h |v| dt |grad C|; one at the surface stays. */
+static void test_shift_evens_out(void)
+{
+    rig_open(&rig, block, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) p->vx[i] = 1;
+    rig_evaluate(&rig);
+    for (int64_t i = 0; i < p->n; i++) {
+        const double edge = fmin(fmin(p->x[i], 2 - p->x[i]), fmin(p->y[i], 2 - p->y[i]));
+        if (edge < 0.3) continue;
+        assert_near(1e-12, 0, hypot(p->crowd_x[i], p->crowd_y[i]), "gradient inside");
+        /* The lattice's quadrature of 2: 1.96566 for h/dp = 1.35. */
+        assert_near(1e-3, 1.9657, p->spread[i], "divergence inside");
+    }
+    int64_t out = 0, corner = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (hypot(p->x[i] - 1.05, p->y[i] - 1.05) < 0.01) out = i;
+        if (hypot(p->x[i] - 0.05, p->y[i] - 0.05) < 0.01) corner = i;
+    }
+    p->x[out] += 0.01;
+    rig_evaluate(&rig);
+    const double x = p->x[out], y = p->y[out], at = p->x[corner];
+    const double fade = (p->spread[out] - 1.5) / 0.5;
+    const double expected = 2 * 0.135 * 0.02 * fade * p->crowd_x[out];
+    TEST_ASSERT_TRUE(fade > 0.5 && p->crowd_x[out] > 0.1);
+    fluid_shift(&rig.sim.fluid, p, 0.02);
+    assert_near(1e-15, x - expected, p->x[out], "x");
+    assert_near(1e-14, y, p->y[out], "y");
+    TEST_ASSERT_TRUE(p->x[corner] == at);
+}
+
+/* A shift that vanishes leaves the bits of a scene without. */
+static void test_no_shift_is_the_limit(void)
+{
+    double x[2], vy[2];
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, block, k ? "w.shifting=1e-300" : "w.shifting=0", "w.velocity=y, -x", NULL);
+        TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_SHIFTING));
+        TEST_ASSERT_TRUE(k == !!rig.sim.kind[KIND_FLUID].spread);
+        rig_steps(&rig, 20, 1);
+        x[k] = rig.sim.kind[KIND_FLUID].x[77];
+        vy[k] = rig.sim.kind[KIND_FLUID].vy[77];
+    }
+    TEST_ASSERT_TRUE(x[0] == x[1] && vy[0] == vy[1]);
+}
+
 /* Momentum of the disordered fluid: forces cancel to the round-off of their sizes. */
 static void test_forces_between_particles_cancel(void)
 {
@@ -243,6 +308,9 @@ int main(void)
     RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
     RUN_TEST(test_nothing_beyond_the_support);
     RUN_TEST(test_coincident_and_lone_particles);
+    RUN_TEST(test_concentration_by_hand);
+    RUN_TEST(test_shift_evens_out);
+    RUN_TEST(test_no_shift_is_the_limit);
     RUN_TEST(test_forces_between_particles_cancel);
     return UNITY_END();
 }
