@@ -70,6 +70,7 @@ static enum err check_fluids(struct reader *r)
             {"density", f->density, first->density},
             {"sound_speed", c0, s->c0},
             {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
+            {"tensile_control", f->tensile_control, first->tensile_control},
             {"shifting", f->shifting, first->shifting},
             {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
             {"density_diffusion", f->density_diffusion, first->density_diffusion},

@@ -20,6 +20,8 @@ static struct fluid_constants constants_of(const struct scene *s)
         .rho0 = s->rho0,
         .mass = s->rho0 * square(s->top.dp),
         .alpha = fluid->artificial_viscosity,
+        .tensile = fluid->tensile_control,
+        .dp = s->top.dp,
         .shifting = fluid->shifting,
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,

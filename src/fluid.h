@@ -11,6 +11,8 @@ struct fluid_constants {
     double h, c0, rho0;
     double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double alpha; /* Eq. 7 */
+    double tensile;  /* epsilon of Monaghan 2000 */
+    double dp;       /* spacing that it is relative to */
     double shifting; /* A of Lind et al. 2012 */
     double nu;       /* laminar viscosity, m^2/s */
     double delta;    /* Eq. 6 */
@@ -73,8 +75,9 @@ struct fluid_sweeps {
 #define ANY_EFFECTS (~0u)
 
 /* Pair effects that kernels are stamped for. */
-#define PAIR_EFFECTS \
-    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING)
+#define PAIR_EFFECTS                                                                      \
+    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING | \
+     FX_TENSILE)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 

@@ -32,10 +32,11 @@ struct sums {
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity; /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
-    vreal laminar;   /* 2 nu rho0/h, kg/(m^2 s) */
-    vreal gx, gy;    /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal eta2;      /* (eta/h)^2 = 0.01 */
+    vreal viscosity;      /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
+    vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
+    vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
 /* Geometry of the pairs, Eq. 5. */
@@ -82,6 +83,17 @@ SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q,
 {
     const vreal both = (vset(1) + a->dens) * (vset(1) + q->dens);
     return -(k->viscosity * vmin(q->vx, vset(0))) * (both * damping);
+}
+
+/* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
+SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
+                               const struct lane_constants *k)
+{
+    const vreal r = vsqrt(q->r2);
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r, vset(1)));
+    const vreal f = k->close * (t * t) * (t * t) * vfma(vset(2), r, vset(1)), f2 = f * f;
+    const vreal tension = vmin(a->p, vset(0)) + vmin(q->p, vset(0));
+    return -(k->tensile * tension) * (f2 * f2);
 }
 
 /* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:

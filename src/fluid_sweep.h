@@ -277,6 +277,7 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
         } else {
             inv = vset(1) / (q.r2 + k->eta2);
         }
+        if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
         if (fx & FX_LAMINAR) {
             const vreal weight = fx_laminar(&q, inv, k);
             s->ax = s->ax - weight * q.u;
@@ -399,6 +400,8 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
     const struct lane_constants k = {
         vset((real)(fk->alpha * fk->c0 * fk->rho0)),
         vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
+        vset((real)fk->tensile),
+        vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
         vset((real)(fk->gravity[0] * per_c2)),
         vset((real)(fk->gravity[1] * per_c2)),
         vset((real)ETA2),

@@ -45,6 +45,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .alpha = f->artificial_viscosity,
                        .delta = f->density_diffusion,
                        .nu = f->laminar_viscosity,
+                       .tensile = f->tensile_control,
+                       .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
     for (int axis = 0; axis < 2; axis++)
@@ -138,6 +140,14 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     const double factor = -t->mass * ((a->p + b->p) / (a->rho * b->rho) + Pi);
     const double moved = a->rho * V * (du * gx + dv * gy);
     const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
+    if (!slip && t->tensile > 0) {
+        const double f = kernel(r, t->h) / kernel(t->dp, t->h);
+        const double pull = fmax(-a->p, 0) + fmax(-b->p, 0);
+        const double push = -t->mass * t->tensile * pull * pow(f, 4) / (a->rho * b->rho);
+        a->ax += push * gx;
+        a->ay += push * gy;
+        a->size_a += fabs(push) * hypot(gx, gy);
+    }
     a->ax += factor * gx;
     a->ay += factor * gy;
     if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));

@@ -21,7 +21,7 @@ struct twin_point {
 };
 
 struct twin {
-    double h, mass, c0, rho0, alpha, delta, nu, g[2];
+    double h, mass, c0, rho0, alpha, delta, nu, tensile, dp, g[2];
     double period[2]; /* 0: none */
     bool suction;     /* walls and structures may pull */
     bool hydrostatic; /* the form of Fourtakas et al. 2019 for Eq. 6 */

@@ -32,6 +32,8 @@ static const struct {
      "line 6: [fluid w] laminar_viscosity"},
     {TOP FLUID "laminar_viscosity = 1e-3\n" WALL "slip = none\n",
      FX_FLUID | FX_LAMINAR | FX_WALL | FX_NO_SLIP, EFFECT_NO_SLIP, "line 9: [wall bed] slip"},
+    {TOP FLUID "tensile_control = 0.2\n", FX_FLUID | FX_TENSILE, EFFECT_TENSILE,
+     "line 6: [fluid w] tensile_control"},
     {TOP FLUID "shifting = 2\n", FX_FLUID | FX_SHIFTING, EFFECT_SHIFTING,
      "line 6: [fluid w] shifting"},
     {TOP "gravity = 0, -9.81\n" FLUID, FX_FLUID | FX_GRAVITY, EFFECT_GRAVITY, "line 3: gravity"},

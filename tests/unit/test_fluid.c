@@ -10,6 +10,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\n"
                            "[numerics]\nh_over_dp = 1.25\nskin = 0.5\n"
@@ -203,6 +204,69 @@ static void test_coincident_and_lone_particles(void)
     TEST_ASSERT_TRUE(isfinite(rig.sim.fluid.extremes.approach));
 }
 
+/* Monaghan 2000 with epsilon = 0.2: rho = 990 and 1020 kg/m^3 have P_a = 1e5/7 (0.99^7 - 1) =
+ * -970.4950, P_b = 2124.0810 Pa. W(1)/W(0.8) = ((1/2)^4 3)/((0.6)^4 2.6) = 0.55644587, to the fourth
+ * 0.09587198, so that 0.2 * 970.4950 * 0.09587198 = 18.608656 Pa are added to P_a + P_b = 1153.5859 Pa. */
+static void test_tension_is_pushed_against(void)
+{
+    double ax[2];
+    for (int k = 0; k < 2; k++) {
+        place(k ? "w.tensile_control=0.2" : "w.tensile_control=0", "gravity=0,0");
+        p->dens[0] = -0.01;
+        evaluate(0, 0, 0, 0);
+        ax[k] = p->ax[a];
+        assert_near(1e-13, -ax[k], p->ax[b], "ax of b");
+    }
+    const double pa = 1e5 / 7 * (pow(0.99, 7) - 1), f = 3.0 / 16 / (pow(0.6, 4) * 2.6);
+    const double push = 640 * 0.2 * -pa * pow(f, 4) / (990 * 1020.0) * 0.3481514380135211;
+    TEST_ASSERT_TRUE(push > 3e-3);
+    assert_near(1e-13, 0.6 * push, ax[1] - ax[0], "push");
+}
+
+/* No tension, no bit changed; nor where epsilon vanishes. */
+static void test_no_tension_is_the_limit(void)
+{
+    double ax[4];
+    const char *const control[4] = {"0", "0.2", "0", "1e-300"};
+    for (int k = 0; k < 4; k++) {
+        char set[64];
+        snprintf(set, sizeof set, "w.tensile_control=%s", control[k]);
+        place(set, "gravity=0,0");
+        if (k > 1) p->dens[0] = -0.01;
+        evaluate(1, 0, -1, 2);
+        ax[k] = p->ax[a];
+    }
+    TEST_ASSERT_TRUE(ax[0] == ax[1] && ax[2] == ax[3] && ax[0] != ax[2]);
+}
+
+static double closest_after(const char *control)
+{
+    rig_open(&rig,
+             "dp = 0.1\nend_time = 9\nprecision = double\nintegrator = symplectic\n"
+             "[domain]\nlower = 0, 0\nupper = 1, 1\nperiodic = xy\n"
+             "[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 10\npressure = -1000\n"
+             "artificial_viscosity = 0.1\n",
+             control, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 3;
+    for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.002 * noise(&seed);
+    rig_run(&rig, 1.5);
+    double closest = 1;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int64_t j = 0; j < i; j++)
+            closest = fmin(closest, hypot(cells_short_way(&rig.sim.cells, 0, p->x[i] - p->x[j]),
+                                          cells_short_way(&rig.sim.cells, 1, p->y[i] - p->y[j])));
+    return closest / 0.1;
+}
+
+/* Stretched fluid at -1000 Pa, a lattice disturbed by 2 % of dp, clumps within 1.5 s: its closest pair is
+ * 0.67 dp apart. With epsilon = 0.2 the lattice stays, 0.98 dp. */
+static void test_stretched_fluid_does_not_clump(void)
+{
+    assert_at_most(0.75, closest_after("w.tensile_control=0"), "closest pair over dp, without");
+    assert_at_most(-0.95, -closest_after("w.tensile_control=0.2"), "closest pair over dp, less");
+}
+
 /* Lind et al. 2012, on b: grad C = m/rho_a grad_b W = 640/1010 * 0.3481514380135211 (0.6, 0.8), and the
  * divergence of the positions 640/1010 * 0.3481514 |x|^2 = 0.2206108122065876: too little for a shift. */
 static void test_concentration_by_hand(void)
@@ -272,7 +336,7 @@ static void test_no_shift_is_the_limit(void)
 static void test_forces_between_particles_cancel(void)
 {
     rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35",
-             "w.laminar_viscosity=0.3", NULL);
+             "w.laminar_viscosity=0.3", "w.tensile_control=0.3", NULL);
     p = &rig.sim.kind[KIND_FLUID];
     uint64_t seed = 11;
     for (int64_t i = 0; i < p->n; i++) {
@@ -308,6 +372,9 @@ int main(void)
     RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
     RUN_TEST(test_nothing_beyond_the_support);
     RUN_TEST(test_coincident_and_lone_particles);
+    RUN_TEST(test_tension_is_pushed_against);
+    RUN_TEST(test_no_tension_is_the_limit);
+    RUN_TEST(test_stretched_fluid_does_not_clump);
     RUN_TEST(test_concentration_by_hand);
     RUN_TEST(test_shift_evens_out);
     RUN_TEST(test_no_shift_is_the_limit);
