@@ -33,6 +33,7 @@ static struct fluid_constants constants_of(const struct scene *s)
 /* Fields that the set calls for in the lanes of a kind. */
 static int lanes_wanted(enum kind kind, unsigned effects)
 {
+    if (kind == KIND_FLUID && effects & FX_ANTUONO) return LANE_SLOPE_FIELDS;
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? LANE_NO_SLIP_FIELDS : LANE_FIELDS;
 }
 
@@ -152,6 +153,11 @@ static void pass_lanes(struct fluid *f, struct particles kinds[KIND_COUNT], cons
     f->sweeps->lanes(f, kinds, c);
 }
 
+static void pass_slope(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    f->sweeps->slopes(f, kinds, c);
+}
+
 static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
@@ -169,6 +175,7 @@ static const struct pass {
     void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 } passes[] = {
     {PHASE_lanes, pass_lanes},
+    {PHASE_slope, pass_slope},
     {PHASE_wall, pass_wall},
     {PHASE_fluid, pass_fluid},
 };

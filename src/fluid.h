@@ -43,6 +43,10 @@ enum lane_field {
     LANE_MIRROR_V,
     LANE_STICKS,
     LANE_NO_SLIP_FIELDS,
+    /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times h. */
+    LANE_SLOPE_X = LANE_FIELDS,
+    LANE_SLOPE_Y,
+    LANE_SLOPE_FIELDS,
     LANE_MOST = LANE_NO_SLIP_FIELDS
 };
 
@@ -65,6 +69,9 @@ struct fluid_sweeps {
     size_t tile_head, tile_row; /* of a candidate tile, and of each of its fields */
     /* Pressure by the equation of state, and lanes of the fluid. */
     void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+    /* Renormalised gradient of the fluid's density, and its lanes. */
+    void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                   const struct cells *c);
     /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their lanes, and the
      * fluid's force on solid particles (Eq. 21b). */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
@@ -77,7 +84,7 @@ struct fluid_sweeps {
 /* Pair effects that kernels are stamped for. */
 #define PAIR_EFFECTS                                                                      \
     (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING | \
-     FX_TENSILE)
+     FX_TENSILE | FX_ANTUONO)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 

@@ -10,7 +10,8 @@
 /* Particle a, spread over the lanes. */
 struct receiver {
     vreal x, y, u, v, p, dens;
-    vreal diffusion; /* 2 delta c0/(1 + dens) of Eq. 6, m/s */
+    vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
+    vreal diffusion;        /* 2 delta c0/(1 + dens) of Eq. 6, m/s */
 };
 
 /* Pairs of a with a pack of candidates b. */
@@ -21,6 +22,7 @@ struct pair {
     vreal vx;      /* v_ab . xi_ab, m/s */
     vreal slope;   /* V_b/h^2 t^3 */
     vreal p, dens; /* of b */
+    vreal slope_x, slope_y;
 };
 
 struct sums {
@@ -105,13 +107,17 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct lan
 }
 
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With
- * `hydrostatic` (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
- * g . x_ba/c0^2, does not diffuse. */
+ * FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
+ * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
+ * of both particles' gradients. */
 SPHFSI_INLINE void fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
-                                const struct lane_constants *k, bool hydrostatic, struct sums *s)
+                                const struct lane_constants *k, unsigned fx, struct sums *s)
 {
     vreal step = a->dens - q->dens;
-    if (hydrostatic) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    if (fx & FX_FOURTAKAS) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    if (fx & FX_ANTUONO)
+        step = step - vset((real)0.5) *
+                          vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
     s->rate = vfma(a->diffusion * step, q->slope * (q->r2 * inv), s->rate);
 }
 

@@ -110,6 +110,59 @@ static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUN
         lanes_of_cell(f, &kinds[KIND_FLUID], c, list->active[k]);
 }
 
+/* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,
+ * (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W, times h. Where the neighbours
+ * span no plane (a determinant below a thousandth of the trace squared) it is taken as zero. */
+static void slope_of(const struct SWEEP(tile) * tile, real x, real y, real dens, double slope[2])
+{
+    vreal xx = vset(0), xy = vset(0), yy = vset(0), dx = vset(0), dy = vset(0);
+    for (int j = 0; j < tile->n; j += LANES) {
+        const vreal rx = vset(x) - vload(&tile->field[LANE_X][j]);
+        const vreal ry = vset(y) - vload(&tile->field[LANE_Y][j]);
+        const vreal q = vsqrt(vfma(ry, ry, rx * rx));
+        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1)));
+        const vreal w = vload(&tile->field[LANE_VOLUME][j]) * (t * t * t);
+        const vreal step = w * (vset(dens) - vload(&tile->field[LANE_DENS][j]));
+        xx = vfma(w * rx, rx, xx);
+        xy = vfma(w * rx, ry, xy);
+        yy = vfma(w * ry, ry, yy);
+        dx = vfma(step, rx, dx);
+        dy = vfma(step, ry, dy);
+    }
+    const double a = (double)vsum(xx), b = (double)vsum(xy), c = (double)vsum(yy);
+    const double u = (double)vsum(dx), v = (double)vsum(dy), det = a * c - b * b;
+    const bool good = det > 1e-3 * square(a + c);
+    slope[0] = good ? (c * u - b * v) / det : 0;
+    slope[1] = good ? (a * v - b * u) / det : 0;
+}
+
+static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                          const struct cells *c)
+{
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+    struct particles *const p = &kinds[KIND_FLUID];
+    real *const *const lane = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
+#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
+    for (int32_t k = 0; k < list->n_active; k++) {
+        const int32_t cell = list->active[k];
+        struct SWEEP(tile) *const tile = thread_tile(f, 0);
+        tile->fields = LANE_FIELDS;
+        tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
+        for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+            double slope[2];
+            slope_of(tile, lane[LANE_X][i], lane[LANE_Y][i], lane[LANE_DENS][i], slope);
+            p->slope_x[i] = slope[0] / f->k.h;
+            p->slope_y[i] = slope[1] / f->k.h;
+        }
+    }
+    /* Now that no other cell reads them. */
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int64_t i = 0; i < p->n; i++) {
+        lane[LANE_SLOPE_X][i] = (real)(p->slope_x[i] * f->k.h);
+        lane[LANE_SLOPE_Y][i] = (real)(p->slope_y[i] * f->k.h);
+    }
+}
+
 /* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of a wall or solid particle at (x, y),
  * with acceleration (ax, ay), from the fluid in the tile; 0 where no fluid is in reach. */
 static double extrapolated_pressure(const struct fluid *f, const struct SWEEP(tile) * tile, real x,
@@ -269,11 +322,15 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
         vreal stress = fx_pressure(a, &q), inv;
         if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
             q.dens = vload(&tile->field[LANE_DENS][j]);
+            if (fx & FX_ANTUONO) {
+                q.slope_x = vload(&tile->field[LANE_SLOPE_X][j]);
+                q.slope_y = vload(&tile->field[LANE_SLOPE_Y][j]);
+            }
             vreal mean;
             const vreal damping = pair_damping(a, &q, k, &mean);
             inv = damping * mean;
             if (fx & FX_VISCOSITY) stress = stress + fx_viscosity(a, &q, damping, k);
-            if (fx & FX_DIFFUSION) fx_diffusion(a, &q, inv, k, fx & FX_FOURTAKAS, s);
+            if (fx & FX_DIFFUSION) fx_diffusion(a, &q, inv, k, fx, s);
         } else {
             inv = vset(1) / (q.r2 + k->eta2);
         }
@@ -353,13 +410,18 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     const struct cell_list *list = &c->kind[KIND_FLUID];
     const real *const *const own = (const real *const *)(const void *)f->lanes[KIND_FLUID].field;
     for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-        const struct receiver a = {vset(own[LANE_X][i]),
-                                   vset(own[LANE_Y][i]),
-                                   vset(own[LANE_U][i]),
-                                   vset(own[LANE_V][i]),
-                                   vset(own[LANE_P][i]),
-                                   vset(own[LANE_DENS][i]),
-                                   vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
+        struct receiver a = {.x = vset(own[LANE_X][i]),
+                             .y = vset(own[LANE_Y][i]),
+                             .u = vset(own[LANE_U][i]),
+                             .v = vset(own[LANE_V][i]),
+                             .p = vset(own[LANE_P][i]),
+                             .dens = vset(own[LANE_DENS][i]),
+                             .diffusion =
+                                 vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
+        if (fx & FX_ANTUONO) {
+            a.slope_x = vset(own[LANE_SLOPE_X][i]);
+            a.slope_y = vset(own[LANE_SLOPE_Y][i]);
+        }
         struct sums s = {.approach = vset(0)};
         sum_fluid(tile, &a, k, fx, &s);
         sum_dummies(dummies, &a, k, fx, &s);
@@ -431,11 +493,11 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
 VARIANT(any, ANY_EFFECTS)
 #undef VARIANT
 
-#define SWEEPS_ROW(variant, set)                                                        \
-    {                                                                                   \
-#variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)), \
-            sizeof *((struct SWEEP(tile) *)0)->field, SWEEP(lanes), SWEEP(dummies),     \
-            SWEEP(rates_##variant)                                                      \
+#define SWEEPS_ROW(variant, set)                                                                   \
+    {                                                                                              \
+#variant " (" SWEEP_LABEL ")", (set), sizeof(real), sizeof(struct SWEEP(tile)),            \
+            sizeof *((struct SWEEP(tile) *)0)->field, SWEEP(lanes), SWEEP(slopes), SWEEP(dummies), \
+            SWEEP(rates_##variant)                                                                 \
     }
 
 /* The generic kernel stands last. */

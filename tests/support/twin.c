@@ -48,6 +48,7 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .tensile = f->tensile_control,
                        .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
+                       .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
                        .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
     for (int axis = 0; axis < 2; axis++)
         if (scene->domain.periodic & 1 << axis)
@@ -108,6 +109,27 @@ static void extrapolate(const struct twin *t, struct twin_point *s)
     s->rho = tait_inverse(t, s->p);
 }
 
+/* Antuono et al. 2010, Eqs. 4 and 5. */
+static void renormalised_gradient(const struct twin *t, struct twin_point *a)
+{
+    double L[2][2] = {{0}}, s[2] = {0};
+    for (int64_t k = 0; k < t->n[KIND_FLUID]; k++) {
+        const struct twin_point *const b = &t->point[KIND_FLUID][k];
+        const double d[2] = {apart(t, 0, b->x, a->x), apart(t, 1, b->y, a->y)};
+        const double r = hypot(d[0], d[1]);
+        if (r >= 2 * t->h || r == 0) continue;
+        const double slope = kernel_derivative(r, t->h) / r * t->mass / b->rho;
+        for (int i = 0; i < 2; i++) {
+            s[i] -= (b->rho - a->rho) * slope * d[i];
+            for (int j = 0; j < 2; j++) L[i][j] -= d[i] * slope * d[j];
+        }
+    }
+    const double det = L[0][0] * L[1][1] - L[0][1] * L[1][0];
+    if (det < 1e-3 * (L[0][0] + L[1][1]) * (L[0][0] + L[1][1])) return;
+    a->sx = (L[1][1] * s[0] - L[0][1] * s[1]) / det;
+    a->sy = (L[0][0] * s[1] - L[1][0] * s[0]) / det;
+}
+
 /* Morris et al. 1997: what viscosity adds, by the factor x . grad W/(r^2 + eta^2). */
 static void laminar_pair(const struct twin *t, struct twin_point *a, const struct twin_point *b,
                          bool mirrored, double factor)
@@ -135,6 +157,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
         double step = b->rho - a->rho;
         /* The hydrostatic density of b less that of a, for a small change of density. */
         if (t->hydrostatic) step -= t->rho0 * (t->g[0] * -dx + t->g[1] * -dy) / (t->c0 * t->c0);
+        step += 0.5 * ((a->sx + b->sx) * dx + (a->sy + b->sy) * dy);
         psi = 2 * step / (r * r + eta2);
     }
     const double factor = -t->mass * ((a->p + b->p) / (a->rho * b->rho) + Pi);
@@ -189,6 +212,8 @@ void twin_evaluate(struct twin *t)
 {
     for (int64_t i = 0; i < t->n[KIND_FLUID]; i++)
         t->point[KIND_FLUID][i].p = tait(t, t->point[KIND_FLUID][i].rho);
+    for (int64_t i = 0; t->renormalised && i < t->n[KIND_FLUID]; i++)
+        renormalised_gradient(t, &t->point[KIND_FLUID][i]);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         for (int64_t i = 0; i < t->n[kind]; i++) extrapolate(t, &t->point[kind][i]);
     for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) {

@@ -10,6 +10,7 @@ struct twin_point {
     double x, y, u, v;     /* m, m/s; of a solid: the velocity that the fluid sees */
     double ax, ay;         /* m/s^2: of a fluid particle the result, of the others given */
     double rho, p;         /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
+    double sx, sy;         /* kg/m^4: renormalised gradient of the density */
     double cx, cy, spread; /* 1/m, 1: gradient of the concentration, divergence of the positions */
     double drho;           /* kg/(m^3 s) */
     double mu, mv;         /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
@@ -22,9 +23,10 @@ struct twin_point {
 
 struct twin {
     double h, mass, c0, rho0, alpha, delta, nu, tensile, dp, g[2];
-    double period[2]; /* 0: none */
-    bool suction;     /* walls and structures may pull */
-    bool hydrostatic; /* the form of Fourtakas et al. 2019 for Eq. 6 */
+    double period[2];  /* 0: none */
+    bool suction;      /* walls and structures may pull */
+    bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
+    bool hydrostatic;  /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];
     struct twin_point *point[KIND_COUNT];
     double top_acceleration, top_approach; /* for Eqs. 28a and 28b */

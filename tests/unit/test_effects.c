@@ -28,6 +28,8 @@ static const struct {
      "line 6: [fluid w] density_diffusion"},
     {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = fourtakas\n",
      FX_FLUID | FX_DIFFUSION | FX_FOURTAKAS, EFFECT_FOURTAKAS, "line 7: [fluid w] diffusion_form"},
+    {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\n",
+     FX_FLUID | FX_DIFFUSION | FX_ANTUONO, EFFECT_ANTUONO, "line 7: [fluid w] diffusion_form"},
     {TOP FLUID "laminar_viscosity = 1e-3\n", FX_FLUID | FX_LAMINAR, EFFECT_LAMINAR,
      "line 6: [fluid w] laminar_viscosity"},
     {TOP FLUID "laminar_viscosity = 1e-3\n" WALL "slip = none\n",
@@ -122,6 +124,8 @@ static void test_phases_run_by_need(void)
 {
     check_phases(TOP FLUID, "sort lanes fluid update output ");
     check_phases(TOP FLUID WALL, "sort lanes wall fluid update output ");
+    check_phases(TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\nshifting = 1\n",
+                 "sort lanes slope fluid shift update output ");
     check_phases(TOP SOLID, "solid update output ");
     check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid update output ");
 }

@@ -174,6 +174,70 @@ static void test_diffusion_spares_the_hydrostatic_part(void)
     assert_near(1e-14, 0, p->ddens[a], "hydrostatic difference");
 }
 
+/* Antuono et al. 2010: a density that rises linearly is taken out of the difference exactly, at the free
+ * surface and among disordered particles as well: dens = 0.01 + 0.02 x - 0.03 y. A disordered one diffuses
+ * without making mass: the sum of V D vanishes. */
+static void disordered_block(const char *form, bool linear)
+{
+    rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35", "gravity=0, 0",
+             "w.density_diffusion=0.1", form, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 19;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] += 0.03 * noise(&seed);
+        p->y[i] += 0.03 * noise(&seed);
+        p->dens[i] = linear ? 0.01 + 0.02 * p->x[i] - 0.03 * p->y[i] : 0.05 * noise(&seed);
+    }
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+}
+
+static void test_diffusion_spares_linear_densities(void)
+{
+    disordered_block("w.diffusion_form=molteni", true);
+    double most = 0;
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, fabs(p->ddens[i]));
+    disordered_block("w.diffusion_form=antuono", true);
+    for (int64_t i = 0; i < p->n; i++) {
+        assert_near(1e-13, 0.02, p->slope_x[i], "gradient, x");
+        assert_near(1e-13, -0.03, p->slope_y[i], "gradient, y");
+        assert_near(1e-12 * most, 0, p->ddens[i], "rate of density");
+    }
+    disordered_block("w.diffusion_form=antuono", false);
+    double sum = 0, size = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        sum += p->ddens[i] / (1 + p->dens[i]);
+        size += fabs(p->ddens[i]);
+    }
+    TEST_ASSERT_TRUE(size > 0.1 * most);
+    assert_near(1e-13 * size, 0, sum, "sum of V D");
+}
+
+/* Two particles span no plane: no gradient, and the pair diffuses by Eq. 6 as it stands. */
+static void test_gradient_of_a_pair_is_none(void)
+{
+    place("w.density_diffusion=0.1", "w.diffusion_form=antuono");
+    evaluate(0, 0, 0, 0);
+    TEST_ASSERT_TRUE(p->slope_x[a] == 0 && p->slope_y[b] == 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
+}
+
+/* Diffusion that vanishes leaves the bits of a scene without. */
+static void test_no_diffusion_is_the_limit(void)
+{
+    double rate[2];
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35",
+                 k ? "w.density_diffusion=1e-300" : "w.density_diffusion=0",
+                 k ? "w.diffusion_form=antuono" : "w.diffusion_form=molteni", "w.velocity=y, x*x",
+                 NULL);
+        p = &rig.sim.kind[KIND_FLUID];
+        rig_evaluate(&rig);
+        rate[k] = p->ddens[5];
+    }
+    TEST_ASSERT_TRUE(rate[0] == rate[1] && rate[0] != 0);
+}
+
 /* Beyond 2h = 2 m there is nothing, whatever the cells hold. */
 static void test_nothing_beyond_the_support(void)
 {
@@ -370,6 +434,9 @@ int main(void)
     RUN_TEST(test_no_viscosity_is_the_limit);
     RUN_TEST(test_diffusion_levels_densities);
     RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
+    RUN_TEST(test_diffusion_spares_linear_densities);
+    RUN_TEST(test_gradient_of_a_pair_is_none);
+    RUN_TEST(test_no_diffusion_is_the_limit);
     RUN_TEST(test_nothing_beyond_the_support);
     RUN_TEST(test_coincident_and_lone_particles);
     RUN_TEST(test_tension_is_pushed_against);
