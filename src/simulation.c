@@ -302,6 +302,13 @@ enum err simulation_create(struct simulation *s, const struct scene *scene, stru
 
 void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 
+/* Moves fluid particles to where they are fewer. */
+static double shift_fluid(struct simulation *s, double clock)
+{
+    fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+    return phase_add(s, PHASE_shift, clock);
+}
+
 /* Work that moving walls have done on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
@@ -325,13 +332,6 @@ static void take_work(struct simulation *s)
 {
     s->state.wall_work += s->solid.work;
     s->solid.work = 0;
-}
-
-/* Moves fluid particles to where they are fewer. */
-static double shift_fluid(struct simulation *s, double clock)
-{
-    fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
-    return phase_add(s, PHASE_shift, clock);
 }
 
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)

@@ -61,7 +61,7 @@ short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
 short still_water 0.01 "dp=20 mm" wall=60mm
 integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
-integrators=symplectic short taylor_green 0.04 "dp=L/20"
+integrators=symplectic short vortices 0.04 "dp=L/20"
 ls cases/*.cfg | sed 's|.*/||; s|\.cfg$||' | while read -r name; do
     grep -q "^\(integrators=[a-z]* \)*short $name " "$0" || echo "$name"
 done >"$dir/output"
