@@ -12,6 +12,7 @@
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make bench           build and run bench/*.c
+#   make gallery         run the small cases, draw the pictures of the README's table
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
@@ -85,7 +86,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: absence faults fuzz reliability validate docs
+.PHONY: gallery absence faults fuzz reliability validate docs
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -192,6 +193,14 @@ gate: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/plot_fields.py $(OUT) --time 0.08 0.16 0.24 0.36 \
 	  --window -0.01 0.45 -0.01 0.17
 	@echo "pictures:"; ls $(OUT)/*.png | sed 's/^/  /'
+
+# CASE:TIME:FIELD
+GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:2:pressure
+gallery: $(PROGRAM)
+	@set -e; for g in $(GALLERY); do \
+	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
+	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
+	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
 results: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/results.py $(ARGS)

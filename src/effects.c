@@ -89,6 +89,7 @@ void effect_caller_text(const struct scene *s, const struct effect_caller *by,
     char where[32], name[2 * SCENE_NAME] = "";
     snprintf(where, sizeof where, "line %d", given ? given->line : section->line);
     if (given && given->line == 0) strcpy(where, "--set");
+    if (!given && !info->named) strcpy(where, "default");
     if (by->section != SECTION_top)
         snprintf(name, sizeof name, "[%s%s%s]%s", info->word, info->named ? " " : "", section->name,
                  *by->key ? " " : "");

@@ -30,9 +30,10 @@ static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
     return (struct SWEEP(tile) *)(void *)((char *)f->tiles + place);
 }
 
-/* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h. */
+/* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h; with more
+ * fields than the common ones, or not. */
 SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lanes *lanes,
-                              int32_t start, int32_t count, real dx, real dy)
+                              int32_t start, int32_t count, real dx, real dy, bool more)
 {
     const vreal shift_x = vset(dx), shift_y = vset(dy);
     for (int32_t k = 0; k < count; k += LANES) {
@@ -43,7 +44,7 @@ SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lan
         for (int m = LANE_U; m < LANE_FIELDS; m++)
             vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
     }
-    for (int m = LANE_FIELDS; m < lanes->n; m++)
+    for (int m = LANE_FIELDS; more && m < lanes->n; m++)
         for (int32_t k = 0; k < count; k += LANES)
             vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
     return n + count;
@@ -56,6 +57,7 @@ static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
     const struct cell_list *list = &c->kind[kind];
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
     const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
+    const bool more = f->lanes[kind].n > LANE_FIELDS;
     const int column[3] = {cells_place(c, 0, cx - 1), cx, cells_place(c, 0, cx + 1)};
     for (int dy = -1; dy <= 1; dy++) {
         const int row = cells_place(c, 1, cy + dy);
@@ -65,7 +67,7 @@ static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
             const int32_t other = row * c->nx + column[dx + 1];
             if (list->count[other] == 0) continue;
             n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
-                            (real)(dx * side_x), (real)(dy * side_y));
+                            (real)(dx * side_x), (real)(dy * side_y), more);
         }
     }
     return n;
@@ -257,6 +259,7 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
                          int32_t i, const struct cells *c, int32_t cell,
                          const struct SWEEP(tile) * tile)
 {
+    const bool grips = f->effects & FX_NO_SLIP;
     const double inv_h = 1 / f->k.h;
     const double from_centre_x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
     const double from_centre_y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
@@ -275,9 +278,9 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_VOLUME][place] = (real)(volume / (1 + p->dens[i]));
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
-    const bool sticks = f->effects & FX_NO_SLIP && f->sticks[kind][p->body[i]];
+    const bool sticks = grips && f->sticks[kind][p->body[i]];
     struct receiver s = {.x = vset(x), .y = vset(y), .p = vset(out[LANE_P][place])};
-    if (f->effects & FX_NO_SLIP) {
+    if (grips) {
         double mirror_u = u[i], mirror_v = v[i];
         if (sticks) mirrored_velocity(tile, x, y, &mirror_u, &mirror_v);
         out[LANE_MIRROR_U][place] = (real)mirror_u;
