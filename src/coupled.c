@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "integrators.h"
+#include "timestep.h"
 
 double phase_add(struct simulation *s, enum phase phase, double since)
 {
@@ -79,13 +80,13 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double fixed = s->scene->numerics.fixed_step;
     s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
     const double bound = fixed > 0 ? fixed : s->dt_solid;
-    /* Round-off of the times must not add a step. */
-    const double left = t_limit - st->time, steps = ceil(left / bound - 1e-6);
+    /* Equal steps up to the limit, as in timestep_choose; round-off of the times must not add one. */
+    const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
+    const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
     const bool hits = steps <= SOLID_BATCH;
-    const int n = hits ? (int)max2(1, steps) : SOLID_BATCH;
-    /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
-    const double dt = hits ? left / n : bound;
-    if (dt < bound) s->dt_bound[BOUND_output] = dt;
+    const int n = hits ? (int)steps : SOLID_BATCH;
+    const bool cut = dt < bound * (1 - 1e-9);
+    if (cut) s->dt_bound[BOUND_output] = dt;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
         for (int k = 0; k < n; k++) symplectic_solid(s, dt);
     } else {
@@ -102,6 +103,6 @@ void solid_only_step(struct simulation *s, double t_limit)
     st->steps += n;
     st->solid_substeps += n;
     st->particle_steps += n * s->kind[KIND_SOLID].n;
-    st->bound_steps[dt < bound ? BOUND_output : fixed > 0 ? BOUND_fixed : BOUND_solid] += n;
+    st->bound_steps[cut ? BOUND_output : fixed > 0 ? BOUND_fixed : BOUND_solid] += n;
     s->substeps = 1;
 }

@@ -94,17 +94,24 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
     }
     double dt = (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT; k++) dt = min2(dt, s->dt_bound[k]);
-    /* Two equal steps rather than one full and a sliver; round-off of the time makes no sliver either. */
-    const double left = t_limit - s->state.time;
-    *hits = left <= dt * (1 + 1e-9);
-    if (left < 2 * dt && left != dt) s->dt_bound[BOUND_output] = *hits ? left : 0.5 * left;
-    return *hits ? left : min2(dt, s->dt_bound[BOUND_output]);
+    /* Equal steps up to the limit rather than full ones and a rest: steps that change in a pattern feed
+     * oscillations near the bound that each of them alone would keep (docs/theory.md). Round-off of the
+     * time makes no step of its own. */
+    const double left = t_limit - s->state.time, steps = ceil(left / dt * (1 - 1e-9));
+    *hits = steps <= 1;
+    if (steps > EQUAL_STEPS || (*hits && left == dt)) return *hits ? left : dt;
+    const double equal = *hits ? left : left / steps;
+    if (equal < dt * (1 - 1e-9)) s->dt_bound[BOUND_output] = equal;
+    return equal;
 }
 
-int timestep_substeps(const struct simulation *s, double dt)
+int timestep_substeps(struct simulation *s, double dt)
 {
     if (!(s->effects & FX_MULTIRATE)) return 1;
-    return (int)max2(1, ceil(dt / s->dt_solid));
+    const double needed = max2(1, ceil(dt / s->dt_solid)), held = (double)s->state.substeps_held;
+    /* A number that jumps to and fro changes the sub-step by as much. */
+    if (needed > held || needed < 0.6 * held) s->state.substeps_held = (int64_t)min2(needed, 1e9);
+    return (int)s->state.substeps_held;
 }
 
 void timestep_set_solid(struct simulation *s)

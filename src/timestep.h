@@ -5,19 +5,22 @@
 
 #include "simulation.h"
 
+/* Steps before an output time that are made equal: a change of one in so many is too little to matter. */
+enum { EQUAL_STEPS = 64 };
+
 /* Largest step the fluid can ever take, s: Eq. 28b at rest. */
 double timestep_fluid_limit(const struct simulation *s);
 
 /* Chooses the next step from the fluid's last evaluation and the solid's bound, ending no later than
- * t_limit and exactly there where it comes within two steps of it. Fills s->dt_bound. `*hits` is set
- * where the step ends at t_limit. */
+ * t_limit and exactly there, by equal steps before it. Fills s->dt_bound. `*hits` is set where the step
+ * ends at t_limit. */
 double timestep_choose(struct simulation *s, double t_limit, bool *hits);
 
 /* Most sub-steps of the solid in one step of the fluid that a run may ask for. */
 enum { SUBSTEPS_MOST = 10000 };
 
-/* Solid sub-steps of a fluid step: 1 where each takes the same. */
-int timestep_substeps(const struct simulation *s, double dt);
+/* Solid sub-steps of a fluid step: 1 where each takes the same. Held in the state. */
+int timestep_substeps(struct simulation *s, double dt);
 
 /* Sets the solid's step from its bound about the undeformed state and the slowing in s->state. */
 void timestep_set_solid(struct simulation *s);
