@@ -11,6 +11,7 @@
 #   make absence         an effect that is off costs nothing: instructions and bytes (ARGS=--quick: together)
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
+#   make stability       run the hard cases in their long form and write docs/stability.md
 #   make bench           build and run bench/*.c
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
@@ -86,7 +87,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: gallery absence faults fuzz reliability validate docs
+.PHONY: gallery absence faults fuzz reliability validate docs stability
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -174,6 +175,9 @@ absence:
 
 fuzz:
 	@tools/fuzz.sh $(ARGS)
+
+stability: $(PROGRAM)
+	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/stability.py --report $(ARGS)
 
 reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)

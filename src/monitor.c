@@ -218,7 +218,9 @@ enum err monitor_check(struct simulation *s, struct diag *d)
 /* Share of the energy in motion and strain that may be missing from the balance: the paper's stress law
  * has no stored energy and its account is good to a few percent at large strains. */
 #define ENERGY_SLACK 0.05
-#define ENERGY_LIMIT 0.5
+/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy, four fifths
+ * of which are then from nowhere, and is stable; a run that is not gets beyond any such share. */
+#define ENERGY_LIMIT 0.9
 
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
 {
@@ -229,7 +231,7 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
     if (gained > ENERGY_LIMIT * active + noise)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: %.3g J/m of energy have come from nowhere, more than half of the "
+            "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
             "%.3g J/m in motion and strain: the run is unstable; a smaller cfl or "
             "solid_safety may help, or a structure that is not much lighter than the fluid",
             s->state.time, gained, active);

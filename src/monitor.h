@@ -19,8 +19,8 @@ struct guard {
 struct simulation;
 struct ledger;
 
-/* Where a ledger shows that energy has come from nowhere: warns once, and fails where that is half of
- * what is in motion and strain. */
+/* Where a ledger shows that energy has come from nowhere: warns once, and fails where that is nine
+ * tenths of what is in motion and strain. */
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -253,9 +253,46 @@ static enum err create_contact(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* A body that nothing holds falls, which is seldom what a case with gravity means. */
+static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
+{
+    if (!(s->effects & FX_GRAVITY)) return;
+    for (int k = 0; k < s->scene->n_solid; k++) {
+        const struct scene_solid *const b = &s->scene->solid[k];
+        if (b->clamp.n == 0 && b->gravity && !b->joined[0])
+            diag_warn(
+                d,
+                "[solid %s] is clamped nowhere, and gravity acts on it: it falls unless fluid "
+                "carries it; `clamp` holds it, `gravity = off` spares it",
+                b->common.name);
+    }
+}
+
+/* fixed_step is taken as it is, also where it must end in a blow-up. */
+static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    if (!(fixed > 0)) return;
+    const bool shared = s->effects & FX_SOLID && !(s->effects & FX_MULTIRATE);
+    const double fluid = s->scene->numerics.cfl * s->fluid.k.h / max2(s->fluid.k.c0, 1e-300);
+    if (shared && fixed > s->solid.stable_step)
+        diag_warn(
+            d,
+            "numerics.fixed_step = %g s is beyond the %.4g s of the solid's bound: the run will "
+            "blow up; 0 takes the step from the bounds",
+            fixed, s->solid.stable_step);
+    if (s->effects & FX_FLUID && fixed > fluid * (1 + 1e-9))
+        diag_warn(
+            d,
+            "numerics.fixed_step = %g s is beyond the %.4g s of Eq. 28b with cfl = %g: the fluid "
+            "may become unstable; 0 takes the step from the bounds",
+            fixed, fluid, s->scene->numerics.cfl);
+}
+
 static enum err build(struct simulation *s, struct diag *d)
 {
     warn_of_contact(s, d);
+    warn_of_loose_bodies(s, d);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         TRY(fill_kind(s, (enum kind)kind, id, d));
@@ -279,6 +316,7 @@ static enum err build(struct simulation *s, struct diag *d)
         move_walls(s, 0);
     }
     TRY(choose_rate(s, d));
+    warn_of_fixed_step(s, d);
     set_guards(s);
     s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Settings that lead to a blow-up: refused, or accepted with a sentence that says what will go wrong.
+set -u
+sphfsi=${SPHFSI:-./sphfsi}
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+failures=0
+
+# says STATUS WORDS CASE SETTINGS...: explaining the case ends so and says so.
+says() {
+    local status=$1 words=$2 case=tests/stability/$3 sets=()
+    shift 3
+    for set in "$@"; do sets+=(--set "$set"); done
+    "$sphfsi" "$case" --explain "${sets[@]}" >"$dir/output" 2>&1
+    local got=$?
+    if [ $got != "$status" ] || ! grep -q -- "$words" "$dir/output"; then
+        echo "FAILED: $case $*: exit status $got (not $status) or not '$words'"
+        grep -v '^ ' "$dir/output" | head -n 5
+        failures=$((failures + 1))
+    fi
+}
+
+says 1 'solid_safety' beam.cfg numerics.solid_safety=1.2
+says 1 'hourglass' beam.cfg beam.hourglass=-1
+says 1 'poisson' beam.cfg nu=0.5
+says 1 'poisson' beam.cfg nu=0.6
+says 1 'is 1 particle thick' gate.cfg 'thickness=5 mm'
+says 0 'only 2 particles thick' gate.cfg 'thickness=10 mm'
+says 2 'fixed_step = .* s is beyond the .* s of the solid.s bound' beam.cfg 'numerics.fixed_step=0.07 ms'
+says 0 'fixed_step = .* s is beyond the .* s of Eq. 28b' column.cfg 'numerics.fixed_step=0.2 ms'
+says 0 'is clamped nowhere, and gravity acts on it' wedge.cfg
+says 0 'growing modes' beam.cfg beam.hourglass_form=printed beam.gradient=linear
+"$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1
+if grep -q 'warning' "$dir/output"; then
+    echo "FAILED: a sound case is warned of"
+    failures=$((failures + 1))
+fi
+[ $failures = 0 ] && echo "all said"
+exit $((failures != 0))

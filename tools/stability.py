@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Runs the hard cases of tests/stability/suite.toml and says which hold.
+
+  tools/stability.py --quick     coarse and short; exit status 1 where one does not do as the table says
+  tools/stability.py --report    the long form; writes docs/stability.md (make stability)
+
+What a criterion can use:
+  finished      the run came to its end; otherwise a guard stopped it
+  gain          energy that came from nowhere, at worst, over the largest energy in motion and strain
+  drift         the same, gained or lost, over the energy at the start (in motion and strain)
+  resting       mean kinetic energy of the last fifth over the largest of the first
+  dens, lowest_density   largest |rho/rho0 - 1|, smallest rho/rho0 - 1
+  lost, crossed          particles out of the domain; whether fluid entered a wall or solid
+  peak(c), settled(c, s) largest |value| of a probe's column; whether its last fifth stays within the share
+                         s of its mean
+  zigzag(q)     how far the middle of three neighbours A, B, C is from the mean of the others, over the
+                largest displacement
+"""
+import argparse
+import csv
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+
+import stability_report
+
+ROOT = Path(__file__).resolve().parent.parent
+SUITE = ROOT / "tests" / "stability"
+REPORT = ROOT / "docs" / "stability.md"
+
+
+# Steps of the comparison of the integrators, over the bound; the first run tells the bound.
+FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
+
+
+def columns(path):
+    with open(path, encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    names, values = rows[0], [[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])]
+    return dict(zip(names, zip(*values))) if values else {name: (0.0,) for name in names}
+
+
+def tail(values, share):
+    return values[int((1 - share) * len(values)):] or values[-1:]
+
+
+def measure(folder, log):
+    """The names that a criterion can use."""
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    ledger = columns(folder / "ledger.csv")
+    probes = columns(folder / "probes.csv") if (folder / "probes.csv").exists() else {}
+    kinetic = ledger["kinetic_J_per_m"]
+    active = [sum(parts) for parts in zip(kinetic, ledger["internal_J_per_m"],
+                                          ledger["elastic_J_per_m"], ledger["hourglass_J_per_m"])]
+    missing = ledger["dissipated_J_per_m"]
+    top = max(active) or 1.0
+
+    def peak(column):
+        return max(abs(v) for v in probes[column])
+
+    def settled(column, share):
+        last = tail(probes[column], 0.2)
+        mean = sum(last) / len(last)
+        return max(abs(v - mean) for v in last) <= share * abs(mean)
+
+    def zigzag(quantity):
+        a, b, c = (probes[f"{name}_{quantity}_m"] for name in "ABC")
+        largest = max(abs(v) for v in b) or 1.0
+        return max(abs(y - 0.5 * (x + z)) for x, y, z in zip(a, b, c)) / largest
+
+    fifth = max(1, len(kinetic) // 5)
+    return {
+        "finished": summary["exit_reason"] == "finished", "time": summary["time"],
+        "gain": max(0.0, -min(missing)) / top,
+        "drift": max(abs(v) for v in missing) / (active[0] or top),
+        "resting": sum(kinetic[-fifth:]) / fifth / (max(kinetic[:fifth]) or 1.0),
+        "dens": max(ledger["dens_extreme_1"]),
+        "lowest_density": summary["extremes"].get("density_lowest", 0.0),
+        "lost": summary["fluid_left_domain"], "crossed": log.count("has entered a wall or solid"),
+        "peak": peak, "settled": settled, "zigzag": zigzag,
+        "message": summary["message"],
+        "solid_bound": (summary["time_step"].get("solid") or 0.0) /
+                       summary["parameters"]["numerics"]["solid_safety"],
+        "zigzag_seen": {q: zigzag(q) for q in ("dx", "dy") if "B_dx_m" in probes},
+    }
+
+
+def cpu_seconds():
+    """User time of the runs so far: other load on the machine changes it little."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+def simulate(scene, form, folder):
+    sets = scene.get("set", []) + scene.get(form, [])
+    command = [os.environ.get("SPHFSI", str(ROOT / "sphfsi")), str(SUITE / scene["case"]),
+               "--out", str(folder), "--quiet", "--threads", "1"]
+    for item in sets:
+        command += ["--set", item]
+    begin = cpu_seconds()
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    log = done.stdout + done.stderr
+    if done.returncode not in (0, 2) or not (folder / "summary.json").exists():
+        sys.exit(f"stability: {scene['name']}: exit status {done.returncode}: {log}")
+    return measure(folder, log), cpu_seconds() - begin
+
+
+def words(found):
+    """The numbers behind a verdict."""
+    text = [f"gain {found['gain']:.2g}", f"drift {found['drift']:.2g}", f"density {found['dens']:.2g}"]
+    if not found["finished"]:
+        text.insert(0, f"stopped at {found['time']:.3g} s: {found['message'].split(': ', 1)[-1]}")
+    for quantity, size in found["zigzag_seen"].items():
+        text.append(f"zigzag {quantity} {size:.2g}")
+    if found["crossed"]:
+        text.append("fluid entered a body")
+    return ", ".join(text)
+
+
+def run_suite(scenes, form):
+    """Rows of (scene, whether the criterion holds, whether that is as expected, measures, seconds)."""
+    rows = []
+    for scene in scenes:
+        if scene.get("only", form) != form:
+            continue
+        with tempfile.TemporaryDirectory() as top:
+            found, seconds = simulate(scene, form, Path(top) / "run")
+        holds = bool(eval(scene["criterion"], {"__builtins__": {}}, found))  # the table is our own
+        as_said = holds != scene.get("fails", False)
+        rows.append((scene, holds, as_said, found, seconds))
+        print(f"{'ok  ' if as_said else 'NOT '} {seconds:6.1f} s  {scene['name']}: "
+              f"{'holds' if holds else 'does not hold'} ({words(found)})", flush=True)
+    return rows
+
+
+def integrators():
+    """Rows (factor of the solid's bound, what the plate did with symplectic and with Verlet)."""
+    plate = {"name": "plate", "case": "plate.cfg", "set": ["numerics.multirate=off", "end_time=5 ms"]}
+    rows = []
+    for factor in FACTORS:
+        cells = []
+        for integrator in ("symplectic", "verlet"):
+            scene = dict(plate, set=plate["set"] + [f"integrator={integrator}"])
+            if factor is not None:
+                scene["set"] += [f"numerics.fixed_step={factor * bound:.9g}"]
+            with tempfile.TemporaryDirectory() as top:
+                found, _ = simulate(scene, "", Path(top) / "run")
+            cells.append(f"gain {found['gain']:.1e}" if found["finished"] else
+                         f"stopped at {1e3 * found['time']:.2g} ms")
+        if factor is None:
+            bound = found["solid_bound"]
+            continue
+        rows.append((factor, cells))
+        print(f"step {factor:g} of the bound: {cells[0]}, {cells[1]}", flush=True)
+    return rows
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="coarse and short")
+    parser.add_argument("--report", action="store_true", help="write docs/stability.md")
+    parser.add_argument("--only", default="", help="scenes whose name has this in it")
+    args = parser.parse_args()
+    scenes = tomllib.loads((SUITE / "suite.toml").read_text(encoding="utf-8"))["scene"]
+    scenes = [scene for scene in scenes if args.only in scene["name"]]
+    form = "quick" if args.quick else "long"
+    rows = run_suite(scenes, form)
+    bad = [row[0]["name"] for row in rows if not row[2]]
+    if bad:
+        print(f"not as the table says: {', '.join(bad)}")
+    if args.report:
+        command = "tools/stability.py --quick --report" if args.quick else "make stability"
+        stability_report.write(rows, integrators(), REPORT, form, command)
+    return 1 if bad and not args.report else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
