@@ -7,6 +7,7 @@
 #   make test-thread     the same under clang's ThreadSanitizer, with an OpenMP runtime that it knows
 #   make memcheck        every shipped case, coarse and short, under valgrind
 #   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
+#   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
 #   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
 #   make absence         an effect that is off costs nothing: instructions and bytes (ARGS=--quick: together)
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
@@ -87,7 +88,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: gallery absence faults fuzz reliability validate docs stability
+.PHONY: gallery absence faults fuzz reliability validate docs stability test-neon
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -141,6 +142,9 @@ $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
 
 test: $(PROGRAM) $(TESTS)
 	@SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
+
+test-neon:
+	@bash tests/neon.sh $(UNITY_SRC)
 
 test-sanitize:
 	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test

@@ -289,7 +289,7 @@ static enum err check_references(struct reader *r)
 static void choose_cfl(struct scene *s)
 {
     if (s->numerics.cfl == 0)
-        s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? 0.5 : 0.2;
+        s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? 0.4 : 0.2;
 }
 
 enum err case_check(struct reader *r)

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The tests of the numerics on 128-bit NEON vectors: cross-compiled for AArch64, run under qemu.
+#   tests/neon.sh UNITY_SRC [test ...]
+# Needs gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and qemu-user-static (Debian's names). What writes HDF5
+# is left out, so that no HDF5 for the other machine is wanted.
+set -eu
+cd "$(dirname "$0")/.."
+unity=$1
+shift
+tests=${*:-golden/test_golden unit/test_simd unit/test_fluid unit/test_wall unit/test_solid
+unit/test_integrators unit/test_coupling unit/test_cells agree/test_twin agree/test_twin_solid agree/test_kernels}
+CC=${NEON_CC:-aarch64-linux-gnu-gcc} RUN=${NEON_RUN:-qemu-aarch64-static} out=build/neon
+for tool in "$CC" "$RUN"; do
+    command -v "$tool" >/dev/null || { echo "$tool is missing" >&2; exit 77; }
+done
+mkdir -p $out
+flags="-std=gnu11 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-math -march=armv8-a
+-fopenmp-simd -Wall -Wextra -Werror -Wno-psabi -Iinclude -Isrc -Itests/support -isystem $unity
+-DUNITY_INCLUDE_DOUBLE -DSPHFSI_VERSION=\"neon\""
+rm -f $out/lib.a
+for file in src/*.c tests/support/*.c; do
+    case $file in src/main.c | src/snapshot*) continue ;; esac
+    $CC $flags -c "$file" -o "$out/$(basename "$file" .c).o"
+    ${CC%gcc}ar rcs $out/lib.a "$out/$(basename "$file" .c).o"
+done
+$CC $flags -w -c "$unity"/unity.c -o $out/unity.o
+failed=0
+for test in $tests; do
+    $CC $flags -static -o $out/test tests/"$test".c $out/unity.o $out/lib.a -lm
+    line=$($RUN $out/test 2>&1 | grep ' Tests ') || true
+    echo "$test: ${line:-no summary}"
+    [[ $line == *" 0 Failures"* ]] || failed=1
+done
+exit $failed
