@@ -8,7 +8,8 @@ cd "$(dirname "$0")/.."
 unity=$1
 shift
 tests=${*:-golden/test_golden unit/test_simd unit/test_fluid unit/test_wall unit/test_solid
-unit/test_integrators unit/test_coupling unit/test_cells agree/test_twin agree/test_twin_solid agree/test_kernels}
+unit/test_integrators unit/test_coupling unit/test_cells agree/test_twin agree/test_twin_solid
+agree/test_kernels}
 CC=${NEON_CC:-aarch64-linux-gnu-gcc} RUN=${NEON_RUN:-qemu-aarch64-static} out=build/neon
 for tool in "$CC" "$RUN"; do
     command -v "$tool" >/dev/null || { echo "$tool is missing" >&2; exit 77; }
