@@ -15,6 +15,8 @@
 #   make stability       run the hard cases in their long form and write docs/stability.md
 #   make bench           build and run bench/*.c
 #   make gallery         run the small cases, draw the pictures of the README's table
+#   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
+#   make performance     the same, longest steps and the gate: docs/performance.md
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
@@ -41,7 +43,7 @@ IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
-             $(if $(filter gate results validate,$(GOALS)),plot))
+             $(if $(filter gate results validate bench performance,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -88,7 +90,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: gallery absence faults fuzz reliability validate docs stability test-neon
+.PHONY: gallery absence faults fuzz reliability validate docs stability test-neon performance
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -186,8 +188,11 @@ stability: $(PROGRAM)
 reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
-bench: $(BENCHES)
-	@set -e; for b in $(BENCHES); do echo "== $$b"; $$b $(ARGS); done
+bench: $(PROGRAM) $(BENCHES)
+	$(Q)$(PROJECT_PYTHON) tools/performance.py --bench $(ARGS)
+
+performance: $(PROGRAM) $(BENCHES)
+	$(Q)$(PROJECT_PYTHON) tools/performance.py $(ARGS)
 
 gate: $(PROGRAM)
 	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \

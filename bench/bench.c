@@ -173,7 +173,7 @@ static void sim_close(struct sim *x)
 static void fluid_case(char *text, size_t size, double n, bool rich, const char *precision)
 {
     snprintf(text, size,
-             "dp = %.17g\nend_time = 1e6\ngravity = 0, -9.81\nintegrator = symplectic\n"
+             "dp = %.17g\nend_time = 1e6\ngravity = 0, -9.81\nintegrator = leapfrog\n"
              "precision = %s\n"
              "[fluid water]\nshape = box 0, 0, 1, 1\nsound_speed = 50\nsurface = 1\n"
              "artificial_viscosity = %g\ndensity_diffusion = %g\n"
@@ -223,6 +223,12 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     if (sound)
         print_row(b, "fluid", variant, count, threads, "all", "ns/particle/evaluation",
                   b->sample[PHASE_COUNT]);
+    const double bytes = (double)x.s.arena.bytes / (double)count;
+    for (int r = 0; r < b->reps; r++) b->sample[0][r] = bytes;
+    print_row(b, "fluid", variant, count, threads, "memory", "bytes/particle", b->sample[0]);
+    const double candidates = 9 * x.s.cells.side[0] * x.s.cells.side[1] / square(x.scene.top.dp);
+    for (int r = 0; r < b->reps; r++) b->sample[0][r] = candidates;
+    print_row(b, "fluid", variant, count, threads, "candidates", "1/particle", b->sample[0]);
     sim_close(&x);
 }
 

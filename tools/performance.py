@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Measures what the program costs and writes bench/<processor>.csv and docs/performance.md.
+
+Three parts: the bench program (nanoseconds by phase, one thread and all), the longest step of each
+integrator that stays sound (a dam break against a wall), and the elastic gate on one thread and on all.
+Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the bench
+only, prints the change against the file there was, and writes it anew.
+
+Example: tools/performance.py --bench
+"""
+
+import argparse
+import csv
+import json
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from runfiles import read_table, run_tool
+
+ROOT = Path(__file__).resolve().parent.parent
+STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
+         "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
+# Arithmetic of a pack of candidates in the loop with viscosity and diffusion, counted in the source.
+OPERATIONS = 42
+
+
+def arguments():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bench", action="store_true", help="the bench only")
+    parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median counts")
+    parser.add_argument("--large", action="store_true", help="a million particles as well")
+    return parser.parse_args()
+
+
+def run_bench(args):
+    """Comment lines, and rows by (what, variant, particles, threads, part)."""
+    command = [str(ROOT / "build/release/bench_bench"), "--reps", str(args.reps)]
+    out = subprocess.run(command + ["--large"] * args.large, check=True, text=True,
+                         capture_output=True).stdout
+    return out
+
+
+def parse(text):
+    lines = text.splitlines()
+    notes = [line[2:] for line in lines if line.startswith("#")]
+    rows = {}
+    for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+        key = (row["what"], row["variant"], int(row["particles"]), int(row["threads"]), row["part"])
+        rows[key] = row
+    return notes, rows
+
+
+def bench_file(notes):
+    name = re.sub(r"[^a-z0-9]+", "-", notes[0].split(",")[0].lower()).strip("-")
+    return ROOT / "bench" / f"{name}.csv"
+
+
+def compare(rows, path):
+    if not path.exists():
+        print(f"{path.relative_to(ROOT)} does not exist yet: nothing to compare with")
+        return
+    before = parse(path.read_text())[1]
+    for key, row in rows.items():
+        if key not in before:
+            continue
+        old, new = float(before[key]["median"]), float(row["median"])
+        print(f"{' '.join(map(str, key)):60s} {old:10.4g} -> {new:10.4g} {row['unit']:24s} "
+              f"{100 * (new / old - 1) if old else 0:+6.1f} %")
+
+
+def run_case(case, sets, threads=0, until=None):
+    """Runs a case in a folder that goes away; the summary, and M1's rows where there are any."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [str(ROOT / "sphfsi"), str(ROOT / case), "--quiet", "--out", f"{folder}/run"]
+        for item in sets:
+            command += ["--set", item]
+        if threads:
+            command += ["--threads", str(threads)]
+        if until:
+            command += ["--until", until]
+        subprocess.run(command, capture_output=True, check=False)
+        try:
+            summary = json.loads(Path(folder, "run/summary.json").read_text())
+        except (OSError, ValueError):
+            return None, None
+        return summary, read_table(Path(folder, "run/probes.csv"))[0]
+
+
+def step_study():
+    """Rows of the table: integrator, C, steps, seconds, extremes of density, how it ended."""
+    rows = []
+    for integrator, factors in STEPS.items():
+        for factor in factors:
+            summary, _ = run_case("cases/verify/dam_break_impact.cfg", [
+                "ratio=40", f"integrator={integrator}", f"numerics.cfl={factor}"], threads=1)
+            if summary is None:
+                rows.append((integrator, factor, "-", "-", "-", "-", "no result"))
+                continue
+            ends = summary["extremes"]
+            low, high = (f"{100 * ends[f'density_{end}']:+.1f}" for end in ("lowest", "highest"))
+            rows.append((integrator, factor, summary["steps"], f"{summary['wall_seconds']:.1f}",
+                         low, high, summary["exit_reason"]))
+            print("  ", *rows[-1], flush=True)
+    return rows
+
+
+def gate_runs(threads):
+    rows = []
+    for integrator, cfl in (("leapfrog", 0), ("verlet", 0), ("symplectic", 0)):
+        for n in sorted({1, threads}):
+            summary, m1 = run_case("cases/gate.cfg", [
+                "dp=1 mm", f"integrator={integrator}", f"numerics.cfl={cfl}"], threads=n)
+            if summary is None:
+                rows.append((integrator, n, "-", "-", "-", "-", "-"))
+                continue
+            seconds = summary["phase_seconds"]
+            whole = sum(seconds.values())
+            share = ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in seconds.items())
+            peak = np.max(m1["M1_dx_m"]) if m1 and len(m1["M1_dx_m"]) else float("nan")
+            rows.append((integrator, n, summary["steps"], summary["solid_substeps"],
+                         f"{summary['wall_seconds']:.1f}", f"{1e3 * peak:.2f}", share))
+            print("  ", *rows[-1], flush=True)
+    return rows
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def bench_tables(rows):
+    text = []
+    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
+    threads = sorted({key[3] for key in rows})
+    value = lambda *key: float(rows[key]["median"]) if key in rows else float("nan")
+    variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
+    parts = ["sort", "lanes", "wall", "fluid", "update", "all"]
+    text.append("ns per fluid particle and force evaluation, by phase:\n\n" + table(
+        ["kernel", "particles", "threads"] + parts + ["bytes/particle"],
+        [(v, n, t, *(f"{value('fluid', v, n, t, p):.1f}" for p in parts),
+          f"{value('fluid', v, n, t, 'memory'):.0f}")
+         for v in variants for n in sizes for t in threads]))
+    text.append("ns per solid particle and step:\n\n" + table(
+        ["form", "threads", "ns"],
+        [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
+         if key[0] == "solid"]))
+    peak = value("machine", "fma", 0, 1, "float")
+    rich = next((v for v in variants if v.startswith("dam_break (mixed")), None)
+    if rich:
+        n = sizes[-1]
+        met = value("fluid", rich, n, 1, "candidates")
+        rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
+        text.append(
+            f"One core reaches {peak:.0f} thousand million lane operations a second in chains of fma. "
+            f"The pair loop ({rich}, {n} particles) does {rate:.0f}, {100 * rate / peak:.0f} % of that: "
+            f"{met:.0f} candidates a particle with {OPERATIONS} operations each, a square root and a "
+            "division among them.")
+    if len(threads) > 1 and rich:
+        one, many = threads[0], threads[-1]
+        speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
+        serial = max(0.0, (many / speed["all"] - 1) / (many - 1))
+        text.append(f"{many} threads against one, {n} particles: " + ", ".join(
+            f"{p} {s:.2f}" for p, s in speed.items()) +
+            f" times as fast; by Amdahl's law as if {100 * serial:.1f} % were serial.")
+    return "\n\n".join(text)
+
+
+def main():
+    args = arguments()
+    text = run_bench(args)
+    notes, rows = parse(text)
+    path = bench_file(notes)
+    compare(rows, path)
+    path.write_text(text)
+    if args.bench:
+        return
+    threads = max(key[3] for key in rows)
+    print("longest steps:", flush=True)
+    steps = step_study()
+    print("gate:", flush=True)
+    gates = gate_runs(threads)
+    load = os.getloadavg()[0]
+    version = subprocess.run([str(ROOT / "sphfsi"), "--version"], capture_output=True, text=True,
+                             check=False).stdout.strip()
+    report = f"""# What it costs
+
+Written by `tools/performance.py` (`make performance`) with {version}.
+{notes[0]}; {notes[1]}; load {load:.1f} at the end.
+Medians of {args.reps} repetitions; rows: [{path.name}](../bench/{path.name}).
+
+## Sweeps
+
+{bench_tables(rows)}
+
+## The longest step that stays sound
+
+The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, runs against the wall and falls
+back: 0.8 s, one thread. An integrator whose step is too long shows it in the density long before it fails.
+
+{table(["integrator", "C_CFL", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
+
+The defaults are 0.2 (symplectic, verlet: the paper's) and 0.4 (leapfrog).
+
+## The elastic gate
+
+`cases/gate.cfg`, dp = 1 mm, 0.4 s. The integrators of the paper take C = 0.2.
+
+{table(["integrator", "threads", "fluid steps", "solid steps", "seconds", "peak, mm",
+        "share of phases, %"], gates)}
+"""
+    (ROOT / "docs/performance.md").write_text(report)
+    print("wrote docs/performance.md and", path.relative_to(ROOT))
+
+
+if __name__ == "__main__":
+    run_tool(main)
