@@ -20,9 +20,16 @@ void move_walls(struct simulation *s, double time)
 
 void evaluate_fluid(struct simulation *s, double time)
 {
+    s->state.evaluations++;
+    if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
-    s->state.evaluations++;
+}
+
+void evaluate_start(struct simulation *s)
+{
+    evaluate_fluid(s, s->state.time);
+    s->evaluated = false;
 }
 
 void place_solid(struct particles *p)

@@ -20,6 +20,9 @@ void solid_only_step(struct simulation *s, double t_limit);
  * at `time`. */
 void evaluate_fluid(struct simulation *s, double time);
 
+/* The same at the state that a step starts from, which need not be repeated where output has just made it. */
+void evaluate_start(struct simulation *s);
+
 /* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
  * solid's mean velocity and acceleration over the step. */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);

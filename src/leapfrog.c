@@ -61,7 +61,7 @@ void leapfrog_step(struct simulation *s, double t_limit)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
     struct state *const st = &s->state;
-    evaluate_fluid(s, st->time);
+    evaluate_start(s);
     double clock = wall_clock();
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits), dt_old = st->dt;

@@ -325,6 +325,7 @@ static enum err build(struct simulation *s, struct diag *d)
     s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
                             start.hourglass + start.contact;
     s->state.det_low = 1;
+    s->evaluated = false; /* the caller may set the scene up further */
     return ERR_OK;
 }
 
@@ -414,6 +415,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 
 enum err simulation_resume(struct simulation *s, struct diag *d)
 {
+    s->evaluated = false;
     if (s->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
             if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
@@ -441,6 +443,7 @@ void simulation_refresh(struct simulation *s)
         memcpy(seconds, s->phase_seconds, sizeof seconds);
         evaluate_fluid(s, s->state.time);
         s->state.evaluations--;
+        s->evaluated = true;
         memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);

@@ -51,6 +51,7 @@ struct simulation {
     double phase_seconds[PHASE_COUNT];
     double fluid_speed2; /* of the fastest fluid particle, squared, (m/s)^2 */
     double speed2;       /* of the fastest particle of any kind, squared, (m/s)^2 */
+    bool evaluated;      /* rates, pressures and the fluid's force belong to the present state */
     bool crowded;        /* cells hold more than the sweeps can take: nothing is evaluated */
     struct guard guard;
 };

@@ -98,7 +98,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
     const bool coupled = s->effects & FX_COUPLING, multirate = s->effects & FX_MULTIRATE;
     const double time = s->state.time;
-    evaluate_fluid(s, time);
+    evaluate_start(s);
     double clock = wall_clock();
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);

@@ -25,7 +25,7 @@ static void update_fluid(struct particles *p, double dt, double dt_old, bool eul
 
 void verlet_step(struct simulation *s, double t_limit)
 {
-    evaluate_fluid(s, s->state.time);
+    evaluate_start(s);
     double clock = wall_clock();
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);

@@ -41,6 +41,7 @@ void rig_close(struct rig *r)
 
 void rig_run(struct rig *r, double time)
 {
+    r->sim.evaluated = false; /* the test may have changed the state */
     while (r->sim.state.time < time) {
         const enum err e = simulation_step(&r->sim, time, &r->diag);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
@@ -49,6 +50,7 @@ void rig_run(struct rig *r, double time)
 
 void rig_steps(struct rig *r, int steps, double limit)
 {
+    r->sim.evaluated = false;
     for (int k = 0; k < steps; k++) {
         const enum err e = simulation_step(&r->sim, limit, &r->diag);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
