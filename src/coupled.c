@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What both integrators share: evaluations with moving walls, solid sub-steps within a fluid step. */
 #include <math.h>
+#include <string.h>
 
 #include "integrators.h"
 #include "timestep.h"
@@ -18,12 +19,38 @@ void move_walls(struct simulation *s, double time)
     moving_place(&s->moving, s->scene, &s->kind[KIND_WALL], time);
 }
 
+static void find_push(struct simulation *s, enum kind kind, double time)
+{
+    struct push *const push = &s->push[kind];
+    const size_t bytes = (size_t)s->kind[kind].n * sizeof *push->ax;
+    memset(push->ax, 0, bytes);
+    memset(push->ay, 0, bytes);
+    push->at(push->context, time, &s->kind[kind], push->ax, push->ay);
+}
+
+/* Accelerations from outside count in the bound of the step as the model's own do. */
+static void push_fluid(struct simulation *s, double time)
+{
+    const struct push *const push = &s->push[KIND_FLUID];
+    struct particles *const p = &s->kind[KIND_FLUID];
+    find_push(s, KIND_FLUID, time);
+    double top = s->fluid.extremes.acceleration2;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ax[i] += push->ax[i];
+        p->ay[i] += push->ay[i];
+        top = max2(top, square(p->ax[i]) + square(p->ay[i]));
+    }
+    s->fluid.extremes.acceleration2 = top;
+}
+
 void evaluate_fluid(struct simulation *s, double time)
 {
     s->state.evaluations++;
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
+    if (s->push[KIND_FLUID].at) push_fluid(s, time);
+    if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
 }
 
 void evaluate_start(struct simulation *s)
@@ -87,11 +114,14 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double fixed = s->scene->numerics.fixed_step;
     s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
     const double bound = fixed > 0 ? fixed : s->dt_solid;
+    const bool pushed = s->push[KIND_SOLID].at != NULL;
+    if (pushed) find_push(s, KIND_SOLID, st->time);
+    const int batch = pushed ? 1 : SOLID_BATCH;
     /* Equal steps up to the limit, as in timestep_choose; round-off of the times must not add one. */
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
     const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
-    const bool hits = steps <= SOLID_BATCH;
-    const int n = hits ? (int)steps : SOLID_BATCH;
+    const bool hits = steps <= batch;
+    const int n = hits ? (int)steps : batch;
     const bool cut = dt < bound * (1 - 1e-9);
     if (cut) s->dt_bound[BOUND_output] = dt;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {

@@ -339,6 +339,21 @@ enum err simulation_create(struct simulation *s, const struct scene *scene, stru
     return e;
 }
 
+enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
+                         struct diag *d)
+{
+    struct push *const push = &s->push[kind];
+    const size_t n = (size_t)s->kind[kind].capacity;
+    if (!push->ax) push->ax = arena_alloc(&s->arena, n, sizeof *push->ax, "accelerations", d);
+    if (!push->ay) push->ay = arena_alloc(&s->arena, n, sizeof *push->ay, "accelerations", d);
+    if (!push->ax || !push->ay) return ERR_MEMORY;
+    push->at = at;
+    push->context = context;
+    if (kind == KIND_SOLID) s->solid.push[0] = at ? push->ax : NULL;
+    if (kind == KIND_SOLID) s->solid.push[1] = at ? push->ay : NULL;
+    return ERR_OK;
+}
+
 void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 
 /* Moves fluid particles to where they are fewer. */
@@ -443,7 +458,9 @@ void simulation_refresh(struct simulation *s)
         memcpy(seconds, s->phase_seconds, sizeof seconds);
         evaluate_fluid(s, s->state.time);
         s->state.evaluations--;
-        s->evaluated = true;
+        /* A caller's own forces and motions may change between two looks. */
+        s->evaluated =
+            !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
         memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
