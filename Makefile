@@ -194,13 +194,12 @@ bench: $(PROGRAM) $(BENCHES)
 
 performance: $(PROGRAM) $(BENCHES)
 	$(Q)$(PROJECT_PYTHON) tools/performance.py $(ARGS)
+
 # What a program outside of the source tree would do, with the library where it was built.
 EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
 $(EXAMPLES): $(B)/example_%: $(B)/examples/%.o $(LIB)
 	$(Q)$(LINK)
 examples: $(EXAMPLES)
-bench: $(BENCHES)
-	@set -e; for b in $(BENCHES); do echo "== $$b"; $$b $(ARGS); done
 
 gate: $(PROGRAM)
 	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \

@@ -59,8 +59,8 @@ short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm gate_length
 short hydrostatic_plate 0.004 "dp=25 mm"
 short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
-short two_posts 0.005 "dp=10 mm" wall=30mm held=20mm
-short beam_on_beam 0.02 across=4 press=10ms
+short two_posts 0.005 "dp=10 mm" "wall=30 mm" "held=20 mm"
+short beam_on_beam 0.02 "across=4" "press=10 ms"
 short still_water 0.01 "dp=20 mm" wall=60mm
 integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
 integrators=symplectic short vortices 0.04 "dp=L/20"
