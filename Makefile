@@ -217,6 +217,7 @@ gate: $(PROGRAM)
 # CASE:TIME:FIELD
 GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:2:pressure \
            beam_on_beam:1.2:pressure two_posts:0.16:pressure
+GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:1.2:pressure
 gallery: $(PROGRAM)
 	@set -e; for g in $(GALLERY); do \
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \

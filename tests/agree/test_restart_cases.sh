@@ -63,6 +63,7 @@ short two_posts 0.005 "dp=10 mm" "wall=30 mm" "held=20 mm"
 short beam_on_beam 0.02 "across=4" "press=10 ms"
 short still_water 0.01 "dp=20 mm" wall=60mm
 integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
+integrators=symplectic short rolling_tank 0.01
 integrators=symplectic short vortices 0.04 "dp=L/20"
 ls cases/*.cfg | sed 's|.*/||; s|\.cfg$||' | while read -r name; do
     grep -q "^\(integrators=[a-z]* \)*short $name " "$0" || echo "$name"

@@ -110,7 +110,8 @@ static void test_lone_solid(void)
     }
 }
 
-/* Fluid that goes round through periodic sides, over a bed with a wall that drifts through them. */
+/* Fluid that goes round through periodic sides, over a bed that it sticks to, with a wall that drifts
+ * through them; gradients, shifting and what else has sums of its own. */
 static void test_periodic_sides(void)
 {
     static const char round[] =
@@ -118,7 +119,9 @@ static void test_periodic_sides(void)
         "[domain]\nlower = 0, -0.02\nupper = 0.2, 0.2\nperiodic = x\n"
         "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nminus = box 0.1, 0, 0.12, 0.05\n"
         "sound_speed = 20\nsurface = 0.1\nartificial_viscosity = 0.05\nvelocity = 1, 0\n"
-        "[wall bed]\nshape = box 0, -0.02, 0.2, 0\n"
+        "laminar_viscosity = 1e-3\ndensity_diffusion = 0.1\ndiffusion_form = antuono\n"
+        "shifting = 2\ntensile_control = 0.2\n"
+        "[wall bed]\nshape = box 0, -0.02, 0.2, 0\nslip = none\n"
         "[wall sill]\nshape = box 0.1, 0, 0.12, 0.05\nmotion = drift\n"
         "[motion drift]\nvelocity = 1.5, 0\n";
     uint64_t expected = 0;
