@@ -60,6 +60,12 @@ class Report:
             raise Missing("none of the runs " + ", ".join(names) + " has finished")
         return found[0]
 
+    def shown(self, fine, coarse):
+        """The runs that a figure puts side by side: the finer ones, if both of the paper's integrators
+        or else leapfrog have got through."""
+        pair, quick = self.has(f"{fine}-verlet", fine), self.has(f"{coarse}-verlet", coarse)
+        return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or quick
+
     def target(self, case, words, value, met):
         """A row of the table of targets; met: True, False, or None where there is no run."""
         self.targets.append((case, words, value, {True: "met", False: "**missed**", None: "not run"}[met]))
