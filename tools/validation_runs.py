@@ -10,7 +10,7 @@ from pathlib import Path
 from runfiles import BadFile, Run
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDER = ROOT / "runs" / "validate"
+FOLDER = ROOT / "runs" / "validation"
 PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
 
 
