@@ -83,7 +83,7 @@ def read_case(path):
     """Sections of a case file as a list of (kind, name, {key: value}); values are text."""
     sections = [("top", "", {})]
     for number, line in enumerate(read_text(path).splitlines(), 1):
-        header = re.match(r"\s*\[\s*(\S+?)\s*(\S*)\s*\]", line)
+        header = re.match(r"\s*\[\s*(\w+)\s*([^\]\s]*)\s*\]", line)
         entry = re.match(r'\s*(\w+)\s*=\s*(?:"(.*?)"|([^#]*))', line)
         if header:
             sections.append((header[1], header[2], {}))

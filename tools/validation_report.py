@@ -114,7 +114,7 @@ class Report:
         return [f"![{caption}](img/{path.name})", "", f"*{caption}*", ""]
 
 
-def shrink(path, width=1500, colours=160):
+def shrink(path, width=1500, colours=256):
     """Makes a picture small: at most `width` pixels wide, from a palette."""
     from PIL import Image  # comes with matplotlib
     with Image.open(path) as image:
@@ -152,7 +152,7 @@ def starting(prefix):
 
 def ledgers(report, prefixes):
     """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
-    from plot_ledger import read_ledger
+    from plot_ledger import energy_shares, read_ledger
     lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, "
              "y at the end (N s/m) | mass | density |", "|---" * 7 + "|"]
     for spec in [s for p in prefixes for s in starting(p)]:
@@ -161,7 +161,7 @@ def ledgers(report, prefixes):
             ledger = read_ledger(run)
         except (Missing, BadFile):
             continue
-        play = np.nanmax(ledger["kinetic"] + ledger["elastic"] + ledger["hourglass"])
+        play = energy_shares(ledger)[1]
         lost = ledger["dissipated"]
         gain = np.max(np.maximum.accumulate(lost) - lost)
         density = np.nanmax(ledger["dens_extreme"])

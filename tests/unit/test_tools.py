@@ -206,6 +206,15 @@ def test_rates(tmp):
     assert column_words("Q_q_m2_per_s", 1.0)[2] == "m²/s"
 
 
+def test_case_sections(good):
+    """Sections with and without a name."""
+    from runfiles import read_case
+    path = good / "sections.cfg"
+    path.write_text("dp = 1\n[constants]\nH = 2 m # high\n[ probe M1 ]\nbody = gate\n")
+    assert read_case(path) == [("top", "", {"dp": "1"}), ("constants", "", {"H": "2 m"}),
+                               ("probe", "M1", {"body": "gate"})], read_case(path)
+
+
 def test_vorticity():
     """Exact for a linear velocity, at a free surface and out of order too; none in a row."""
     from snapshots import vorticity
@@ -238,6 +247,7 @@ def main():
         halted = write_run(tmp / "halted", until=0.2, reason="guard", bias=1e-3,
                             six_components=True)
         test_vorticity()
+        test_case_sections(good)
         test_m1(tmp, good, halted)
         test_fields(tmp, good, halted)
         test_animate(tmp, good, halted)
