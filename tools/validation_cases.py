@@ -139,7 +139,8 @@ def plate(report):
                               f"{-100 * s['std'] / s['mean']:.2f} %", -s["std"] / s["mean"] < 0.02)))
 
     def closer():
-        fine, coarse = settled(report.run("plate-3.125mm-leapfrog")), settled(report.run(report.first("plate-leapfrog", "plate-verlet")))
+        fine, coarse = settled(report.run("plate-3.125mm-leapfrog")),
+        settled(report.run(report.first("plate-leapfrog", "plate-verlet")))
         return (f"{100 * (fine['mean'] / DEFLECTION - 1):+.2f} %",
                 abs(fine["mean"] / DEFLECTION - 1) < abs(coarse["mean"] / DEFLECTION - 1))
     report.try_target("hydrostatic plate", "closer at half the spacing", closer)
@@ -247,10 +248,11 @@ def gate(report):
                      "Pressure and von Mises stress, Verlet (left) and symplectic", "--time", 0.08,
                      0.16, 0.24, 0.36,
                      "--window", -0.01, 0.35, -0.01, 0.165),
-        *report.draw("plot_ledger", [report.first("gate", "gate-verlet", "gate-leapfrog", "gate-1mm-leapfrog")], "gate-ledger",
+        *report.draw("plot_ledger", [report.first("gate", "gate-verlet", "gate-leapfrog",
+                                                  "gate-1mm-leapfrog")], "gate-ledger",
                      "Energy, momentum, extremes and time step of the gate"),
-        *interface(report, ["gate", "gate-verlet", "gate-leapfrog", "gate-1mm", "gate-1mm-verlet"]), *ledgers(report,
-                                                                                             ["gate"])]
+        *interface(report, ["gate", "gate-verlet", "gate-leapfrog", "gate-1mm", "gate-1mm-verlet"]),
+        *ledgers(report, ["gate"])]
 
 
 def gate_reading(report, numbers):
@@ -379,18 +381,18 @@ def baffle(report):
                        "at (s)",
                        "frequency after 0.7 s (Hz)", "mean after 0.7 s (mm)", *COST],
                        starting("baffle"), cells),
-        *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-leapfrog", "baffle-2mm-leapfrog", "baffle-2.5mm-verlet",
+        *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-leapfrog", "baffle-2mm-leapfrog",
+                                 "baffle-2.5mm-verlet",
                                  "baffle-2.5mm"],
                      "baffle-m1", "Horizontal displacement of the tip", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["baffle-2mm-leapfrog", "baffle-2mm-embedded", "baffle-2mm-slow",
                                  "baffle-2mm-fast"],
                      "baffle-sensitivity", "What the assumptions do: free length, speed of the plate",
                      "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "baffle-fields", "Pressure and von Mises stress, Verlet "
-                                                            "and symplectic where both were run",
-        "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
-        *interface(report, ["baffle", "baffle-verlet", "baffle-2mm-leapfrog", "baffle-2.5mm",
-                            "baffle-2.5mm-verlet"]),
+        *report.draw("plot_fields", shown, "baffle-fields", "Pressure and von Mises stress",
+                     "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
+        *interface(report, ["baffle", "baffle-verlet", "baffle-leapfrog", "baffle-2mm-leapfrog",
+                            "baffle-2.5mm", "baffle-2.5mm-verlet", "baffle-2.5mm-leapfrog"]),
         *ledgers(report, ["baffle"])]
 
 
@@ -430,20 +432,20 @@ def sluice(report):
                        "mean after 1 s (mm)",
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", *COST],
                        starting("sluice"), cells),
-        *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-leapfrog", "sluice-2mm-leapfrog", "sluice-2.5mm-verlet",
+        *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-leapfrog", "sluice-2mm-leapfrog",
+                                 "sluice-2.5mm-verlet",
                                  "sluice-2.5mm"],
                      "sluice-m1", "Horizontal displacement of the gate's lower end", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["sluice-2mm-leapfrog", "sluice-2mm-opening10", "sluice-2mm-opening40",
                                  "sluice-2mm-slow", "sluice-2mm-viscous"], "sluice-sensitivity",
                      "What the assumptions do: opening, speed of the plate; and what alpha does",
                      "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "sluice-fields", "Pressure and von Mises stress, Verlet "
-                                                            "and symplectic where both were run",
+        *report.draw("plot_fields", shown, "sluice-fields", "Pressure and von Mises stress",
         "--time", 0.3, 0.5, 1.0, 1.5, *window),
         *report.draw("plot_fields", shown, "sluice-vorticity", "Vorticity after 1 s", "--time", 1.1,
                      1.3, 1.5, 1.7, "--field",
                      "vorticity", *window),
-        *interface(report, ["sluice", "sluice-verlet", "sluice-2mm-leapfrog", "sluice-2.5mm",
-                            "sluice-2.5mm-verlet"]),
+        *interface(report, ["sluice", "sluice-verlet", "sluice-leapfrog", "sluice-2mm-leapfrog",
+                            "sluice-2.5mm", "sluice-2.5mm-verlet", "sluice-2.5mm-leapfrog"]),
         *ledgers(report, ["sluice"])]
 

@@ -52,7 +52,7 @@ def still(report):
         return [f"{100 * error:.2f}", f"{energy:.1e}", f"{slope:.4f}",
                 str(run.summary["fluid_left_domain"]), *cost(run)]
     for name, words in (("still-10mm-printed-1.35", "Eq. 6 and h/dp = 1.35 as in the paper"),
-                        ("still-10mm-1.5", "Fourtakas, h/dp = 1.5")):
+                        ("still-10mm-c20-1.5", "Fourtakas, h/dp = 1.5, c0 = 20 sqrt(gH)")):
         report.try_target("still water, 10 s", f"pressure error (L2) at most 1 %, {words}",
                           lambda name=name: (lambda r: (f"{100 * r[0]:.2f} %",
                                                         r[0] <= 0.01))(rest(report.run(name))))
@@ -112,11 +112,11 @@ def wave(report):
         *report.table(["frequency over theory", "decay (1/s)", "2 nu k^2 (1/s)", "steps",
                        "solid steps", "s (threads)"],
                       starting("wave"), cells),
-        "At h/dp = 1.35 the even lattice of the start resists shear like a solid under pressure "
-        "(the same lattice sum as above): the wave is 3 to 5 % fast and is damped several times "
-        "over until the order is gone. It hardly depends on amplitude or sound speed, and it is "
-        "gone at h/dp = 1.5. A solution of the free surface that is to be trusted to a percent "
-        "needs h/dp = 1.5.", ""]
+        "At h/dp = 1.35 the even lattice of the start resists shear like a solid under pressure (the "
+        "same lattice sum as above): the wave is several percent fast and is damped far more than the "
+        "viscosity says, until the order is gone. It hardly depends on amplitude, sound speed or density "
+        "diffusion, and most of it is gone at h/dp = 1.5. A free surface that is to be trusted to a "
+        "percent needs h/dp = 1.5.", ""]
 
 
 def fade(run):
@@ -196,8 +196,13 @@ def front(report):
     report.try_target("dry dam break",
                       "front within 5 % of Martin-Moyce, column of height 2a, t sqrt(2g/a)",
                       lambda: target(report.first("front-80", "front-40", "front-20"), 2))
-    report.try_target("dry dam break", "the same table read as that of a square column, t sqrt(g/a)",
-                      lambda: target("front-40-square", 1))
+    square = "the same table read as that of a square column, t sqrt(g/a)"
+    report.try_target("dry dam break", square, lambda: target("front-40-square", 1))
+
+    def moved():
+        shift, left = aligned(report.run("front-40-square"), 1)
+        return f"{100 * left:.1f} % (shift {shift:+.2f})", left <= 0.05
+    report.try_target("dry dam break", f"{square}, after a shift of the time's origin", moved)
     return [
         "Deviation of the front from Martin and Moyce 1952 at the ten tabulated times, in %; and "
         "what the largest is after a shift of the time's origin that fits best (in brackets, "
@@ -207,11 +212,10 @@ def front(report):
                        "s (threads)"],
                       starting("front"), cells),
         *front_figure(report, known_t, known_x, curve),
-        "The table is handed down with the time t sqrt(2g/a), that of a column of height 2a. Read "
-        "so, the measured front is ahead of ours from the first moments on and faster than other "
-        "digitisations of that experiment by a factor near 1.4 in time. Read as a square column "
-        "with t sqrt(g/a) it lies close to ours, a little behind: a front without friction on an "
-        "ideal release leads the laboratory's. The report gives both and decides neither.", ""]
+        "The table is handed down with the time t sqrt(2g/a), that of a column of height 2a. Read so, "
+        "the measured front is ever further ahead of ours. Read as a square column with t sqrt(g/a), ours is "
+        "ahead by an offset that is there from the first row on, as of a membrane that takes time to "
+        "go, and keeps the measured pace. The report gives both and decides neither.", ""]
 
 
 def front_figure(report, known_t, known_x, curve):
@@ -286,7 +290,8 @@ def impact(report):
         *report.table([*head, "time of the first", "steps", "solid steps", "s (threads)"],
                       starting("impact"), cells),
         *impact_figure(report, sensors, curve),
-        "A wider kernel (h/dp = 2) takes most of the noise out.", ""]
+        "A wider kernel (h/dp = 2) takes most of "
+        "the noise out.", ""]
 
 
 # --- solids alone ---
