@@ -45,6 +45,7 @@ GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
              $(if $(filter gate results validate bench performance,$(GOALS)),plot))
+             $(if $(filter gate validate,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -93,7 +94,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
 
 .PHONY: gallery absence faults fuzz reliability validate docs stability test-neon performance examples
 .PHONY: test-thread memcheck analyze
-.PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
+.PHONY: all help debug sanitize serial test test-sanitize bench gate check format info install \
         dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -223,9 +224,6 @@ gallery: $(PROGRAM)
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
-
-results: $(PROGRAM)
-	$(Q)$(PROJECT_PYTHON) tools/results.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
 	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)

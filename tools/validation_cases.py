@@ -259,7 +259,7 @@ def gate_reading(report, numbers):
     """What moves the curve, in numbers of the runs at 1 mm."""
     lines = ["*Why the target is missed.* The rise is followed; then the computed gate falls back "
              "while the measured one stays out. What was changed, and what it moved at dp = 1 mm "
-             "(Verlet), in mm at the peak and at 0.36 s:", ""]
+             "(leapfrog), in mm at the peak and at 0.36 s:", ""]
     base = numbers(report.run("gate-1mm-leapfrog"))
     for name, words in (("gate-leapfrog", "half the spacing"), ("gate-1mm", "symplectic for leapfrog"),
                         ("gate-1mm-verlet", "Verlet for leapfrog"),
