@@ -50,12 +50,13 @@ def order(steps, errors):
     return float(np.polyfit(np.log(steps), np.log(np.abs(errors)), 1)[0])
 
 
-def strongest(time, value):
-    """Frequency (Hz) of the highest peak of the spectrum, the mean taken out."""
+def strongest(time, value, least=0.0):
+    """Frequency (Hz) of the highest peak of the spectrum above `least`, the mean taken out."""
     value = (value - value.mean()) * np.hanning(len(value))
     step = (time[-1] - time[0]) / (len(time) - 1)
     spectrum = np.abs(np.fft.rfft(value, 8 * len(value)))
-    return float(np.fft.rfftfreq(8 * len(value), step)[np.argmax(spectrum)])
+    frequency = np.fft.rfftfreq(8 * len(value), step)
+    return float(frequency[np.argmax(np.where(frequency >= least, spectrum, 0))])
 
 
 def running_mean(value, n):
