@@ -222,7 +222,8 @@ def gate(report):
                 f"{n['rms_y']:.1f}",
                 *cost(run)]
     top = float(1e3 * across.value.max())
-    for name, words in (("gate", "symplectic"), ("gate-verlet", "Verlet")):
+    for name, words in (("gate", "symplectic"), ("gate-verlet", "Verlet"),
+                        ("gate-leapfrog", "leapfrog")):
         report.try_target("gate", f"RMS against the measured horizontal curve at most 3.5 mm at dp "
                                   f"= 0.5 mm, {words}",
                           lambda name=name: (lambda n: (f"{n['rms']:.1f} mm", n["rms"] <= 3.5))(
