@@ -13,6 +13,7 @@
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make bench           build and run bench/*.c
 #   make gallery         run the small cases, draw the pictures of the README's table
+#   make examples        build examples/*.c, programs that use the library
 #   make results         run gate and cantilever in several forms, write docs/results.md (half an hour)
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
@@ -51,7 +52,7 @@ PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
 # --- flags (CMakeLists.txt lists the same ones; tools/check_style.py compares them) ---
 # No contraction, no reassociation: the same bits from every compiler and instruction set.
-COMMON := -std=gnu11 -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
+COMMON := -std=gnu11 -pthread -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
 WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
 OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
@@ -86,7 +87,7 @@ SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: gallery absence faults fuzz reliability validate docs
+.PHONY: gallery absence examples faults fuzz reliability validate docs
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate results check format info install \
         dist clean distclean FORCE
@@ -178,6 +179,13 @@ fuzz:
 reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
+# What a program outside of the source tree would do, with the library where it was built.
+EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
+$(EXAMPLES): $(B)/example_%: $(B)/examples/%.o $(LIB)
+	$(Q)$(LINK)
+
+examples: $(EXAMPLES)
+
 bench: $(BENCHES)
 	@set -e; for b in $(BENCHES); do echo "== $$b"; $$b $(ARGS); done
 
@@ -216,20 +224,24 @@ docs: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM)
 
 format:
-	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch])
+	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch] \
+	                         examples/*.c)
 
 info:
 	@echo "sphfsi   $(FULL_VERSION)"; echo "compile  $(COMPILE)"; echo "link     $(HDF5_LIBS) -lm"; \
 	 echo "python   $(PROJECT_PYTHON)"; echo "unity    $(or $(UNITY_SRC),not looked for yet)"
 
 install: $(PROGRAM) $(LIB)
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig include)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig lib/cmake/sphfsi include)
 	install -m 755 $(PROGRAM) $(DESTDIR)$(PREFIX)/bin/sphfsi
 	install -m 644 $(LIB) $(DESTDIR)$(PREFIX)/lib
 	install -m 644 include/sphfsi.h $(DESTDIR)$(PREFIX)/include
 	@sed -e 's|@CMAKE_INSTALL_PREFIX@|$(PREFIX)|' -e 's|@PROJECT_VERSION@|$(VERSION)|' \
-	     -e 's|@SPHFSI_LINK@|$(HDF5_LIBS) $(OMP) -lm|' -e 's|@CMAKE_INSTALL_LIBDIR@|lib|' \
+	     -e 's|@SPHFSI_LINK@|$(HDF5_LIBS) $(OMP) -pthread -lm|' -e 's|@CMAKE_INSTALL_LIBDIR@|lib|' \
 	     tools/sphfsi.pc.in >$(DESTDIR)$(PREFIX)/lib/pkgconfig/sphfsi.pc
+	@sed 's|@SPHFSI_OPENMP@|$(if $(filter serial,$(CONFIG)),OFF,ON)|' tools/sphfsiConfig.cmake.in \
+	  >$(DESTDIR)$(PREFIX)/lib/cmake/sphfsi/sphfsiConfig.cmake
+	@echo 'set(PACKAGE_VERSION $(VERSION))' >$(DESTDIR)$(PREFIX)/lib/cmake/sphfsi/sphfsiConfigVersion.cmake
 
 dist:
 	@mkdir -p build

@@ -145,6 +145,40 @@ SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_k
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 
+/** Values of a probe of the case now, by the name of its section: as many as the quantity has columns
+ * (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such probe. */
+enum { SPHFSI_PROBE_COLUMNS = 5 };
+SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
+                                           double values[SPHFSI_PROBE_COLUMNS]);
+
+/** Particles as a force sees them; n items each, read only, valid during the call. */
+struct sphfsi_particles {
+    double time; /**< s */
+    int64_t n;
+    const int64_t *id;
+    const int32_t *body;   /**< index of the section among those of its kind */
+    const double *x, *y;   /**< m */
+    const double *vx, *vy; /**< m/s */
+};
+
+/** A force from outside: adds its accelerations (m/s^2) to ax and ay, which are zero before. Is called for
+ * every evaluation of the rates, one or two times a step, also when pressure is asked for, and so should
+ * depend on its arguments only. Its work is in no ledger. */
+typedef void sphfsi_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay);
+
+/** Sets the force on fluid or solid; NULL takes it away. Clamped particles stay where they are. */
+SPHFSI_API enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+                                               sphfsi_force *force, void *context);
+
+/** A motion of walls: displacement from their place in the case (m), velocity, acceleration at a time;
+ * all are zero before. The acceleration enters the pressure on the wall. */
+typedef void sphfsi_motion(void *context, double time, double d[2], double v[2], double a[2]);
+
+/** Puts a motion in the place of [motion NAME] of the case, from the next step on; NULL gives the case's
+ * own back. */
+SPHFSI_API enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
+                                                sphfsi_motion *motion, void *context);
+
 /** Hash of the whole state; equal for equal bits. */
 SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
 

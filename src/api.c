@@ -6,6 +6,7 @@
 #include "manual.h"
 #include "params.h"
 #include "preview.h"
+#include "probes.h"
 #include "run.h"
 
 #include <stdio.h>
@@ -16,12 +17,21 @@ _Static_assert((int)SPHFSI_INTERRUPT == (int)ERR_INTERRUPT && (int)SPHFSI_INPUT 
                    (int)SPHFSI_MEMORY == (int)ERR_MEMORY && (int)SPHFSI_IO == (int)ERR_IO &&
                    (int)SPHFSI_GUARD == (int)ERR_GUARD,
                "the public results are the rows of errors.def");
+_Static_assert((int)SPHFSI_PROBE_COLUMNS == (int)PROBE_MAX_COLUMNS, "values of a probe");
 _Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)KIND_WALL &&
                    (int)SPHFSI_SOLID == (int)KIND_SOLID,
                "the public kinds are those of particles.h");
 
+/* What a force of the program is called with. */
+struct outside {
+    sphfsi_force *force;
+    void *context;
+};
+
 struct sphfsi_simulation {
     struct session session;
+    struct probes probes;
+    struct outside outside[KIND_COUNT];
     bool unsound; /* a guard has stopped it */
 };
 
@@ -59,7 +69,12 @@ enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result_,
     if (!s)
         return result(&d,
                       diag_fail(&d, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *s));
-    const enum err e = session_open(&s->session, options, &d);
+    enum err e = session_open(&s->session, options, &d);
+    if (!e) {
+        struct simulation *const sim = &s->session.simulation;
+        e = probes_create(&s->probes, sim, &sim->arena, &d);
+        if (e) session_close(&s->session);
+    }
     if (e)
         free(s);
     else
@@ -152,6 +167,67 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
                             "scene%s%s",
                             p ? kind_names[kind] : "these", name,
                             best.name ? "; the nearest name is " : "", best.name ? best.name : ""));
+}
+
+enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
+                                double values[SPHFSI_PROBE_COLUMNS])
+{
+    struct diag d = {.code = ERR_OK};
+    const struct scene *const scene = &s->session.scene;
+    struct nearest near = {0};
+    for (int k = 0; k < scene->n_probe; k++) {
+        const char *const candidate = scene->probe[k].common.name;
+        nearest_offer(&near, name, candidate);
+        if (strcmp(candidate, name) != 0) continue;
+        probes_values(&s->probes, &s->session.simulation, k, values);
+        return SPHFSI_OK;
+    }
+    return result(&d,
+                  diag_fail(&d, ERR_INPUT, "probe: the case has no [probe %.60s]%s%s", name,
+                            near.name ? "; the nearest name is " : "", near.name ? near.name : ""));
+}
+
+static void push_from_outside(void *context, double time, const struct particles *p, double *ax,
+                              double *ay)
+{
+    const struct outside *const o = context;
+    const struct sphfsi_particles seen = {time, p->n, p->id, p->body, p->x, p->y, p->vx, p->vy};
+    o->force(o->context, &seen, ax, ay);
+}
+
+enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
+                                    sphfsi_force *force, void *context)
+{
+    struct diag d = {.code = ERR_OK};
+    struct simulation *const sim = &s->session.simulation;
+    if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
+        return result(&d, diag_fail(&d, ERR_INPUT,
+                                    "force: acts on fluid or solid that the scene has, not on %s",
+                                    (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this"));
+    s->outside[kind] = (struct outside){force, context};
+    return result(&d, simulation_push(sim, (enum kind)kind, force ? push_from_outside : NULL,
+                                      &s->outside[kind], &d));
+}
+
+enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
+                                     sphfsi_motion *motion, void *context)
+{
+    struct diag d = {.code = ERR_OK};
+    struct scene *const scene = &s->session.scene;
+    const int at = scene_find_motion(scene, name);
+    struct nearest near = {0};
+    for (int k = 0; k < scene->n_motion; k++)
+        nearest_offer(&near, name, scene->motion[k].common.name);
+    if (at < 0)
+        return result(&d, diag_fail(&d, ERR_INPUT, "motion: the case has no [motion %.60s]%s%s",
+                                    name, near.name ? "; the nearest name is " : "",
+                                    near.name ? near.name : ""));
+    if (!scene->motion_hook)
+        scene->motion_hook = arena_alloc(&scene->arena, (size_t)scene->n_motion,
+                                         sizeof *scene->motion_hook, "motions", &d);
+    if (!scene->motion_hook) return result(&d, ERR_MEMORY);
+    scene->motion_hook[at] = (struct motion_hook){motion, context};
+    return SPHFSI_OK;
 }
 
 enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What both integrators share: evaluations with moving walls, solid sub-steps within a fluid step. */
 #include <math.h>
+#include <string.h>
 
 #include "integrators.h"
 
@@ -17,11 +18,37 @@ void move_walls(struct simulation *s, double time)
     moving_place(&s->moving, s->scene, &s->kind[KIND_WALL], time);
 }
 
+static void find_push(struct simulation *s, enum kind kind, double time)
+{
+    struct push *const push = &s->push[kind];
+    const size_t bytes = (size_t)s->kind[kind].n * sizeof *push->ax;
+    memset(push->ax, 0, bytes);
+    memset(push->ay, 0, bytes);
+    push->at(push->context, time, &s->kind[kind], push->ax, push->ay);
+}
+
+/* Accelerations from outside count in the bound of the step as the model's own do. */
+static void push_fluid(struct simulation *s, double time)
+{
+    const struct push *const push = &s->push[KIND_FLUID];
+    struct particles *const p = &s->kind[KIND_FLUID];
+    find_push(s, KIND_FLUID, time);
+    double top = s->fluid.extremes.acceleration2;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ax[i] += push->ax[i];
+        p->ay[i] += push->ay[i];
+        top = max2(top, square(p->ax[i]) + square(p->ay[i]));
+    }
+    s->fluid.extremes.acceleration2 = top;
+}
+
 void evaluate_fluid(struct simulation *s, double time)
 {
     if (s->effects & FX_MOTION) move_walls(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     s->state.evaluations++;
+    if (s->push[KIND_FLUID].at) push_fluid(s, time);
+    if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
 }
 
 void place_solid(struct particles *p)
@@ -81,8 +108,11 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double bound = fixed > 0 ? fixed : s->dt_solid;
     /* Round-off of the times must not add a step. */
     const double left = t_limit - st->time, steps = ceil(left / bound - 1e-6);
-    const bool hits = steps <= SOLID_BATCH;
-    const int n = hits ? (int)max2(1, steps) : SOLID_BATCH;
+    const bool pushed = s->push[KIND_SOLID].at != NULL;
+    if (pushed) find_push(s, KIND_SOLID, st->time);
+    const int batch = pushed ? 1 : SOLID_BATCH;
+    const bool hits = steps <= batch;
+    const int n = hits ? (int)max2(1, steps) : batch;
     /* Equal steps up to the output time; the quotient is the same at every batch but for round-off. */
     const double dt = hits ? left / n : bound;
     if (dt < bound) s->dt_bound[BOUND_output] = dt;

@@ -273,6 +273,11 @@ struct motion_state motion_at(const struct scene *s, int motion_index, double ti
 {
     struct motion_state m = {0};
     if (motion_index < 0 || motion_index >= s->n_motion) return m;
+    const struct motion_hook *const hook = s->motion_hook ? &s->motion_hook[motion_index] : NULL;
+    if (hook && hook->at) {
+        hook->at(hook->context, time, m.d, m.v, m.a);
+        return m;
+    }
     const struct scene_motion *motion = &s->motion[motion_index];
     if (time < motion->start) return m;
     const bool over = time >= motion->stop;

@@ -140,6 +140,7 @@ struct scene {
     int n_given;
     struct scene_given *given;
     struct motion_table *motion_data; /* [n_motion] */
+    struct motion_hook *motion_hook;  /* [n_motion]; NULL: none */
     struct scene_points points[3];    /* by enum kind of particles.h: fluid, wall, solid */
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
@@ -178,6 +179,10 @@ enum err scene_write(const struct scene *s, const char *path, struct diag *d) SP
 struct motion_state {
     double d[2], v[2], a[2];
     double centre[2], angle, rate, angular_acceleration;
+};
+struct motion_hook { /* a motion that a program with the library prescribes instead */
+    void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
+    void *context;
 };
 struct motion_state motion_at(const struct scene *s, int motion_index, double time);
 

@@ -300,6 +300,21 @@ enum err simulation_create(struct simulation *s, const struct scene *scene, stru
     return e;
 }
 
+enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
+                         struct diag *d)
+{
+    struct push *const push = &s->push[kind];
+    const size_t n = (size_t)s->kind[kind].capacity;
+    if (!push->ax) push->ax = arena_alloc(&s->arena, n, sizeof *push->ax, "accelerations", d);
+    if (!push->ay) push->ay = arena_alloc(&s->arena, n, sizeof *push->ay, "accelerations", d);
+    if (!push->ax || !push->ay) return ERR_MEMORY;
+    push->at = at;
+    push->context = context;
+    if (kind == KIND_SOLID) s->solid.push[0] = at ? push->ax : NULL;
+    if (kind == KIND_SOLID) s->solid.push[1] = at ? push->ay : NULL;
+    return ERR_OK;
+}
+
 void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 
 /* Moves fluid particles to where they are fewer. */

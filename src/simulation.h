@@ -33,6 +33,15 @@ struct state {
     int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
 };
 
+/* Accelerations from outside, that a program with the library adds to those of the model. */
+typedef void push_function(void *context, double time, const struct particles *p, double *ax,
+                           double *ay);
+struct push {
+    push_function *at; /* NULL: none */
+    void *context;
+    double *ax, *ay; /* m/s^2 */
+};
+
 struct simulation {
     const struct scene *scene; /* borrowed; outlives the simulation */
     struct arena arena;
@@ -53,7 +62,13 @@ struct simulation {
     double speed2;       /* of the fastest particle of any kind, squared, (m/s)^2 */
     bool crowded;        /* cells hold more than the sweeps can take: nothing is evaluated */
     struct guard guard;
+    struct push push[KIND_COUNT]; /* of fluid and solid */
 };
+
+/* Lets `at` add accelerations to the particles of a kind (fluid or solid) from the next evaluation on:
+ * once for each evaluation of the fluid, held over the sub-steps of the solid. */
+enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
+                         struct diag *d) SPHFSI_CHECKED;
 
 /* Builds the state at time zero from a scene (or, with a checkpoint to be loaded, the frame for it).
  * On failure nothing remains to be freed. */

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -205,6 +206,9 @@ static bool swap(const struct snapshots *w)
     return true;
 }
 
+/* HDF5 is mostly built for one thread: simulations in several take turns. */
+static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
+
 /* HDF5 prints what fails unless told otherwise; the setting belongs to the program, so it is put
  * back. */
 struct quiet {
@@ -215,12 +219,17 @@ struct quiet {
 static struct quiet quiet_begin(void)
 {
     struct quiet q = {NULL, NULL};
+    pthread_mutex_lock(&turn);
     H5Eget_auto2(H5E_DEFAULT, &q.report, &q.context);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     return q;
 }
 
-static void quiet_end(struct quiet q) { H5Eset_auto2(H5E_DEFAULT, q.report, q.context); }
+static void quiet_end(struct quiet q)
+{
+    H5Eset_auto2(H5E_DEFAULT, q.report, q.context);
+    pthread_mutex_unlock(&turn);
+}
 
 static enum err update(const struct snapshots *w, int64_t steps, struct simulation *s,
                        struct diag *d)
@@ -245,7 +254,9 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
                           const char *version, struct diag *d)
 {
     w->scene = scene;
+    pthread_mutex_lock(&turn);
     w->layout = snapshot_file_layout(scene);
+    pthread_mutex_unlock(&turn);
     w->version = version;
     TRY(folder_join(w->folder, folder, ".", d));
     TRY(folder_join(w->path, folder, "fields.vtkhdf", d));

@@ -398,6 +398,10 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
         acc[0] = acc[0] + vload_wide(&p->fx[i]) * (1 / body->mass);
         acc[1] = acc[1] + vload_wide(&p->fy[i]) * (1 / body->mass);
     }
+    if (s->push[0]) {
+        acc[0] = acc[0] + vload_wide(&s->push[0][i]);
+        acc[1] = acc[1] + vload_wide(&s->push[1][i]);
+    }
     const vwide moves = vload_wide(&p->free[i]);
     store_lanes(&p->sx[i], (acc[0] + body->gravity[0]) * moves, pack->lanes);
     store_lanes(&p->sy[i], (acc[1] + body->gravity[1]) * moves, pack->lanes);

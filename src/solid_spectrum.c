@@ -112,6 +112,7 @@ double solid_stable_step(const struct solid *s, struct particles *p, double *ome
     bare.coupled = false;
     bare.contact = NULL;
     bare.drive = NULL;
+    bare.push[0] = bare.push[1] = NULL;
 
     const size_t bytes = (size_t)p->n * sizeof *p->vx;
     double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};

@@ -157,7 +157,7 @@ def main():
     parser.add_argument("--archive", type=Path, help="library whose exported symbols to check")
     args = parser.parse_args()
 
-    code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases")
+    code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases", "examples")
             for path in sorted((ROOT / folder).rglob("*"))
             if path.suffix in (".c", ".h", ".def", ".py", ".sh", ".cfg")]
     for path in code + [ROOT / "Makefile", ROOT / "CMakeLists.txt"] + sorted(ROOT.glob("*.md")):
