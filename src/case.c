@@ -178,6 +178,25 @@ static void drop_rivals(struct reader *r, int section)
     }
 }
 
+/* `like` takes over no regions: a copy of a clamped body that has no clamp of its own is loose. */
+static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
+{
+    const struct case_section *cs = &r->sections[section];
+    if (cs->id != SECTION_solid || !like) return;
+    const struct scene_solid *const copy = &r->scene->solid[cs->index];
+    char place[PLACE_TEXT];
+    scene_place(r->scene, cs->line, place);
+    for (int k = 0; k < cs->index; k++) {
+        const struct scene_solid *const from = &r->scene->solid[k];
+        if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
+            diag_warn(r->diag,
+                      "%s: [solid %s] is like [solid %s], but has no `clamp` of its own, since "
+                      "regions are "
+                      "not taken over: it moves freely",
+                      place, copy->common.name, from->common.name);
+    }
+}
+
 static enum err read_section(struct reader *r, int section)
 {
     const struct case_section *cs = &r->sections[section];
@@ -201,6 +220,8 @@ static enum err read_section(struct reader *r, int section)
         if (inherited && strcmp(e->key, "like") == 0) continue;
         TRY(case_value(r, e, p, target));
     }
+    const struct param *const like = param_find((enum section_id)cs->id, "like");
+    if (like) warn_of_lost_clamp(r, section, given[like - param_table]);
     return ERR_OK;
 }
 

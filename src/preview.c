@@ -262,8 +262,11 @@ static int describe(const struct scene *s, enum kind kind, int body, char *text,
     const struct scene_points *const p = &s->points[KIND_SOLID];
     int64_t held = 0;
     for (int64_t i = 0; i < p->n; i++) held += p->body[i] == body && p->clamped && p->clamped[i];
-    return snprintf(rest, room, "; %g kg/m^3, E %.4g Pa, nu %g; %lld clamped (hatched)", m->density,
-                    m->young, m->poisson, (long long)held);
+    const int written =
+        snprintf(rest, room, "; %g kg/m^3, E %.4g Pa, nu %g; ", m->density, m->young, m->poisson);
+    if (held == 0) return snprintf(rest + written, room - (size_t)written, "nothing clamped");
+    return snprintf(rest + written, room - (size_t)written, "%lld clamped (hatched)",
+                    (long long)held);
 }
 
 static void describe_probe(const struct scene_probe *p, char *text, size_t size)

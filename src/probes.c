@@ -108,8 +108,7 @@ static int quantity_columns(int quantity)
 /* Whether a quantity is made of fields that are brought up to date for the looking only. */
 static bool needs_refresh(int quantity)
 {
-    return quantity == PROBE_PRESSURE || quantity == PROBE_STRESS || quantity == PROBE_FORCE ||
-           quantity == PROBE_ENERGY;
+    return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY;
 }
 
 static enum err create_probe(struct probe *pr, const struct scene_probe *sp,

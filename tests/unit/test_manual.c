@@ -105,6 +105,26 @@ static void every_example_is_accepted(void)
     for (int k = 0; k < PARAM_COUNT; k++) example_is_accepted(&param_table[k]);
 }
 
+/* --- traps --- */
+
+/* Regions are not taken over by `like`, and a clamp is one. */
+static void a_copy_without_its_clamp_is_warned_of(void)
+{
+    static const char posts[] =
+        "dp = 2 mm\nend_time = 1\n"
+        "[solid left]\nshape = box 0, 0, 20 mm, 0.1\nclamp = box 0, 0, 20 mm, 8 mm\n"
+        "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+        "[solid right]\nlike = left\nshape = box 0.1, 0, 0.12, 0.1\n";
+    const char *const mended = "right.clamp=box 0.1, 0, 0.12, 8 mm";
+    struct scene scene;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 0, NULL, &diag));
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 1, &mended, &diag));
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+}
+
 /* --- templates --- */
 
 static void every_template_runs(void)
@@ -211,6 +231,7 @@ int main(void)
     UNITY_BEGIN();
     rig_one_thread();
     RUN_TEST(every_example_is_accepted);
+    RUN_TEST(a_copy_without_its_clamp_is_warned_of);
     RUN_TEST(every_template_runs);
     RUN_TEST(an_unknown_template_names_the_known);
     RUN_TEST(sources_fit_the_scene);
