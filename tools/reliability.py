@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Runs the rehearsed faults and writes docs/reliability.md: what was tried, how often, what came out.
 
-Fuzzers log their counts in tests/fuzz/counts.txt. Sanitizers and analysers take long; their last
-outcome is kept in tests/fault/checks.json and run anew by --run (a part of the command, or `all`).
+Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every rehearsal, sanitizer and
+analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long and are run by --run (a
+part of the command, or `all`); --report writes the document from what is kept.
 """
 import argparse
 import json
@@ -65,8 +66,20 @@ def program_version(program):
     return subprocess.run([program, "--version"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
 
 
-def rehearse(test, environment):
-    """Outcome, what it found, seconds."""
+def kept():
+    return json.loads(CHECKS.read_text()) if CHECKS.exists() else {}
+
+
+def keep(name, outcome, found, version, seconds):
+    records = kept()
+    records[name] = {"outcome": outcome, "found": found, "version": version,
+                     "date": time.strftime("%Y-%m-%d"), "seconds": round(seconds)}
+    CHECKS.write_text(json.dumps(records, indent=1, sort_keys=True) + "\n")
+    print(f"{outcome} {name}: {'; '.join(found)} ({seconds:.0f} s)", flush=True)
+
+
+def rehearse(test, environment, version):
+    """Whether it failed."""
     start = time.time()
     path = ROOT / "tests" / test
     command = {".sh": ["bash", path], ".py": [sys.executable, path],
@@ -77,8 +90,8 @@ def rehearse(test, environment):
     if cases:
         found.insert(0, f"{cases[-1][0]} test cases, {cases[-1][1]} failures")
     verdict = {0: "passed", 77: "skipped"}.get(result.returncode, "FAILED")
-    print(f"{verdict} {test} {time.time() - start:.0f} s", flush=True)
-    return verdict, "; ".join(found), time.time() - start
+    keep(f"tests/{test}", verdict, found, version, time.time() - start)
+    return verdict == "FAILED"
 
 
 def check(command, version):
@@ -91,12 +104,7 @@ def check(command, version):
                              r"ERROR: LeakSanitizer)", result.stdout + result.stderr))
     if "test-" in command:
         found.append(f"{reports} reports")
-    records = json.loads(CHECKS.read_text()) if CHECKS.exists() else {}
-    records[command] = {"outcome": "passed" if result.returncode == 0 else "FAILED", "found": found,
-                        "version": version, "date": time.strftime("%Y-%m-%d"),
-                        "seconds": round(time.time() - start)}
-    CHECKS.write_text(json.dumps(records, indent=1, sort_keys=True) + "\n")
-    print(f"{records[command]['outcome']} {command}: {'; '.join(found)}", flush=True)
+    keep(command, "passed" if result.returncode == 0 else "FAILED", found, version, time.time() - start)
     if result.returncode:
         (ROOT / "build" / "failed-check.log").write_text(result.stdout + result.stderr)
     return result.returncode != 0
@@ -121,26 +129,28 @@ def fuzz_rows():
     yield f"| all | {total:,} | | | |"
 
 
-def report(rows, version):
+def row(first, record):
+    if not record:
+        return f"| {first} | not run | | | |"
+    return (f"| {first} | {record['outcome']} | {'; '.join(record['found'])} | {record['version']}, "
+            f"{record['date']} | {record['seconds']} |")
+
+
+def report():
+    records = kept()
     lines = ["# Reliability", "",
-             f"Written by `make reliability`, sphfsi {version}, {platform.system()} {platform.machine()}, "
-             f"{time.strftime('%Y-%m-%d')}. Nothing in it is typed by hand.", "",
+             f"Written by `make reliability` on {platform.system()} {platform.machine()}. Nothing in it is "
+             "typed by hand.", "",
              "## Faults rehearsed", "", "Times are those of a machine that did other things as well.", "",
-             "| test | what | outcome | found | s |", "|---|---|---|---|---|"]
-    lines += [f"| tests/{test} | {what} | {verdict} | {found} | {seconds:.0f} |"
-              for test, what, verdict, found, seconds in rows]
+             "| test | what | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
+    lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test, what in REHEARSALS]
     lines += ["", "## Fuzzers", "",
               "libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer (`make fuzz`); "
               "sums of tests/fuzz/counts.txt, which the tool writes from the fuzzers' own logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
     lines += ["", "## Sanitizers and analysers", "",
               "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
-    records = json.loads(CHECKS.read_text()) if CHECKS.exists() else {}
-    for name, command in CHECKED:
-        r = records.get(command)
-        lines.append(f"| {name} | `{command}` | {r['outcome']} | {'; '.join(r['found'])} | {r['version']}, "
-                     f"{r['date']} | {r['seconds']} |" if r else
-                     f"| {name} | `{command}` | not run | | | |")
+    lines += [row(f"{name} | `{command}`", records.get(command)) for name, command in CHECKED]
     return "\n".join(lines) + "\n"
 
 
@@ -149,6 +159,7 @@ def main():
     parser.add_argument("--short", action="store_true", help="the forms that make test runs")
     parser.add_argument("--run", metavar="PART", help="also run the sanitizers and analysers whose command "
                         "has this part, or all of them; `--only` those")
+    parser.add_argument("--report", action="store_true", help="no rehearsals, the report only")
     parser.add_argument("--only", action="store_true", help="no rehearsals, no report")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "reliability.md")
     args = parser.parse_args()
@@ -164,12 +175,9 @@ def main():
             failed += check(command, version)
     if args.only:
         return failed > 0
-    rows = []
-    for test, what in REHEARSALS:
-        verdict, found, seconds = rehearse(test, environment)
-        failed += verdict == "FAILED"
-        rows.append((test, what, verdict, found, seconds))
-    args.out.write_text(report(rows, version))
+    for test, _ in REHEARSALS if not args.report else []:
+        failed += rehearse(test, environment, version)
+    args.out.write_text(report())
     print(f"written: {args.out}")
     return failed > 0
 

@@ -65,26 +65,28 @@ rehearse() {
     fi
 }
 
-set_up() { # INTERVAL of snapshots
+set_up() { # INTERVAL of snapshots, END
     rm -rf "$dir/whole"
     arguments=(tests/fault/tiny.cfg --threads 1 --quiet --set output.checkpoint_interval=1ms
-        --set output.snapshot_interval="$1" --set output.probe_interval=0.02ms)
+        --set output.snapshot_interval="$1" --set output.probe_interval=0.02ms --set end_time="$2")
     "$sphfsi" "${arguments[@]}" --out "$dir/whole" >"$dir/output" 2>&1 || fail "the run itself"
 }
 
 # With many snapshots they are what the disk has no room for.
-set_up 1ms
+set_up 1ms 20ms
 need=$(($(du -sk "$dir/whole" | cut -f1) * 2))
 for ((k = 0; k < steps; k++)); do rehearse $((16 + need * (k + 1) / steps / 4 * 4)); done
 
-# With the first one written and the next one far away, it is checkpoints and rows.
-set_up 1s
+# With the last one written but that of the end, it is checkpoints and rows.
+set_up 4ms 7.9ms
 "$sphfsi" "${arguments[@]}" --out "$dir/begun" --until 0.004 >"$dir/output" 2>&1 || fail "begun"
 for ((k = 0; k < steps; k++)); do
     # Its grid is a part of the probes', so that none but the last one takes the same steps.
     [ $((2 * k)) -lt $steps ] || arguments+=(--set output.checkpoint_interval=0)
     rehearse $(($(du -sk "$dir/begun" | cut -f1) + 200 * k / steps % 100 / 4 * 4)) "$dir/begun"
 done
+[ $((${at[step]:-0} + ${at[probes]:-0} + ${at[ledger]:-0})) -gt 0 ] ||
+    fail "no disk was too small for a checkpoint or a row"
 [ $stopped -gt 2 ] || fail "only $stopped disks were too small"
 
 arguments=(tests/fault/tiny.cfg --threads 1 --quiet --set output.snapshot_interval=1ms)
