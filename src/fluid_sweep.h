@@ -386,7 +386,6 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
     p->ay[i] = ay;
     p->ddens[i] = -slope * (1 + dens) * (double)vsum(s->rate);
     top->acceleration2 = max2(top->acceleration2, ax * ax + ay * ay);
-    top->approach = max2(top->approach, (double)vtop(s->approach));
 }
 
 SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles *p, int32_t i,
@@ -412,6 +411,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
 
     const struct cell_list *list = &c->kind[KIND_FLUID];
     const real *const *const own = (const real *const *)(const void *)f->lanes[KIND_FLUID].field;
+    vreal approach = vset(0); /* over all receivers: the lanes are searched once a cell */
     for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
         struct receiver a = {.x = vset(own[LANE_X][i]),
                              .y = vset(own[LANE_Y][i]),
@@ -425,12 +425,14 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
             a.slope_x = vset(own[LANE_SLOPE_X][i]);
             a.slope_y = vset(own[LANE_SLOPE_Y][i]);
         }
-        struct sums s = {.approach = vset(0)};
+        struct sums s = {.approach = approach};
         sum_fluid(tile, &a, k, fx, &s);
         sum_dummies(dummies, &a, k, fx, &s);
+        approach = s.approach;
         rates_store(&f->k, p, i, &s, top);
         if (fx & FX_SHIFTING) crowd_store(&f->k, p, i, &s);
     }
+    top->approach = max2(top->approach, (double)vtop(approach));
 }
 
 /* Cells that a thread takes at once. */
