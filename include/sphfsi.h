@@ -186,6 +186,12 @@ SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
  * and checkpoints to its folder. */
 SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 
+/** Runs a case in `runs` resolutions (3 to 6), dp growing by `ratio` (1.1 to 4), coarsest first, in
+ * sub-folders of the run's folder, and says what the probes converge to, with the order and the error
+ * band of the finest run; refine.json holds the same. Runs that have finished are not repeated. */
+SPHFSI_API enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs,
+                                            double ratio);
+
 /** Says, line by line through the message callback, what would be simulated and what it would cost.
  * Writes nothing. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);

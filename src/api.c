@@ -7,6 +7,7 @@
 #include "params.h"
 #include "preview.h"
 #include "probes.h"
+#include "refine.h"
 #include "run.h"
 
 #include <stdio.h>
@@ -234,6 +235,12 @@ enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
 {
     struct diag d = session_diag(options);
     return result(&d, run_case(options, &d));
+}
+
+enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs, double ratio)
+{
+    struct diag d = session_diag(options);
+    return result(&d, refine_case(options, runs, ratio, &d));
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)

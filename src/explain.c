@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "explain.h"
 
+#include "forecast.h"
 #include "params.h"
 #include "snapshot_file.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-/* Cost is measured over this many steps, or fewer if they take long. */
-enum { TRIAL_STEPS = 20 };
-static const double trial_seconds = 3.0;
 
 static void say_scene(const struct session *x, const struct sphfsi_options *o)
 {
@@ -127,42 +124,44 @@ static void text_of_seconds(double seconds, char text[32])
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
-static void say_cost(const struct simulation *s, int steps, double seconds,
-                     const double phase_before[PHASE_COUNT], const struct sphfsi_options *o)
+static void text_of_bytes(double bytes, char text[32])
 {
-    session_say(o, "cost, from %d steps with %d threads", steps, thread_count());
-    const double particles = (double)(s->kind[KIND_FLUID].n + s->kind[KIND_SOLID].n);
-    const double per_step = seconds / steps;
+    if (bytes < 1e9)
+        snprintf(text, 32, "%.3g MB", 1e-6 * bytes);
+    else
+        snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
+}
+
+static void say_cost(const struct simulation *s, const struct unit_costs *c,
+                     const struct sphfsi_options *o)
+{
+    const struct forecast f = forecast_run(c, s, 1);
+    session_say(o, "cost with %d thread%s, %s", thread_count(), thread_count() == 1 ? "" : "s",
+                c->cached ? "from an earlier calibration on this machine"
+                          : "from a second of the first steps");
     for (int k = 0; k < PHASE_COUNT; k++)
-        if (k != PHASE_output && phase_runs((enum phase)k, s->effects))
-            session_say(o, "  %-8s %6.1f ns a particle and step  %s", phase_table[k].name,
-                        1e9 * (s->phase_seconds[k] - phase_before[k]) / steps / particles,
-                        phase_table[k].meaning);
-    const double n = (s->scene->top.end_time - s->state.time) / s->state.dt + steps;
-    char time[32];
-    text_of_seconds(n * per_step, time);
-    session_say(o,
-                "  about %.3g steps of %.3g s, %.3g million particle steps a second, %s in all; "
-                "a scene that gets faster takes more",
-                n, s->state.dt, 1e-6 * particles / per_step, time);
+        if (k != PHASE_output && c->phase_share[k] > 0)
+            session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
+                        100 * c->phase_share[k], phase_table[k].meaning);
+    if (c->fluid > 0) session_say(o, "  %.3g ns a fluid particle and evaluation", 1e9 * c->fluid);
+    if (c->solid > 0) session_say(o, "  %.3g ns a solid particle and step", 1e9 * c->solid);
+    char time[32], memory[32], disk[32];
+    text_of_seconds(f.seconds, time);
+    text_of_bytes(f.memory, memory);
+    text_of_bytes(f.disk, disk);
+    session_say(o, "  about %.3g steps of %.3g s%s", f.steps, f.dt,
+                f.substeps > f.steps ? "" : ", of all particles alike");
+    if (f.substeps > f.steps) session_say(o, "  about %.3g steps of the solid", f.substeps);
+    session_say(o, "  %s on this machine when idle, memory %s, disk at most %s", time, memory,
+                disk);
 }
 
 static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
 {
-    const double end = s->scene->top.end_time;
-    /* The first step pays for first touch and first sort. */
-    TRY(simulation_step(s, end, d));
-    double phase_before[PHASE_COUNT];
-    memcpy(phase_before, s->phase_seconds, sizeof phase_before);
-    const double begin = wall_clock();
-    int steps = 0;
-    while (steps < TRIAL_STEPS && s->state.time < end && wall_clock() - begin < trial_seconds) {
-        TRY(simulation_step(s, end, d));
-        steps++;
-    }
-    const double seconds = wall_clock() - begin;
+    struct unit_costs c;
+    TRY(forecast_calibrate(&c, s, d));
     say_bounds(s, o);
-    if (steps > 0) say_cost(s, steps, seconds, phase_before, o);
+    say_cost(s, &c, o);
     return ERR_OK;
 }
 

@@ -26,6 +26,9 @@ static const char usage[] =
     "  --explain         say what would be simulated and what it would cost\n"
     "  --effective       print the case in effect, every default spelled out\n"
     "  --cite            print the sources of the methods that the case uses\n"
+    "  --refine N        run in N resolutions (3 to 6), coarsest first, and say what the probes\n"
+    "                    converge to, with order and error band; goes on where it was\n"
+    "                    (--ratio R: of neighbouring resolutions, 2)\n"
     "  --inspect FILE    say what a checkpoint holds\n"
     "  --new NAME        print a commented case to start from; without a name they are listed\n"
     "  --keys            print all sections and keys of a case file\n"
@@ -34,7 +37,7 @@ static const char usage[] =
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
 /* What the program does: RUN unless an option says otherwise. */
-enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, VERSION, HELP };
+enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, REFINE, VERSION, HELP };
 
 /* Whether an option takes an operand. */
 enum takes { NOTHING, OPERAND, MAYBE };
@@ -51,6 +54,7 @@ static const struct option {
     {"--explain", NOTHING, EXPLAIN}, {"--effective", NOTHING, EFFECTIVE},
     {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
     {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
+    {"--refine", OPERAND, REFINE},   {"--ratio", OPERAND, RUN},
     {"--version", NOTHING, VERSION}, {"--help", NOTHING, HELP},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
@@ -59,6 +63,7 @@ struct command {
     struct sphfsi_options options;
     enum mode mode;
     const char *operand; /* of the option that chose the mode */
+    double runs, ratio;  /* of --refine */
     int quiet;
     int terminal, line_open; /* a progress line stands on the terminal */
     double last_share, last_line;
@@ -152,7 +157,9 @@ static int read_number(const char *option, const char *text, double low, double 
     char *end;
     *value = strtod(text, &end);
     if (end != text && *end == '\0' && *value >= low && *value <= high) return 0;
-    return complain(strcmp(option, "--threads") == 0 ? "%s %s: a number from 1 to 4096 is wanted"
+    return complain(strcmp(option, "--threads") == 0  ? "%s %s: a number from 1 to 4096 is wanted"
+                    : strcmp(option, "--refine") == 0 ? "%s %s: a number from 3 to 6 is wanted"
+                    : strcmp(option, "--ratio") == 0  ? "%s %s: a number from 1.1 to 4 is wanted"
                                                      : "%s %s: a time in seconds above 0 is wanted",
                     option, text);
 }
@@ -171,6 +178,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
     if (option->mode != RUN) {
         c->mode = option->mode;
         c->operand = operand;
+        if (option->mode == REFINE) return read_number(name, operand, 3, 6, &c->runs);
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
     } else if (strcmp(name, "--threads") == 0) {
@@ -186,6 +194,8 @@ static int apply(struct command *c, const struct option *option, const char *ope
     } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
         o->restart_file = operand;
+    } else if (strcmp(name, "--ratio") == 0) {
+        if (read_number(name, operand, 1.1, 4, &c->ratio)) return 1;
     } else if (strcmp(name, "--fork") == 0) {
         o->fork = operand;
     } else {
@@ -278,6 +288,7 @@ static enum sphfsi_status carry_out(struct command *c)
     case CITE: return sphfsi_cite(o);
     case INSPECT: return sphfsi_inspect(c->operand, o);
     case NEW: return print_template(c);
+    case REFINE: install_signals(); return sphfsi_refine(o, (int)c->runs, c->ratio);
     case KEYS: sphfsi_keys(o); break;
     case VERSION: puts(sphfsi_version()); break;
     case HELP: fputs(usage, stdout); break;
@@ -304,6 +315,7 @@ int main(int argc, char **argv)
     const char **sets = calloc((size_t)argc + 1, sizeof *sets);
     if (!sets) return complain("%s%s", "no memory", "");
     c.options.sets = sets;
+    c.ratio = 2;
     int status = parse(&c, argc, argv);
     if (!status) status = execute(&c);
     free(sets);

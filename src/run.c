@@ -330,8 +330,7 @@ static void leave_state(struct run *r, enum err why)
 
 /* --- the beginning --- */
 
-static enum err default_folder(const struct sphfsi_options *o, char path[FOLDER_PATH],
-                               struct diag *d)
+enum err run_folder(const struct sphfsi_options *o, char path[FOLDER_PATH], struct diag *d)
 {
     if (o->out) {
         if (o->out[0] && strlen(o->out) < FOLDER_PATH - 300) {
@@ -495,8 +494,9 @@ static void say_close(const struct run *r)
         if (r->s->phase_seconds[k] >= 0.005 * all)
             at += (size_t)snprintf(text + at, sizeof text - at, "%s%s %.0f %%", at ? ", " : "",
                                    phase_table[k].name, 100 * r->s->phase_seconds[k] / all);
-    session_say(r->options, "%.3g million particle steps a second: %s",
-                1e-6 * report_rate(r->s, &r->record), text);
+    if (r->s->state.particle_steps > r->record.start_particle_steps)
+        session_say(r->options, "%.3g million particle steps a second: %s",
+                    1e-6 * report_rate(r->s, &r->record), text);
     for (int k = 0; k < r->references.n && r->record.score; k++) {
         reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
         session_say(r->options, "%s", text);
@@ -571,7 +571,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     if (o->restart && o->fork)
         return diag_fail(d, ERR_INPUT,
                          "options: a restart continues a run, a fork starts one: choose one");
-    TRY(default_folder(o, path, d));
+    TRY(run_folder(o, path, d));
     TRY(folder_check(path, use, d)); /* before the work of building the simulation */
     struct run *r = calloc(1, sizeof *r);
     if (!r) return diag_fail(d, ERR_MEMORY, "run: no memory for %zu bytes", sizeof *r);

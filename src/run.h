@@ -3,9 +3,14 @@
 #ifndef SPHFSI_RUN_H
 #define SPHFSI_RUN_H
 
+#include "folder.h"
 #include "session.h"
 
 /* What the public sphfsi_run does. */
 enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
+
+/* The folder of a run: as the options say, or named after the case. */
+enum err run_folder(const struct sphfsi_options *o, char path[FOLDER_PATH], struct diag *d)
+    SPHFSI_CHECKED;
 
 #endif

@@ -21,7 +21,8 @@ FLOORS = [
     "fluid variants solid material contact drive",
     "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",
     "folder json probes reference snapshot checkpoint report series",
-    "sphfsi session explain inspect preview manual templates citations examples run api main",
+    "sphfsi session explain inspect preview manual templates citations examples run "
+    "forecast refine api main",
 ]
 FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
 

@@ -66,7 +66,8 @@ def check_explain(top):
                           capture_output=True, text=True).stdout
     for words in ("100 particles", "effects that are on", "COUPLING", "effects that are off",
                   "MOTION", "bytes a particle", "kernel of the fluid", "<- binds", "Eq. 28b",
-                  "particle steps a second", "MB"):
+                  "ns a fluid particle and evaluation", "steps of the solid", "on this machine when idle",
+                  "MB"):
         assert words in text, f"--explain does not say {words!r}:\n{text}"
     assert not (top / "none").exists()
 

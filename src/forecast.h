@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ * What a run will cost: steps from the bounds of the time step, time from a calibration of the scene's own
+ * kernels on this machine. */
+#ifndef SPHFSI_FORECAST_H
+#define SPHFSI_FORECAST_H
+
+#include "session.h"
+
+/* What a step costs here, in seconds of one thread, and what it consists of. */
+struct unit_costs {
+    double fluid;                    /* of a fluid particle and evaluation, with all around it */
+    double solid;                    /* of a solid particle and step */
+    double evaluations;              /* of the fluid in a step */
+    double phase_share[PHASE_COUNT]; /* of a step's time */
+    bool cached;                     /* from an earlier calibration */
+};
+
+struct forecast {
+    double dt;           /* of the fluid, or of a lone solid, s */
+    double steps;        /* of the fluid, or of a lone solid */
+    double substeps;     /* of the solid */
+    double evaluations;  /* of the fluid */
+    double particles;    /* fluid and solid */
+    double seconds;      /* wall time on an idle machine */
+    double memory, disk; /* bytes; disk: at most, while it runs */
+};
+
+/* The costs from about a second of the scene's own first steps, the least of several repeats, unless this
+ * machine and program have measured such a scene before: a cache below $XDG_CACHE_HOME or ~/.cache that may
+ * be missing or broken. Takes steps of the simulation. */
+enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* The whole run of the scene, or of the same with dp times `scale`. */
+struct forecast forecast_run(const struct unit_costs *c, const struct simulation *s, double scale);
+
+#endif

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# The forecast: its steps against those of the run, and a cache that is used, broken, or not to be had.
+set -u
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+fail() { echo "$1"; exit 1; }
+export OMP_NUM_THREADS=1 XDG_CACHE_HOME=$work/cache
+still=(cases/still_water.cfg --set "dp=20 mm" --set "wall=60 mm" --until 0.5)
+explain() { "$SPHFSI" --explain "${still[@]}" 2>/dev/null; }
+
+explain | grep -q 'from a second of the first steps' || fail "no calibration"
+[ -s "$work/cache/sphfsi/costs" ] || fail "nothing was kept"
+explain | grep -q 'from an earlier calibration' || fail "what was kept is not used"
+first=$(cat "$work/cache/sphfsi/costs")
+sed -i 's/ .*/ 1e-9 nonsense/' "$work/cache/sphfsi/costs"
+explain | grep -q 'from a second of the first steps' || fail "a broken line is believed"
+rm -r "$work/cache"; : >"$work/cache" # a file where the folder should be
+explain | grep -q 'on this machine when idle' || fail "without a cache there is no forecast"
+[ -n "$first" ] || exit 1
+
+# Steps: 10 % for a flow, exact but for a step a row for a lone solid.
+steps_of() { sed -n 's/^ *about \([0-9.e+]*\) steps of [0-9].*/\1/p' | awk '{printf "%.0f", $1}'; }
+near() { awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { exit !(a > b*(1-e) && a < b*(1+e)) }'; }
+want=$(explain | steps_of)
+"$SPHFSI" "${still[@]}" --quiet --out "$work/still" 2>/dev/null || fail "still water failed"
+got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/still/summary.json")
+near "$want" "$got" 0.1 || fail "still water: $want steps foreseen, $got taken"
+plate=(cases/cantilever.cfg --set ratio=6 --until 0.05)
+want=$("$SPHFSI" --explain "${plate[@]}" 2>/dev/null | steps_of)
+"$SPHFSI" "${plate[@]}" --quiet --out "$work/plate" 2>/dev/null || fail "the cantilever failed"
+got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/plate/summary.json")
+near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
+exit 0
