@@ -186,6 +186,10 @@ SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
  * and checkpoints to its folder. */
 SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 
+/** Says, through the message callback, what the case would cost in a few resolutions and which is the
+ * finest that this machine runs within `seconds` of wall time. Writes nothing but a cache of costs. */
+SPHFSI_API enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds);
+
 /** Runs a case in `runs` resolutions (3 to 6), dp growing by `ratio` (1.1 to 4), coarsest first, in
  * sub-folders of the run's folder, and says what the probes converge to, with the order and the error
  * band of the finest run; refine.json holds the same. Runs that have finished are not repeated. */

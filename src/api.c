@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The library's face: the public header in terms of the floors below. */
+#include "budget.h"
 #include "explain.h"
 #include "folder.h"
+#include "forecast.h"
 #include "inspect.h"
 #include "manual.h"
 #include "params.h"
@@ -243,16 +245,36 @@ enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs,
     return result(&d, refine_case(options, runs, ratio, &d));
 }
 
+enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds)
+{
+    struct diag d = session_diag(options);
+    if (!(seconds > 0 && seconds <= 1e9))
+        return result(&d, diag_fail(&d, ERR_INPUT,
+                                    "budget = %g s: from above 0 to 1e9 are possible", seconds));
+    struct session *x = calloc(1, sizeof *x);
+    if (!x)
+        return result(&d, diag_fail(&d, ERR_MEMORY, "budget: no memory for %zu bytes", sizeof *x));
+    int threads;
+    enum err e = forecast_open(x, options, &threads, &d);
+    if (!e) {
+        e = budget_session(x, threads, seconds, options, &d);
+        forecast_close(x, threads);
+    }
+    free(x);
+    return result(&d, e);
+}
+
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
 {
     struct diag d = session_diag(options);
     struct session *x = calloc(1, sizeof *x);
     if (!x)
         return result(&d, diag_fail(&d, ERR_MEMORY, "explain: no memory for %zu bytes", sizeof *x));
-    enum err e = session_open(x, options, &d);
+    int threads;
+    enum err e = forecast_open(x, options, &threads, &d);
     if (!e) {
-        e = explain_session(x, options, &d);
-        session_close(x);
+        e = explain_session(x, threads, options, &d);
+        forecast_close(x, threads);
     }
     free(x);
     return result(&d, e);

@@ -87,6 +87,69 @@ static void set_defaults(void *section, enum section_id id)
     }
 }
 
+enum { ANY = -1 };
+
+static enum scene_kind kind_of_scene(const struct reader *r)
+{
+    bool fluid = false, solid = false;
+    for (int k = 0; k < r->n_sections; k++) {
+        fluid |= r->sections[k].id == SECTION_fluid;
+        solid |= r->sections[k].id == SECTION_solid;
+    }
+    return fluid && solid ? SCENE_COUPLED : fluid ? SCENE_FLUID : SCENE_SOLID;
+}
+
+static const struct preset {
+    enum scene_kind kind;
+    enum accuracy accuracy;
+    int integrator; /* that the case uses; ANY: whichever */
+    enum section_id section;
+    const char *key;
+    double value;
+} presets[] = {
+#define PRESET(scene, accuracy, integrator, section, key, value) \
+    {SCENE_##scene, ACCURACY_##accuracy, integrator, SECTION_##section, #key, value},
+#include "presets.def"
+#undef PRESET
+};
+
+/* The value of a choice at the top of the file, before it is read; a wrong word is found there. */
+static int top_choice(const struct reader *r, const char *key)
+{
+    const struct param *const p = param_find(SECTION_top, key);
+    int found = (int)p->number_default[0];
+    for (int k = 0; k < r->n_entries; k++) {
+        const struct entry *const e = &r->entries[k];
+        char name[SCENE_NAME];
+        if (r->sections[e->section].id != SECTION_top || strcmp(e->key, key) != 0) continue;
+        for (int c = 0; p->choices && c < 3; c++) {
+            param_choice_name(p, c, name);
+            if (strcmp(e->value, name) == 0) found = c;
+        }
+    }
+    return found;
+}
+
+/* What `accuracy` chooses stands in for the defaults, so that a key of the case wins. A wrong word is
+ * found where the key is read. */
+static void apply_presets(struct reader *r)
+{
+    const int accuracy = top_choice(r, "accuracy"), integrator = top_choice(r, "integrator");
+    for (size_t k = 0; k < COUNT_OF(presets); k++) {
+        const struct preset *const row = &presets[k];
+        if (row->kind != kind_of_scene(r) || (int)row->accuracy != accuracy) continue;
+        if (row->integrator != ANY && row->integrator != integrator) continue;
+        const struct param *const p = param_find(row->section, row->key);
+        for (int i = 0; i < section_count(r->scene, row->section); i++) {
+            char *const place = (char *)section_at(r->scene, row->section, i) + p->offset;
+            if (p->type == PARAM_REAL)
+                memcpy(place, &row->value, sizeof row->value);
+            else
+                *(int *)(void *)place = (int)row->value;
+        }
+    }
+}
+
 static enum err allocate_sections(struct reader *r)
 {
     struct scene *s = r->scene;
@@ -256,6 +319,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(case_apply_sets(r, n_sets, sets));
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
+    apply_presets(r);
     TRY(case_all_constants(r));
     r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
                                   sizeof *r->scene->given, "case file", r->diag);

@@ -29,7 +29,7 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
 {
     const double least = 10 * max2(f->max_speed, sqrt(f->max_pressure / f->density));
     const int line = f->common.line;
-    *c0 = f->sound_speed > 0 ? f->sound_speed : least;
+    *c0 = f->sound_speed > 0 ? f->sound_speed : r->scene->numerics.sound_factor / 10 * least;
     if (*c0 == 0)
         return bad_line(r, line,
                         "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "

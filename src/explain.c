@@ -132,11 +132,11 @@ static void text_of_bytes(double bytes, char text[32])
         snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
 }
 
-static void say_cost(const struct simulation *s, const struct unit_costs *c,
+static void say_cost(const struct simulation *s, const struct unit_costs *c, int threads,
                      const struct sphfsi_options *o)
 {
-    const struct forecast f = forecast_run(c, s, 1);
-    session_say(o, "cost with %d thread%s, %s", thread_count(), thread_count() == 1 ? "" : "s",
+    const struct forecast f = forecast_run(c, s, threads, 1);
+    session_say(o, "cost with %d thread%s, %s", threads, threads == 1 ? "" : "s",
                 c->cached ? "from an earlier calibration on this machine"
                           : "from a second of the first steps");
     for (int k = 0; k < PHASE_COUNT; k++)
@@ -156,16 +156,19 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c,
                 disk);
 }
 
-static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
+static enum err say_trial(struct simulation *s, int threads, const struct sphfsi_options *o,
+                          struct diag *d)
 {
     struct unit_costs c;
     TRY(forecast_calibrate(&c, s, d));
     say_bounds(s, o);
-    say_cost(s, &c, o);
+    say_cost(s, &c, threads, o);
+    forecast_say_errors(s->scene, o);
     return ERR_OK;
 }
 
-enum err explain_session(struct session *x, const struct sphfsi_options *o, struct diag *d)
+enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
+                         struct diag *d)
 {
     struct simulation *s = &x->simulation;
     say_scene(x, o);
@@ -177,5 +180,5 @@ enum err explain_session(struct session *x, const struct sphfsi_options *o, stru
     param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
     session_say(o, "integrator %s, precision %s, kernel of the fluid: %s", integrator, precision,
                 s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none");
-    return say_trial(s, o, d);
+    return say_trial(s, threads, o, d);
 }

@@ -7,7 +7,7 @@
 
 /* Tells line by line, through the message callback; takes a few steps in memory to know the cost,
  * and writes nothing. */
-enum err explain_session(struct session *x, const struct sphfsi_options *o, struct diag *d)
-    SPHFSI_CHECKED;
+enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
+                         struct diag *d) SPHFSI_CHECKED;
 
 #endif

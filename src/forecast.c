@@ -2,12 +2,14 @@
 #include "forecast.h"
 
 #include "folder.h"
+#include "params.h"
 #include "timestep.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 #ifdef _OPENMP
 #include <omp.h>
@@ -142,16 +144,26 @@ static void cache_keep(uint64_t key, const struct unit_costs *c)
 
 /* --- calibration --- */
 
-/* A phase costs the least that it took per step in any of the repeats: other work on the machine only ever
- * adds. Sorting, which not every repeat has, costs its mean, unless that is disturbed beyond belief. */
+/* Time that this thread has worked, s: unlike the clock's it does not count what other programs took. */
+static double work_clock(void)
+{
+    struct timespec t;
+    if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) != 0) return wall_clock();
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A step costs the least work of any repeat, other work on the machine only ever adds; its phases share it
+ * as their least times do. Sorting, which not every repeat has, costs its mean, unless that is disturbed
+ * beyond belief. */
 struct least {
-    double phase[PHASE_COUNT], sort_mean;
+    double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
 };
 
 static enum err take_steps(struct least *least, struct simulation *s, struct diag *d)
 {
     const double end = s->scene->top.end_time, begin = wall_clock();
+    const double work = work_clock();
     const struct state before = s->state;
     double phase[PHASE_COUNT];
     memcpy(phase, s->phase_seconds, sizeof phase);
@@ -159,6 +171,8 @@ static enum err take_steps(struct least *least, struct simulation *s, struct dia
         TRY(simulation_step(s, end, d));
     } while (s->state.time < end && wall_clock() - begin < repeat_seconds);
     const double steps = (double)(s->state.steps - before.steps);
+    const double each = (work_clock() - work) / steps;
+    least->step = least->steps ? min2(least->step, each) : each;
     for (int k = 0; k < PHASE_COUNT; k++) {
         const double seconds = (s->phase_seconds[k] - phase[k]) / steps;
         least->phase[k] = least->steps ? min2(least->phase[k], seconds) : seconds;
@@ -180,7 +194,8 @@ static void set_costs(struct unit_costs *c, struct least *l, const struct simula
     l->phase[PHASE_sort] = min2(l->sort_mean / steps, 0.05 * all);
     all += l->phase[PHASE_sort];
     for (int k = 0; k < PHASE_COUNT; k++) c->phase_share[k] = all > 0 ? l->phase[k] / all : 0;
-    const double solid = n_fluid > 0 ? l->phase[PHASE_solid] : all;
+    all = min2(all, l->step);
+    const double solid = n_fluid > 0 ? all * c->phase_share[PHASE_solid] : all;
     c->evaluations = (double)l->evaluations / steps;
     if (n_solid > 0 && l->substeps > 0) c->solid = solid * steps / (double)l->substeps / n_solid;
     if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;
@@ -203,19 +218,37 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
     return ERR_OK;
 }
 
-/* With one thread: two that wait for each other on a busy machine measure the machine's other work. */
 enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
 {
     *c = (struct unit_costs){0};
-#ifdef _OPENMP
-    const int threads = thread_count();
-    omp_set_num_threads(1);
-    const enum err e = calibrate(c, s, d);
-    omp_set_num_threads(threads);
-    return e;
-#else
     return calibrate(c, s, d);
+}
+
+static void set_threads(int n)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(n);
+#else
+    (void)n;
 #endif
+}
+
+enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *threads,
+                       struct diag *d)
+{
+    struct sphfsi_options one = *o;
+    if (o->threads > 0 && o->threads <= 4096) set_threads(o->threads);
+    *threads = thread_count();
+    if (o->threads >= 0 && o->threads <= 4096) one.threads = 1;
+    const enum err e = session_open(x, &one, d);
+    if (e) set_threads(*threads);
+    return e;
+}
+
+void forecast_close(struct session *x, int threads)
+{
+    session_close(x);
+    set_threads(threads);
 }
 
 /* --- the run --- */
@@ -263,7 +296,8 @@ static double disk_bytes(const struct simulation *s, double scale)
            BYTES_OF_ROW * rows;
 }
 
-struct forecast forecast_run(const struct unit_costs *c, const struct simulation *s, double scale)
+struct forecast forecast_run(const struct unit_costs *c, const struct simulation *s, int threads,
+                             double scale)
 {
     const double n_fluid = (double)s->kind[KIND_FLUID].n / (scale * scale);
     const double n_solid = (double)s->kind[KIND_SOLID].n / (scale * scale);
@@ -280,8 +314,50 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     /* A row of the ledger looks at the fluid once more. */
     const double looks = end / s->scene->output.ledger_interval;
     f.seconds = (f.evaluations + looks) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
-    f.seconds /= 1 + thread_efficiency * (thread_count() - 1);
+    f.seconds /= 1 + thread_efficiency * (threads - 1);
     f.memory = (double)(s->arena.bytes + s->scene->arena.bytes) / (scale * scale);
     f.disk = disk_bytes(s, scale);
     return f;
+}
+
+/* --- the error --- */
+
+static const struct evidence {
+    enum scene_kind kind;
+    int accuracy;
+    const char *name, *error;
+    double resolution;
+    const char *what;
+    double percent;
+} evidence[] = {
+#define EVIDENCE(scene, accuracy, name, error, resolution, what, percent) \
+    {SCENE_##scene, ACCURACY_##accuracy, name, error, resolution, what, percent},
+#include "evidence.def"
+#undef EVIDENCE
+};
+
+void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
+{
+    const enum scene_kind kind = s->n_fluid && s->n_solid ? SCENE_COUPLED
+                                 : s->n_fluid             ? SCENE_FLUID
+                                                          : SCENE_SOLID;
+    char accuracy[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
+    session_say(o, "expected error at accuracy = %s, from the study in docs/accuracy.md", accuracy);
+    const char *before = "";
+    char line[512] = "";
+    size_t at = 0;
+    for (size_t k = 0; k < COUNT_OF(evidence); k++) {
+        const struct evidence *const row = &evidence[k];
+        if (row->kind != kind || row->accuracy != s->top.accuracy) continue;
+        if (strcmp(before, row->name) != 0) {
+            if (at > 0) session_say(o, "%s", line);
+            at = (size_t)snprintf(line, sizeof line, "  %s, %s:", row->name, row->error);
+            before = row->name;
+        }
+        if (at < sizeof line - 100)
+            at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;",
+                                   row->percent, row->resolution, row->what);
+    }
+    session_say(o, "%s", at > 0 ? line : "  the study has no such scene");
 }

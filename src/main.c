@@ -26,6 +26,7 @@ static const char usage[] =
     "  --explain         say what would be simulated and what it would cost\n"
     "  --effective       print the case in effect, every default spelled out\n"
     "  --cite            print the sources of the methods that the case uses\n"
+    "  --budget TIME     say which is the finest dp that runs within the time: 90s, 10min, 2h\n"
     "  --refine N        run in N resolutions (3 to 6), coarsest first, and say what the probes\n"
     "                    converge to, with order and error band; goes on where it was\n"
     "                    (--ratio R: of neighbouring resolutions, 2)\n"
@@ -37,7 +38,20 @@ static const char usage[] =
     "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
 /* What the program does: RUN unless an option says otherwise. */
-enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, REFINE, VERSION, HELP };
+enum mode {
+    RUN,
+    PREVIEW,
+    EXPLAIN,
+    EFFECTIVE,
+    CITE,
+    INSPECT,
+    NEW,
+    KEYS,
+    REFINE,
+    BUDGET,
+    VERSION,
+    HELP
+};
 
 /* Whether an option takes an operand. */
 enum takes { NOTHING, OPERAND, MAYBE };
@@ -55,7 +69,8 @@ static const struct option {
     {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
     {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
     {"--refine", OPERAND, REFINE},   {"--ratio", OPERAND, RUN},
-    {"--version", NOTHING, VERSION}, {"--help", NOTHING, HELP},
+    {"--budget", OPERAND, BUDGET},   {"--version", NOTHING, VERSION},
+    {"--help", NOTHING, HELP},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
@@ -64,6 +79,7 @@ struct command {
     enum mode mode;
     const char *operand; /* of the option that chose the mode */
     double runs, ratio;  /* of --refine */
+    double budget;       /* of --budget, s */
     int quiet;
     int terminal, line_open; /* a progress line stands on the terminal */
     double last_share, last_line;
@@ -164,6 +180,24 @@ static int read_number(const char *option, const char *text, double low, double 
                     option, text);
 }
 
+/* Wall time: a number with s, min or h behind it. */
+static int read_duration(const char *text, double *seconds)
+{
+    static const struct {
+        const char *unit;
+        double seconds;
+    } units[] = {{"s", 1}, {"min", 60}, {"h", 3600}};
+    char *end;
+    *seconds = strtod(text, &end);
+    while (end != text && *end == ' ') end++;
+    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++)
+        if (end != text && strcmp(end, units[k].unit) == 0 && *seconds > 0) {
+            *seconds *= units[k].seconds;
+            return 0;
+        }
+    return complain("--budget %s: a time such as 90s, 10min or 2h is wanted%s", text, "");
+}
+
 static int is_checkpoint(const char *text)
 {
     const size_t n = strlen(text);
@@ -178,6 +212,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
     if (option->mode != RUN) {
         c->mode = option->mode;
         c->operand = operand;
+        if (option->mode == BUDGET) return read_duration(operand, &c->budget);
         if (option->mode == REFINE) return read_number(name, operand, 3, 6, &c->runs);
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
@@ -288,6 +323,7 @@ static enum sphfsi_status carry_out(struct command *c)
     case CITE: return sphfsi_cite(o);
     case INSPECT: return sphfsi_inspect(c->operand, o);
     case NEW: return print_template(c);
+    case BUDGET: return sphfsi_budget(o, c->budget);
     case REFINE: install_signals(); return sphfsi_refine(o, (int)c->runs, c->ratio);
     case KEYS: sphfsi_keys(o); break;
     case VERSION: puts(sphfsi_version()); break;

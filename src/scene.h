@@ -60,6 +60,8 @@ struct scene_section_common {
 /* Values of the CHOICE keys, in the order of their names in params.def. */
 enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
+enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED }; /* what presets are told apart by */
+enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
 enum suction { SUCTION_OFF, SUCTION_ON };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */

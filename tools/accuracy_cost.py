@@ -53,6 +53,8 @@ def arguments():
     parser.add_argument("--point", help="run this one point and write no report")
     parser.add_argument("--list", action="store_true", help="list the points, run nothing")
     parser.add_argument("--plan", action="store_true", help="the points as JSON, run nothing")
+    parser.add_argument("--cached", action="store_true",
+                        help="run nothing; points that are not cached are reported as not run")
     parser.add_argument("--report", action="store_true", help="no runs; only the report")
     parser.add_argument("--again", nargs="?", const="", metavar="NAMES",
                         help="time once more the finished points whose names begin like one of "
@@ -77,6 +79,7 @@ def read_study(path):
         raise BadFile(f"{path}: {problem}") from None
     holes = []
     cases = study.setdefault("case", {})
+    study.setdefault("preset", {})
     for name, case in list(cases.items()):
         wrong = case_trouble(case)
         if wrong:
@@ -152,7 +155,7 @@ def program_hash():
     """Of everything that the results can depend on."""
     total = sha256()
     for path in sorted([*ROOT.glob("src/*"), *ROOT.glob("include/*")]):
-        if path.suffix in (".c", ".h", ".def"):
+        if path.suffix in (".c", ".h", ".def") and path.name != "evidence.def":
             total.update(path.name.encode() + b"\0" + path.read_bytes())
     flags = ROOT / "build" / "release" / "flags"
     if flags.exists():
@@ -284,11 +287,14 @@ def give_keys(points, study):
     return program
 
 
-def run_all(points, study, runs, again):
+def run_all(points, study, runs, again, cached):
     records, done = {}, {}
     for number, p in enumerate(points, 1):
         if p["key"] is None:
             records[p["name"]] = dict(p, timing=[])
+            continue
+        if cached and not (runs / p["key"] / "result.json").exists():
+            records[p["name"]] = dict(p, timing=[], outcome="not run", message="")
             continue
         if p["key"] not in done:
             start = time.monotonic()
@@ -336,7 +342,7 @@ def collect(records, study, program, data):
     machines = sorted({json.dumps(r["machine"]) for r in records.values() if "machine" in r})
     versions = sorted({r["version"] for r in records.values() if r.get("version")})
     head = {"program": program, "versions": versions, "machines": [json.loads(m) for m in machines],
-            "holes": study["holes"], "definition": {k: study[k] for k in ("study", "case", "knob")}}
+            "holes": study["holes"], "definition": {k: study[k] for k in ("study", "preset", "case", "knob")}}
     text = "{\n" + ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in head.items())
     data.write_text(text + ',\n"points": [\n' + ",\n".join(rows) + "\n]}\n")
 
@@ -344,8 +350,9 @@ def collect(records, study, program, data):
 def main():
     args = arguments()
     data = args.data or args.study.with_name("results.json")
+    evidence = ROOT / "src" / "evidence.def" if data.resolve() == STUDY.with_name("results.json") else None
     if args.report:
-        return study_report.write(data, args.out)
+        return study_report.write(data, args.out, evidence)
     study = read_study(args.study)
     study["prefix"] = args.prefix
     points = [p for p in points_of(study) if p["name"].startswith(args.only)]
@@ -367,10 +374,11 @@ def main():
     names = None if args.again is None else \
         [n for n in args.again.split(",") if n] or study_report.front_names(data)
     records = run_all(points, study, args.runs,
-                      lambda name: names is not None and any(name.startswith(n) for n in names))
+                      lambda name: names is not None and any(name.startswith(n) for n in names),
+                      args.cached)
     add_errors(records, study, args.runs)
     collect(records, study, program, data)
-    return study_report.write(data, args.out)
+    return study_report.write(data, args.out, evidence)
 
 
 if __name__ == "__main__":

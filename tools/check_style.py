@@ -17,12 +17,12 @@ ROOT = Path(__file__).resolve().parent.parent
 FLOORS = [
     "base simd tensor2 errors",
     "fields groups particles morton cells smoothing eos",
-    "params effects rules phases quantities pointdata case expr units geometry motion scene",
+    "params presets evidence effects rules phases quantities pointdata case expr units geometry motion scene",
     "fluid variants solid material contact drive",
     "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",
     "folder json probes reference snapshot checkpoint report series",
     "sphfsi session explain inspect preview manual templates citations examples run "
-    "forecast refine api main",
+    "forecast budget refine api main",
 ]
 FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
 

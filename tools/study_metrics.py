@@ -11,6 +11,7 @@ from snapshots import Snapshots
 # kind: keys that its [[case.NAME.error]] must have
 KINDS = {
     "period": ("name", "column", "reference"),
+    "fitted_period": ("name", "column", "reference"),
     "phase": ("name", "column", "reference"),
     "settled": ("name", "column", "reference", "from"),
     "noise": ("name", "column", "from"),
@@ -50,6 +51,21 @@ def period(error, run, _finest, _root):
     if len(crossings) < 3:
         raise BadFile("fewer than three zero crossings: no period")
     found = 2 * (crossings[-1] - crossings[0]) / (len(crossings) - 1)
+    return found, abs(found / error["reference"] - 1)
+
+
+def fitted_period(error, run, _finest, _root):
+    """Period of the sine that explains most of the curve, within half and twice the reference: unlike
+    zero crossings it does not mind the acoustic noise of a pressure."""
+    time, value = window(*column(run, error["column"]), error)
+    best, found = np.inf, np.nan
+    for trial in error["reference"] * np.geomspace(0.5, 2, 4001):
+        angle = 2 * np.pi * time / trial
+        basis = np.stack([np.sin(angle), np.cos(angle), np.ones_like(angle)], axis=1)
+        solution = np.linalg.lstsq(basis, value, rcond=None)[0]
+        left = np.sum((basis @ solution - value)**2)
+        if left < best:
+            best, found = left, trial
     return found, abs(found / error["reference"] - 1)
 
 

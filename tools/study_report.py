@@ -258,7 +258,7 @@ def best_knobs(study):
             for gain, knob, value, cells in knob_rows(study, case, main_error(study.cases[case])):
                 sound = gain > 0 and not any("**" in c for c in cells)
                 found.setdefault((knob, value), []).append(gain if sound else 0)
-        ranked = sorted(((min(g), max(g), *k) for k, g in found.items() if k[0] != "accuracy"),
+        ranked = sorted(((min(g), max(g), *k) for k, g in found.items()),
                         reverse=True)
         for low, high, knob, value in ranked[:8]:
             if low > 0:
@@ -267,18 +267,45 @@ def best_knobs(study):
     return table(["scene", "setting", "gain, least and most over its cases"], rows)
 
 
+def preset_points(study):
+    """(preset, scene, case, point) of every point that stands for a preset, finished or not."""
+    for preset, knobs in study.definition.get("preset", {}).items():
+        for case, entry in study.cases.items():
+            knob, _, value = knobs.get(entry["scene"], "base").partition("=")
+            for p in sorted(study.of(case, knob, value), key=lambda p: p["level"]):
+                yield preset, entry["scene"], case, p
+
+
 def preset_section(study):
     rows = []
-    for case, entry in study.cases.items():
-        error = main_error(entry)
-        for value in study.knobs.get("accuracy", {}).get("values", {}):
-            for p in study.of(case, "accuracy", value):
-                rows.append([case, value, f"{across(entry, p):.3g}" if p["dp"] else "-",
-                             percent(p["errors"].get(error)) if finished(p) else f"**{p['outcome']}**",
-                             f"{cost(p):.3g}" if finished(p) else "-"])
-    if not rows:
-        return "The study holds no points of the presets."
-    return table(["case", "preset", "across", f"error (%)", "CPU s"], rows)
+    for preset, _, case, p in preset_points(study):
+        entry = study.cases[case]
+        error = p.get("errors", {}).get(main_error(entry)) if finished(p) else None
+        if finished(p) and error is None:
+            continue
+        what = entry.get("what", "across")
+        rows.append([case, preset, f"{across(entry, p):.3g} {what}" if p["dp"] else "-",
+                     percent(error) if finished(p) else f"**{p['outcome']}**",
+                     f"{cost(p):.3g}" if finished(p) else "-"])
+    return table(["case", "preset", "resolution", "main error (%)", "CPU s"],
+                 sorted(rows, key=lambda r: r[0]))
+
+
+def write_evidence(study, path):
+    """What the program says of its presets: the same numbers as a list that it is compiled with."""
+    rows = []
+    for preset, scene, case, p in preset_points(study):
+        entry = study.cases[case]
+        error = p.get("errors", {}).get(main_error(entry)) if finished(p) else None
+        if error is not None:
+            rows.append(f'EVIDENCE({scene.upper()}, {preset.upper()}, "{entry.get("title", case)}", '
+                        f'"{main_error(entry)}", {across(entry, p):.3g}, "{entry.get("what", "across")}", '
+                        f"{100 * error:.3g})")
+    head = ("/* Written by make accuracy: errors of the presets in the study of program "
+            f"{', '.join(study.head['versions'])}.\n * EVIDENCE(scene, accuracy, case, error, resolution, "
+            "what it counts, percent) */\n")
+    path.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
+    print(f"written {path}")
 
 
 def failures(study):
@@ -295,7 +322,7 @@ in {runs} runs.
 Cost is CPU time, the least of a point's repeats; beside it stand median and spread. Points that cost
 more than {repeat_below:g} s were run once. † marks timings taken while the load average was above
 {quiet:g}: {busy} of {points} points. On such a machine CPU time is some tenths too long and unsteady,
-and wall time means little. *Base settings* are those of the case file with the program's defaults.
+and wall time means little. *Base settings* are those of the case file with the program's defaults. {note}
 
 {cases}
 
@@ -365,8 +392,10 @@ def case_text(study, case):
         f"\nPareto front, from cheap to exact: {front or 'no finished point'}.\n"
 
 
-def write(data, out):
+def write(data, out, evidence=None):
     study = Study(data)
+    if evidence:
+        write_evidence(study, evidence)
     (out / "img").mkdir(parents=True, exist_ok=True)
     for case in study.cases:
         if study.base(case):
@@ -383,7 +412,7 @@ def write(data, out):
         machines=machines or "unknown machine", threads=rules.get("threads", 1),
         counters="energy from the processor's counters" if energy else
         "no energy: this machine has no counter in /sys/class/powercap",
-        points=len(study.points), runs=len(timings), repeat_below=rules.get("repeat_below", np.inf),
+        note=rules.get("note", ""), points=len(study.points), runs=len(timings), repeat_below=rules.get("repeat_below", np.inf),
         quiet=rules.get("threads", 1) + 0.3,
         busy=sum(bool(p["timing"] and busy(study, p)) for p in study.points),
         cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),

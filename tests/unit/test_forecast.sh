@@ -30,4 +30,28 @@ want=$("$SPHFSI" --explain "${plate[@]}" 2>/dev/null | steps_of)
 "$SPHFSI" "${plate[@]}" --quiet --out "$work/plate" 2>/dev/null || fail "the cantilever failed"
 got=$(sed -n 's/^  "steps": \([0-9]*\),/\1/p' "$work/plate/summary.json")
 near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
+
+# A budget: the finest spacing within it, costs that grow as dp shrinks, and what is no time.
+"$SPHFSI" --budget 20s cases/still_water.cfg --set "wall=80 mm" >"$work/budget" 2>/dev/null ||
+    fail "no budget"
+grep -q '^the finest that fits: --set dp=0\.0' "$work/budget" || fail "$(cat "$work/budget")"
+awk '/^  dp .* (fits|too long|bodies)/ { if (n++ && $8 < last) exit 1; last = $8 }' "$work/budget" ||
+    fail "costs do not grow: $(cat "$work/budget")"
+for bad in 10 -1s 5days ""; do
+    "$SPHFSI" --budget "$bad" cases/still_water.cfg 2>"$work/error" && fail "--budget '$bad' was accepted"
+    grep -q 'a time such as' "$work/error" || fail "$(cat "$work/error")"
+done
+
+# Presets: a key of the case wins, and the standard is the default.
+value() { "$SPHFSI" --effective cases/still_water.cfg --set integrator=leapfrog "$@" | sed -n "s/^$key = //p"; }
+key=cfl
+[ "$(value)" = "$(value --set accuracy=standard)" ] || fail "standard is not the default"
+[ "$(value --set accuracy=draft)" != "$(value)" ] || fail "draft changes nothing"
+[ "$(value --set accuracy=draft --set numerics.cfl=0.3)" = 0.3 ] || fail "a preset overrides a key"
+[ "$(value --set accuracy=draft --set integrator=verlet)" = "$(value --set integrator=verlet)" ] ||
+    fail "a step for leapfrog is given to verlet"
+key=sound_factor
+[ "$(value --set accuracy=fine)" = 20 ] || fail "fine is not what presets.def says"
+"$SPHFSI" --effective cases/still_water.cfg --set accuracy=fast >/dev/null 2>"$work/error" && fail "accuracy=fast"
+grep -q 'draft|standard|fine' "$work/error" || fail "$(cat "$work/error")"
 exit 0

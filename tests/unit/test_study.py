@@ -114,6 +114,8 @@ def errors_by_hand(folder):
 
     value, error = off(run, kind="period", reference=0.4)
     check(abs(value - 0.5) < 1e-3 and abs(error - 0.25) < 3e-3, f"period {value}, {error}")
+    value, error = off(run, kind="fitted_period", reference=0.4)
+    check(abs(value - 0.5) < 2e-3, f"fitted period {value}")
     value, error = off(run, kind="decay", rate=0.1)
     check(abs(value - 0.2) < 1e-3 and abs(error - 1) < 1e-2, f"decay {value}, {error}")
     check(off(other, kind="settled", reference=4.0, **{"from": 1})[1] == 0.5, "settled")
