@@ -412,7 +412,8 @@ def write(data, out, evidence=None):
         machines=machines or "unknown machine", threads=rules.get("threads", 1),
         counters="energy from the processor's counters" if energy else
         "no energy: this machine has no counter in /sys/class/powercap",
-        note=rules.get("note", ""), points=len(study.points), runs=len(timings), repeat_below=rules.get("repeat_below", np.inf),
+        note=rules.get("note", ""), points=len(study.points),
+        runs=len(timings), repeat_below=rules.get("repeat_below", np.inf),
         quiet=rules.get("threads", 1) + 0.3,
         busy=sum(bool(p["timing"] and busy(study, p)) for p in study.points),
         cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),

@@ -52,6 +52,7 @@ key=cfl
     fail "a step for leapfrog is given to verlet"
 key=sound_factor
 [ "$(value --set accuracy=fine)" = 20 ] || fail "fine is not what presets.def says"
-"$SPHFSI" --effective cases/still_water.cfg --set accuracy=fast >/dev/null 2>"$work/error" && fail "accuracy=fast"
+"$SPHFSI" --effective cases/still_water.cfg --set accuracy=fast >/dev/null 2>"$work/error" &&
+    fail "accuracy=fast"
 grep -q 'draft|standard|fine' "$work/error" || fail "$(cat "$work/error")"
 exit 0
