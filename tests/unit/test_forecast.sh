@@ -43,7 +43,8 @@ for bad in 10 -1s 5days ""; do
 done
 
 # Presets: a key of the case wins, and the standard is the default.
-value() { "$SPHFSI" --effective cases/still_water.cfg --set integrator=leapfrog "$@" | sed -n "s/^$key = //p"; }
+value() { "$SPHFSI" --effective cases/still_water.cfg --set integrator=leapfrog "$@" |
+    sed -n "s/^$key = //p"; }
 key=cfl
 [ "$(value)" = "$(value --set accuracy=standard)" ] || fail "standard is not the default"
 [ "$(value --set accuracy=draft)" != "$(value)" ] || fail "draft changes nothing"
