@@ -209,7 +209,8 @@ def sections():
             ("Taylor-Green vortices", checks.vortices),
             ("Dam break on a dry bed: the front", checks.front),
             ("Dam break: pressures of the impact", checks.impact),
-            ("Patch test", checks.patch), ("Free rotation of an unloaded block", checks.block),
+            ("Patch test", checks.patch), ("Static large bending: the elastica", checks.beam),
+            ("Free rotation of an unloaded block", checks.block),
             ("Bar stretched by its own weight", checks.bar),
             ("Ledgers of the verification runs", checks.all_ledgers)]
 
