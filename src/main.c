@@ -208,29 +208,30 @@ static int apply(struct command *c, const struct option *option, const char *ope
 {
     struct sphfsi_options *o = &c->options;
     const char *const name = option->name;
+    const char *const word = operand ? operand : ""; /* only --restart may go without */
     double number = 0;
     if (option->mode != RUN) {
         c->mode = option->mode;
         c->operand = operand;
-        if (option->mode == BUDGET) return read_duration(operand, &c->budget);
-        if (option->mode == REFINE) return read_number(name, operand, 3, 6, &c->runs);
+        if (option->mode == BUDGET) return read_duration(word, &c->budget);
+        if (option->mode == REFINE) return read_number(name, word, 3, 6, &c->runs);
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
     } else if (strcmp(name, "--threads") == 0) {
-        if (read_number(name, operand, 1, 4096, &number)) return 1;
+        if (read_number(name, word, 1, 4096, &number)) return 1;
         o->threads = (int)number;
     } else if (strcmp(name, "--until") == 0) {
-        if (read_number(name, operand, 1e-300, 1e9, &number)) return 1;
+        if (read_number(name, word, 1e-300, 1e9, &number)) return 1;
         o->until = number;
     } else if (strcmp(name, "--set") == 0) {
-        if (!strchr(operand, '='))
+        if (!strchr(word, '='))
             return complain("%s %s: key=value or section.key=value is wanted", name, operand);
         ((const char **)(uintptr_t)o->sets)[o->n_sets++] = operand;
     } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
         o->restart_file = operand;
     } else if (strcmp(name, "--ratio") == 0) {
-        if (read_number(name, operand, 1.1, 4, &c->ratio)) return 1;
+        if (read_number(name, word, 1.1, 4, &c->ratio)) return 1;
     } else if (strcmp(name, "--fork") == 0) {
         o->fork = operand;
     } else {

@@ -29,6 +29,7 @@ enum err moving_create(struct moving *m, struct arena *a, const struct scene *s,
 
 static bool same_place(const struct motion_state *a, const struct motion_state *b)
 {
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
     return memcmp(a, b, sizeof *a) == 0;
 }
 

@@ -72,7 +72,8 @@ static void put_label(struct drawing *g, double x, double y, const char *name)
     if (x + width > LEFT + DRAWING + RIGHT) x -= width + 10;
     struct box b = {x, y - 10, x + width, y + 4};
     for (int k = 1; k < 16 && taken(g, b); k++) {
-        const double shift = (k % 2 ? 1 : -1) * (k + 1) / 2 * 15;
+        const int row = (k + 1) / 2; /* 1, 1, 2, 2, ...: above and below in turn */
+        const double shift = (k % 2 ? 15 : -15) * row;
         b.y0 = y - 10 + shift;
         b.y1 = y + 4 + shift;
     }
