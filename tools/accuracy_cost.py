@@ -39,6 +39,7 @@ from runfiles import BadFile, run_tool
 from study_metrics import KINDS, measure
 
 ROOT = Path(__file__).resolve().parent.parent
+PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
 STUDY = ROOT / "tools" / "study" / "study.toml"
 KEEP = ("probes.csv", "ledger.csv", "summary.json", "case.cfg", "fields.vtkhdf")
 POWERCAP = Path("/sys/class/powercap")
@@ -169,7 +170,7 @@ def set_arguments(sets):
 
 def effective_hash(case, p, program):
     """Of the case in effect but for its words and references; None and why: it is refused."""
-    command = [str(ROOT / "sphfsi"), "--effective", str(ROOT / case["file"]), *set_arguments(p["set"])]
+    command = [str(PROGRAM), "--effective", str(ROOT / case["file"]), *set_arguments(p["set"])]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
     except (OSError, subprocess.TimeoutExpired) as problem:
@@ -209,7 +210,7 @@ def timed(command, threads, limit):
 def run_once(folder, case, p, study):
     """A run in its folder: its record, and one of its timing."""
     shutil.rmtree(folder, ignore_errors=True)
-    command = [*shlex.split(study["prefix"]), str(ROOT / "sphfsi"), str(ROOT / case["file"]), "--quiet",
+    command = [*shlex.split(study["prefix"]), str(PROGRAM), str(ROOT / case["file"]), "--quiet",
                "--out", str(folder), *set_arguments(p["set"])]
     before = os.times()
     status, wall, energy, load, stderr = timed(command, study["study"].get("threads", 1),

@@ -4,6 +4,8 @@
 # harm; afterwards the run goes on, or is begun anew where there was no checkpoint, to the same bits.
 # INJECT_STRIDE=1 tries every n (make faults), 30 every thirtieth.
 set -u
+# The leak checker of a sanitized program cannot work under another tracer.
+export ASAN_OPTIONS=detect_leaks=0
 sphfsi=$(realpath "${SPHFSI:-./sphfsi}")
 stride=${INJECT_STRIDE:-30}
 dir=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
