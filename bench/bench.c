@@ -57,10 +57,9 @@ static void print_machine(const struct bench *b)
 #endif
     double load[1] = {-1};
     if (getloadavg(load, 1) < 1) load[0] = -1;
-    fprintf(
-        b->out,
-        "# %s, %d threads, load %.1f before the start; vectors of %d float, %d double, %d wide\n",
-        cpu + (cpu[0] == ' '), b->all_threads, load[0], LANES_FLOAT, LANES_DOUBLE, LANES_WIDE);
+    fprintf(b->out,
+            "# %s, %d threads, load %.1f before the start; vectors of %d float, %d double\n",
+            cpu + (cpu[0] == ' '), b->all_threads, load[0], LANES_FLOAT, LANES_DOUBLE);
     fprintf(b->out, "# %s%s\n", compiler, __VERSION__);
     fprintf(b->out, "what,variant,particles,threads,part,unit,median,min,max\n");
 }
@@ -91,13 +90,13 @@ static double run_float(void)
     return sum;
 }
 
-static double run_wide(void)
+static double run_double(void)
 {
-    vwide x[CHAINS];
-    for (int c = 0; c < CHAINS; c++) x[c] = vset_wide(c);
-    const vwide a = vset_wide(0.999), b = vset_wide(0.001);
+    vdouble x[CHAINS];
+    for (int c = 0; c < CHAINS; c++) x[c] = vset_double(c);
+    const vdouble a = vset_double(0.999), b = vset_double(0.001);
     for (int k = 0; k < ROUNDS; k++)
-        for (int c = 0; c < CHAINS; c++) x[c] = vfma_wide(x[c], a, b);
+        for (int c = 0; c < CHAINS; c++) x[c] = vfma_double(x[c], a, b);
     double sum = 0;
     for (int c = 0; c < CHAINS; c++) sum += x[c][0];
     return sum;
@@ -259,7 +258,7 @@ static void bench_all(struct bench *b, int threads, double largest)
 {
     set_threads(threads);
     bench_fma(b, threads, "float", run_float, LANES_FLOAT);
-    bench_fma(b, threads, "wide", run_wide, LANES_WIDE);
+    bench_fma(b, threads, "double", run_double, LANES_DOUBLE);
     bench_copy(b, threads);
     bench_solid(b, false, threads);
     bench_solid(b, true, threads);

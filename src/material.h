@@ -18,7 +18,7 @@ SPHFSI_INLINE struct vtensor2 deformation(struct vtensor2 U)
 /* Eq. 12: Green-Lagrange strain E = (U + U^T + U^T U)/2. */
 SPHFSI_INLINE struct vtensor2 green_lagrange(struct vtensor2 U)
 {
-    const vwide shear = (U.xy + U.yx + U.xx * U.xy + U.yx * U.yy) * 0.5;
+    const vdouble shear = (U.xy + U.yx + U.xx * U.xy + U.yx * U.yy) * 0.5;
     return (struct vtensor2){U.xx + (U.xx * U.xx + U.yx * U.yx) * 0.5, shear, shear,
                              U.yy + (U.xy * U.xy + U.yy * U.yy) * 0.5};
 }
@@ -26,7 +26,7 @@ SPHFSI_INLINE struct vtensor2 green_lagrange(struct vtensor2 U)
 /* Linear isotropic law, Eq. 10: lambda tr(e) I + 2 mu e. */
 SPHFSI_INLINE struct vtensor2 hooke(struct vtensor2 e, double lambda, double mu)
 {
-    const vwide trace = (e.xx + e.yy) * lambda;
+    const vdouble trace = (e.xx + e.yy) * lambda;
     return (struct vtensor2){trace + e.xx * (2 * mu), e.xy * (2 * mu), e.yx * (2 * mu),
                              trace + e.yy * (2 * mu)};
 }
@@ -42,13 +42,13 @@ SPHFSI_INLINE double plane_lambda(const struct solid_body *b)
 SPHFSI_INLINE struct vtensor2 paper_pk1(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), cof = vtensor2_cof(F);
-    const vwide inv_J = 1.0 / vtensor2_det(F), inv_J2 = inv_J * inv_J;
+    const vdouble inv_J = 1.0 / vtensor2_det(F), inv_J2 = inv_J * inv_J;
     struct vtensor2 eps = vtensor2_mul_t(vtensor2_mul(cof, green_lagrange(U)), cof);
     eps = (struct vtensor2){eps.xx * inv_J2, eps.xy * inv_J2, eps.yx * inv_J2, eps.yy * inv_J2};
     struct vtensor2 P = vtensor2_mul(hooke(eps, plane_lambda(b), b->mu), cof);
     if (b->plane == PLANE_STRESS) {
-        const vwide eps_zz = (eps.xx + eps.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
-        const vwide thickness = 1.0 / vsqrt_wide(1.0 - 2.0 * eps_zz);
+        const vdouble eps_zz = (eps.xx + eps.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
+        const vdouble thickness = 1.0 / vsqrt_double(1.0 - 2.0 * eps_zz);
         P = (struct vtensor2){P.xx * thickness, P.xy * thickness, P.yx * thickness,
                               P.yy * thickness};
     }
@@ -67,10 +67,10 @@ SPHFSI_INLINE struct vtensor2 svk_pk1(const struct solid_body *b, struct vtensor
 SPHFSI_INLINE struct vtensor2 neo_hookean_pk1(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), cof = vtensor2_cof(F);
-    const vwide J = vtensor2_det(F);
-    vwide J2 = J * J;
+    const vdouble J = vtensor2_det(F);
+    vdouble J2 = J * J;
     if (b->plane == PLANE_STRESS) J2 = J2 * (2 * b->mu + b->lambda) / (2 * b->mu + b->lambda * J2);
-    const vwide inverse = ((J2 - 1.0) * (0.5 * b->lambda) - b->mu) / J;
+    const vdouble inverse = ((J2 - 1.0) * (0.5 * b->lambda) - b->mu) / J;
     return (struct vtensor2){F.xx * b->mu + cof.xx * inverse, F.xy * b->mu + cof.xy * inverse,
                              F.yx * b->mu + cof.yx * inverse, F.yy * b->mu + cof.yy * inverse};
 }
@@ -86,14 +86,14 @@ SPHFSI_INLINE struct vtensor2 material_pk1(const struct solid_body *b, struct vt
 
 /* Strain energy per reference volume, J/m^3. The paper's law has no stored-energy function: its row is
  * half the product of stress and strain, which is exact for small strains only. */
-SPHFSI_INLINE vwide material_energy(const struct solid_body *b, struct vtensor2 U)
+SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), E = green_lagrange(U), cof = vtensor2_cof(F);
-    const vwide J = vtensor2_det(F);
+    const vdouble J = vtensor2_det(F);
     struct vtensor2 e = E;
     if (b->law == LAW_NEO_HOOKEAN) {
-        vwide W = J;
-        for (int l = 0; l < LANES_WIDE; l++) {
+        vdouble W = J;
+        for (int l = 0; l < LANES_DOUBLE; l++) {
             const double t2 = b->plane == PLANE_STRESS
                                   ? (2 * b->mu + b->lambda) / (2 * b->mu + b->lambda * J[l] * J[l])
                                   : 1;
@@ -103,16 +103,16 @@ SPHFSI_INLINE vwide material_energy(const struct solid_body *b, struct vtensor2 
         return W;
     }
     if (b->law == LAW_PAPER) {
-        const vwide inv_J2 = 1.0 / (J * J);
+        const vdouble inv_J2 = 1.0 / (J * J);
         e = vtensor2_mul_t(vtensor2_mul(cof, E), cof);
         e = (struct vtensor2){e.xx * inv_J2, e.xy * inv_J2, e.yx * inv_J2, e.yy * inv_J2};
     }
     const struct vtensor2 S = hooke(e, plane_lambda(b), b->mu);
-    const vwide W = (S.xx * e.xx + S.yy * e.yy + S.xy * e.xy + S.yx * e.yx) * 0.5;
+    const vdouble W = (S.xx * e.xx + S.yy * e.yy + S.xy * e.xy + S.yx * e.yx) * 0.5;
     if (b->law != LAW_PAPER) return W;
     if (b->plane == PLANE_STRAIN) return W * J;
-    const vwide eps_zz = (e.xx + e.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
-    return W * J / vsqrt_wide(1.0 - 2.0 * eps_zz);
+    const vdouble eps_zz = (e.xx + e.yy) * (-b->lambda / (b->lambda + 2 * b->mu));
+    return W * J / vsqrt_double(1.0 - 2.0 * eps_zz);
 }
 
 /* What happens across the plane: the stretch of the thickness and the Cauchy stress sigma_zz, Pa, of

@@ -3,8 +3,8 @@
  * language has no word for. vfloat and vdouble fill the widest register there is: 512, 256 or 128 bits.
  * Sums over lanes follow one fixed tree and fma is explicit, so that a lane count gives the same bits
  * whatever the compiler and the instruction set (build with -ffp-contract=off); -DSPHFSI_LANES=8 asks an
- * AVX-512 machine for the 8 float lanes, and the bits, of an AVX2 one. Sweeps over vwide give each lane a
- * particle of its own, so their results do not depend on its width at all. */
+ * AVX-512 machine for the 8 float lanes, and the bits, of an AVX2 one. Sweeps that give each lane a
+ * particle of its own do not depend on the width at all. */
 #ifndef SPHFSI_SIMD_H
 #define SPHFSI_SIMD_H
 
@@ -29,12 +29,10 @@
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
-typedef vdouble vwide;
 
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
     LANES_DOUBLE = SIMD_BYTES / 8,
-    LANES_WIDE = LANES_DOUBLE,
 };
 
 /* The same vectors at any address, and free to alias the arrays they are loaded from. */
@@ -49,60 +47,45 @@ SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 
 /* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a : b. */
+#ifdef SIMD_AVX2
 #ifdef SIMD_AVX512
+#define X86(op) _mm512_##op
+#define X86_FLOAT __m512
+#define X86_DOUBLE __m512d
+#else
+#define X86(op) _mm256_##op
+#define X86_FLOAT __m256
+#define X86_DOUBLE __m256d
+#endif
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
-    return (vfloat)_mm512_fmadd_ps((__m512)a, (__m512)b, (__m512)c);
+    return (vfloat)X86(fmadd_ps)((X86_FLOAT)a, (X86_FLOAT)b, (X86_FLOAT)c);
 }
 SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
 {
-    return (vdouble)_mm512_fmadd_pd((__m512d)a, (__m512d)b, (__m512d)c);
+    return (vdouble)X86(fmadd_pd)((X86_DOUBLE)a, (X86_DOUBLE)b, (X86_DOUBLE)c);
 }
 SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
 {
-    return (vfloat)_mm512_min_ps((__m512)a, (__m512)b);
+    return (vfloat)X86(min_ps)((X86_FLOAT)a, (X86_FLOAT)b);
 }
 SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
 {
-    return (vfloat)_mm512_max_ps((__m512)a, (__m512)b);
+    return (vfloat)X86(max_ps)((X86_FLOAT)a, (X86_FLOAT)b);
 }
 SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
 {
-    return (vdouble)_mm512_min_pd((__m512d)a, (__m512d)b);
+    return (vdouble)X86(min_pd)((X86_DOUBLE)a, (X86_DOUBLE)b);
 }
 SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
 {
-    return (vdouble)_mm512_max_pd((__m512d)a, (__m512d)b);
+    return (vdouble)X86(max_pd)((X86_DOUBLE)a, (X86_DOUBLE)b);
 }
-SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)_mm512_sqrt_ps((__m512)a); }
-SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)_mm512_sqrt_pd((__m512d)a); }
-#elif defined SIMD_AVX2
-SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
-{
-    return (vfloat)_mm256_fmadd_ps((__m256)a, (__m256)b, (__m256)c);
-}
-SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
-{
-    return (vdouble)_mm256_fmadd_pd((__m256d)a, (__m256d)b, (__m256d)c);
-}
-SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
-{
-    return (vfloat)_mm256_min_ps((__m256)a, (__m256)b);
-}
-SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
-{
-    return (vfloat)_mm256_max_ps((__m256)a, (__m256)b);
-}
-SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
-{
-    return (vdouble)_mm256_min_pd((__m256d)a, (__m256d)b);
-}
-SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
-{
-    return (vdouble)_mm256_max_pd((__m256d)a, (__m256d)b);
-}
-SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)_mm256_sqrt_ps((__m256)a); }
-SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)_mm256_sqrt_pd((__m256d)a); }
+SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)X86(sqrt_ps)((X86_FLOAT)a); }
+SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)X86(sqrt_pd)((X86_DOUBLE)a); }
+#undef X86
+#undef X86_FLOAT
+#undef X86_DOUBLE
 #elif defined SIMD_NEON
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
@@ -173,14 +156,6 @@ SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 }
 #undef SIMD_LANEWISE
 #endif
-
-/* Lanes with a particle each. */
-#define vload_wide vload_double
-#define vstore_wide vstore_double
-#define vset_wide vset_double
-#define vfma_wide vfma_double
-#define vmin_wide vmin_double
-#define vsqrt_wide vsqrt_double
 
 /* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. Maximum likewise. */
 SPHFSI_INLINE float vsum_float(vfloat a)

@@ -118,10 +118,10 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
 }
 
 /* Writes the first `lanes` lanes only: the rest belongs to the next pack. */
-SPHFSI_INLINE void store_lanes(double *to, vwide value, int lanes)
+SPHFSI_INLINE void store_lanes(double *to, vdouble value, int lanes)
 {
-    if (lanes == LANES_WIDE) {
-        vstore_wide(to, value);
+    if (lanes == LANES_DOUBLE) {
+        vstore_double(to, value);
         return;
     }
     for (int l = 0; l < lanes; l++) to[l] = value[l];
@@ -129,25 +129,25 @@ SPHFSI_INLINE void store_lanes(double *to, vwide value, int lanes)
 
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i)
 {
-    return (struct vtensor2){vload_wide(&p->Uxx[i]), vload_wide(&p->Uxy[i]), vload_wide(&p->Uyx[i]),
-                             vload_wide(&p->Uyy[i])};
+    return (struct vtensor2){vload_double(&p->Uxx[i]), vload_double(&p->Uxy[i]),
+                             vload_double(&p->Uyx[i]), vload_double(&p->Uyy[i])};
 }
 
 /* Eq. 13b for any field (u, v), such as the displacement: U = F - I = sum of (u_b - u_a) G_ab^T. */
 SPHFSI_INLINE struct vtensor2 gradient_of(const struct solid *s, const struct solid_pack *pack,
                                           const double *u, const double *v)
 {
-    const vwide ux = vload_wide(&u[pack->i]), uy = vload_wide(&v[pack->i]);
-    struct vtensor2 sum = {vset_wide(0), vset_wide(0), vset_wide(0), vset_wide(0)};
+    const vdouble ux = vload_double(&u[pack->i]), uy = vload_double(&v[pack->i]);
+    struct vtensor2 sum = {vset_double(0), vset_double(0), vset_double(0), vset_double(0)};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
         const int64_t j = pack->i + slot->offset;
-        const vwide Gx = vload_wide(slot->Gx), Gy = vload_wide(slot->Gy);
-        const vwide dx = vload_wide(&u[j]) - ux, dy = vload_wide(&v[j]) - uy;
-        sum.xx = vfma_wide(dx, Gx, sum.xx);
-        sum.xy = vfma_wide(dx, Gy, sum.xy);
-        sum.yx = vfma_wide(dy, Gx, sum.yx);
-        sum.yy = vfma_wide(dy, Gy, sum.yy);
+        const vdouble Gx = vload_double(slot->Gx), Gy = vload_double(slot->Gy);
+        const vdouble dx = vload_double(&u[j]) - ux, dy = vload_double(&v[j]) - uy;
+        sum.xx = vfma_double(dx, Gx, sum.xx);
+        sum.xy = vfma_double(dx, Gy, sum.xy);
+        sum.yx = vfma_double(dy, Gx, sum.yx);
+        sum.yy = vfma_double(dy, Gy, sum.yy);
     }
     return sum;
 }
@@ -177,28 +177,28 @@ static void damping_stress(const struct solid *s, const struct solid_pack *pack,
     const int64_t i = pack->i;
     const struct vtensor2 F = deformation(load_gradient(p, i));
     const struct vtensor2 rate = gradient_of(s, pack, p->vx, p->vy);
-    const vwide shear = (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx) * 0.5;
+    const vdouble shear = (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx) * 0.5;
     const struct vtensor2 strain_rate = {F.xx * rate.xx + F.yx * rate.yx, shear, shear,
                                          F.xy * rate.xy + F.yy * rate.yy};
     const double tau = body->damping_time;
     const struct vtensor2 P =
         vtensor2_mul(F, hooke(strain_rate, tau * plane_lambda(body), tau * body->mu));
-    store_lanes(&p->Pxx[i], vload_wide(&p->Pxx[i]) + P.xx, pack->lanes);
-    store_lanes(&p->Pxy[i], vload_wide(&p->Pxy[i]) + P.xy, pack->lanes);
-    store_lanes(&p->Pyx[i], vload_wide(&p->Pyx[i]) + P.yx, pack->lanes);
-    store_lanes(&p->Pyy[i], vload_wide(&p->Pyy[i]) + P.yy, pack->lanes);
+    store_lanes(&p->Pxx[i], vload_double(&p->Pxx[i]) + P.xx, pack->lanes);
+    store_lanes(&p->Pxy[i], vload_double(&p->Pxy[i]) + P.xy, pack->lanes);
+    store_lanes(&p->Pyx[i], vload_double(&p->Pyx[i]) + P.yx, pack->lanes);
+    store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + P.yy, pack->lanes);
 }
 
 /* Particles a of a pack, as the pair laws see them. */
 struct solid_receiver {
-    vwide ux, uy, vx, vy;
+    vdouble ux, uy, vx, vy;
     struct vtensor2 U;
 };
 
 SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64_t i)
 {
-    return (struct solid_receiver){vload_wide(&p->ux[i]), vload_wide(&p->uy[i]),
-                                   vload_wide(&p->vx[i]), vload_wide(&p->vy[i]),
+    return (struct solid_receiver){vload_double(&p->ux[i]), vload_double(&p->uy[i]),
+                                   vload_double(&p->vx[i]), vload_double(&p->vy[i]),
                                    load_gradient(p, i)};
 }
 
@@ -206,8 +206,8 @@ SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64
 struct solid_pair {
     const struct solid_slot *slot;
     int64_t j;
-    vwide X, Y, x, y; /* x_ab = X_ab + u_ab */
-    vwide ux, uy;     /* u_ab */
+    vdouble X, Y, x, y; /* x_ab = X_ab + u_ab */
+    vdouble ux, uy;     /* u_ab */
     struct vtensor2 U_b;
 };
 
@@ -215,10 +215,10 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const str
                                         int64_t i, const struct solid_receiver *a)
 {
     struct solid_pair q = {.slot = slot, .j = i + slot->offset};
-    q.X = vload_wide(slot->X);
-    q.Y = vload_wide(slot->Y);
-    q.ux = a->ux - vload_wide(&p->ux[q.j]);
-    q.uy = a->uy - vload_wide(&p->uy[q.j]);
+    q.X = vload_double(slot->X);
+    q.Y = vload_double(slot->Y);
+    q.ux = a->ux - vload_double(&p->ux[q.j]);
+    q.uy = a->uy - vload_double(&p->uy[q.j]);
     q.x = q.X + q.ux;
     q.y = q.Y + q.uy;
     return q;
@@ -226,59 +226,60 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const str
 
 /* What a pack sums over its slots. */
 struct solid_sums {
-    vwide stress_x, stress_y; /* Pa/m */
-    vwide viscous_x,
-        viscous_y; /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
-    vwide ax, ay;  /* m/s^2 */
+    vdouble stress_x, stress_y; /* Pa/m */
+    vdouble viscous_x,
+        viscous_y;  /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
+    vdouble ax, ay; /* m/s^2 */
 };
 
 /* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
 SPHFSI_INLINE void stress_force(const struct solid_slot *slot, const struct particles *p, int64_t j,
                                 struct solid_sums *s)
 {
-    const vwide Hx = vload_wide(slot->Hx), Hy = vload_wide(slot->Hy);
-    s->stress_x = vfma_wide(vload_wide(&p->Pxx[j]), Hx, s->stress_x);
-    s->stress_x = vfma_wide(vload_wide(&p->Pxy[j]), Hy, s->stress_x);
-    s->stress_y = vfma_wide(vload_wide(&p->Pyx[j]), Hx, s->stress_y);
-    s->stress_y = vfma_wide(vload_wide(&p->Pyy[j]), Hy, s->stress_y);
+    const vdouble Hx = vload_double(slot->Hx), Hy = vload_double(slot->Hy);
+    s->stress_x = vfma_double(vload_double(&p->Pxx[j]), Hx, s->stress_x);
+    s->stress_x = vfma_double(vload_double(&p->Pxy[j]), Hy, s->stress_x);
+    s->stress_y = vfma_double(vload_double(&p->Pyx[j]), Hx, s->stress_y);
+    s->stress_y = vfma_double(vload_double(&p->Pyy[j]), Hy, s->stress_y);
 }
 
 /* Eq. 14b over rho0, for approaching pairs: alpha_s c_s h v.x/(x^2 + 0.01 h^2), m^2/s^2. */
-SPHFSI_INLINE vwide viscous_pressure(const struct solid_pair *q, const struct particles *p,
-                                     const struct solid_receiver *a, vwide viscosity, vwide eta2)
+SPHFSI_INLINE vdouble viscous_pressure(const struct solid_pair *q, const struct particles *p,
+                                       const struct solid_receiver *a, vdouble viscosity,
+                                       vdouble eta2)
 {
-    const vwide vx = a->vx - vload_wide(&p->vx[q->j]), vy = a->vy - vload_wide(&p->vy[q->j]);
-    const vwide approach = vmin_wide(vfma_wide(vx, q->x, vy * q->y), vset_wide(0));
-    return approach * viscosity / vfma_wide(q->x, q->x, vfma_wide(q->y, q->y, eta2));
+    const vdouble vx = a->vx - vload_double(&p->vx[q->j]), vy = a->vy - vload_double(&p->vy[q->j]);
+    const vdouble approach = vmin_double(vfma_double(vx, q->x, vy * q->y), vset_double(0));
+    return approach * viscosity / vfma_double(q->x, q->x, vfma_double(q->y, q->y, eta2));
 }
 
 /* Of joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that the
  * pair's Pi is one number. */
-SPHFSI_INLINE vwide mean_viscosity(const struct solid_pair *q, const struct particles *p, int64_t i,
-                                   const struct solid_body *body)
+SPHFSI_INLINE vdouble mean_viscosity(const struct solid_pair *q, const struct particles *p,
+                                     int64_t i, const struct solid_body *body)
 {
-    return (vload_wide(&p->drag[i]) + vload_wide(&p->drag[q->j])) * (0.5 / body->density);
+    return (vload_double(&p->drag[i]) + vload_double(&p->drag[q->j])) * (0.5 / body->density);
 }
 
 /* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. In the symmetric form the mean of both particles'
  * tensors, each with its own gradient, makes it antisymmetric. */
-SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vwide Pi, bool symmetric,
+SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vdouble Pi, bool symmetric,
                                  struct solid_sums *s)
 {
     if (symmetric) {
         const struct vtensor2 cof = vtensor2_cof(deformation(q->U_b));
-        const vwide Hx = vload_wide(q->slot->Hx), Hy = vload_wide(q->slot->Hy);
+        const vdouble Hx = vload_double(q->slot->Hx), Hy = vload_double(q->slot->Hy);
         Pi = Pi * 0.5;
-        s->ax = vfma_wide(Pi, vfma_wide(cof.xx, Hx, cof.xy * Hy), s->ax);
-        s->ay = vfma_wide(Pi, vfma_wide(cof.yx, Hx, cof.yy * Hy), s->ay);
+        s->ax = vfma_double(Pi, vfma_double(cof.xx, Hx, cof.xy * Hy), s->ax);
+        s->ay = vfma_double(Pi, vfma_double(cof.yx, Hx, cof.yy * Hy), s->ay);
     }
-    s->viscous_x = vfma_wide(Pi, vload_wide(q->slot->Gx), s->viscous_x);
-    s->viscous_y = vfma_wide(Pi, vload_wide(q->slot->Gy), s->viscous_y);
+    s->viscous_x = vfma_double(Pi, vload_double(q->slot->Gx), s->viscous_x);
+    s->viscous_y = vfma_double(Pi, vload_double(q->slot->Gy), s->viscous_y);
 }
 
 /* Eqs. 15-16: e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
 SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct solid_receiver *a,
-                                   vwide *ex, vwide *ey)
+                                   vdouble *ex, vdouble *ey)
 {
     *ex = ((a->U.xx + q->U_b.xx) * q->X + (a->U.xy + q->U_b.xy) * q->Y) * 0.5 - q->ux;
     *ey = ((a->U.yx + q->U_b.yx) * q->X + (a->U.yy + q->U_b.yy) * q->Y) * 0.5 - q->uy;
@@ -289,18 +290,18 @@ SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct soli
 SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
                                    bool variational, struct solid_sums *s)
 {
-    vwide ex, ey;
+    vdouble ex, ey;
     hourglass_error(q, a, &ex, &ey);
-    const vwide stiffness = vload_wide(q->slot->hourglass);
+    const vdouble stiffness = vload_double(q->slot->hourglass);
     if (variational) {
-        s->ax = vfma_wide(stiffness, ex, s->ax);
-        s->ay = vfma_wide(stiffness, ey, s->ay);
+        s->ax = vfma_double(stiffness, ex, s->ax);
+        s->ay = vfma_double(stiffness, ey, s->ay);
         return;
     }
-    const vwide along =
-        stiffness * vfma_wide(ex, q->x, ey * q->y) / vfma_wide(q->x, q->x, q->y * q->y);
-    s->ax = vfma_wide(along, q->x, s->ax);
-    s->ay = vfma_wide(along, q->y, s->ay);
+    const vdouble along =
+        stiffness * vfma_double(ex, q->x, ey * q->y) / vfma_double(q->x, q->x, q->y * q->y);
+    s->ax = vfma_double(along, q->x, s->ax);
+    s->ay = vfma_double(along, q->y, s->ay);
 }
 
 /* The rest of the variational form. With the energy E = sum over pairs of k_ab |e_ab|^2/2, where
@@ -311,26 +312,26 @@ static void hourglass_stress(const struct solid *s, const struct solid_pack *pac
 {
     const int64_t i = pack->i;
     const struct solid_receiver a = receiver_of(p, i);
-    struct vtensor2 sum = {vset_wide(0), vset_wide(0), vset_wide(0), vset_wide(0)};
+    struct vtensor2 sum = {vset_double(0), vset_double(0), vset_double(0), vset_double(0)};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
         struct solid_pair q = pair_of(slot, p, i, &a);
         q.U_b = load_gradient(p, q.j);
-        vwide ex, ey;
+        vdouble ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
-        const vwide stiffness = vload_wide(slot->hourglass);
+        const vdouble stiffness = vload_double(slot->hourglass);
         ex = ex * stiffness;
         ey = ey * stiffness;
-        sum.xx = vfma_wide(ex, q.X, sum.xx);
-        sum.xy = vfma_wide(ex, q.Y, sum.xy);
-        sum.yx = vfma_wide(ey, q.X, sum.yx);
-        sum.yy = vfma_wide(ey, q.Y, sum.yy);
+        sum.xx = vfma_double(ex, q.X, sum.xx);
+        sum.xy = vfma_double(ex, q.Y, sum.xy);
+        sum.yx = vfma_double(ey, q.X, sum.yx);
+        sum.yy = vfma_double(ey, q.Y, sum.yy);
     }
     const double half = 0.5 * s->body[pack->body].density;
-    store_lanes(&p->Pxx[i], vload_wide(&p->Pxx[i]) + sum.xx * half, pack->lanes);
-    store_lanes(&p->Pxy[i], vload_wide(&p->Pxy[i]) + sum.xy * half, pack->lanes);
-    store_lanes(&p->Pyx[i], vload_wide(&p->Pyx[i]) + sum.yx * half, pack->lanes);
-    store_lanes(&p->Pyy[i], vload_wide(&p->Pyy[i]) + sum.yy * half, pack->lanes);
+    store_lanes(&p->Pxx[i], vload_double(&p->Pxx[i]) + sum.xx * half, pack->lanes);
+    store_lanes(&p->Pxy[i], vload_double(&p->Pxy[i]) + sum.xy * half, pack->lanes);
+    store_lanes(&p->Pyx[i], vload_double(&p->Pyx[i]) + sum.yx * half, pack->lanes);
+    store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + sum.yy * half, pack->lanes);
 }
 
 /* Sums of a pack; what is a bool is a constant where it is inlined. */
@@ -340,8 +341,8 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
                                           bool variational)
 {
     const struct solid_body *const body = &s->body[pack->body];
-    const vwide eta2 = vset_wide(0.01 * body->h * body->h), zero = vset_wide(0);
-    const vwide own = vset_wide(body->viscosity);
+    const vdouble eta2 = vset_double(0.01 * body->h * body->h), zero = vset_double(0);
+    const vdouble own = vset_double(body->viscosity);
     struct solid_sums sums = {zero, zero, zero, zero, zero, zero};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
@@ -350,7 +351,7 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
         struct solid_pair q = pair_of(slot, p, pack->i, a);
         if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
         if (viscous) {
-            const vwide viscosity = mixed ? mean_viscosity(&q, p, pack->i, body) : own;
+            const vdouble viscosity = mixed ? mean_viscosity(&q, p, pack->i, body) : own;
             viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
         }
         if (hourglass) hourglass_force(&q, a, variational, &sums);
@@ -362,12 +363,12 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
  * viscous force turned by J F^-T. */
 SPHFSI_INLINE void finish_sums(const struct solid_body *body, const struct particles *p, int64_t i,
                                const struct solid_receiver *a, const struct solid_sums *s,
-                               vwide acc[2])
+                               vdouble acc[2])
 {
     const struct vtensor2 cof = vtensor2_cof(deformation(a->U));
-    const vwide Gx = vload_wide(&p->Gx[i]), Gy = vload_wide(&p->Gy[i]);
-    const vwide own_x = vfma_wide(vload_wide(&p->Pxx[i]), Gx, vload_wide(&p->Pxy[i]) * Gy);
-    const vwide own_y = vfma_wide(vload_wide(&p->Pyx[i]), Gx, vload_wide(&p->Pyy[i]) * Gy);
+    const vdouble Gx = vload_double(&p->Gx[i]), Gy = vload_double(&p->Gy[i]);
+    const vdouble own_x = vfma_double(vload_double(&p->Pxx[i]), Gx, vload_double(&p->Pxy[i]) * Gy);
+    const vdouble own_y = vfma_double(vload_double(&p->Pyx[i]), Gx, vload_double(&p->Pyy[i]) * Gy);
     const double inv_density = 1 / body->density;
     acc[0] = (s->stress_x + own_x) * inv_density + s->ax +
              (cof.xx * s->viscous_x + cof.xy * s->viscous_y);
@@ -392,17 +393,17 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
     else
         sums = sum_slots(s, pack, p, &a, viscous, body->mixed, body->symmetric, hourglass,
                          body->variational);
-    vwide acc[2];
+    vdouble acc[2];
     finish_sums(body, p, i, &a, &sums, acc);
     if (s->coupled) {
-        acc[0] = acc[0] + vload_wide(&p->fx[i]) * (1 / body->mass);
-        acc[1] = acc[1] + vload_wide(&p->fy[i]) * (1 / body->mass);
+        acc[0] = acc[0] + vload_double(&p->fx[i]) * (1 / body->mass);
+        acc[1] = acc[1] + vload_double(&p->fy[i]) * (1 / body->mass);
     }
     if (s->push[0]) {
-        acc[0] = acc[0] + vload_wide(&s->push[0][i]);
-        acc[1] = acc[1] + vload_wide(&s->push[1][i]);
+        acc[0] = acc[0] + vload_double(&s->push[0][i]);
+        acc[1] = acc[1] + vload_double(&s->push[1][i]);
     }
-    const vwide moves = vload_wide(&p->free[i]);
+    const vdouble moves = vload_double(&p->free[i]);
     store_lanes(&p->sx[i], (acc[0] + body->gravity[0]) * moves, pack->lanes);
     store_lanes(&p->sy[i], (acc[1] + body->gravity[1]) * moves, pack->lanes);
 }
@@ -518,8 +519,8 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
                   double *det)
 {
     const struct solid_body *const b = &s->body[p->body[i]];
-    const struct vtensor2 U = {vset_wide(p->Uxx[i]), vset_wide(p->Uxy[i]), vset_wide(p->Uyx[i]),
-                               vset_wide(p->Uyy[i])};
+    const struct vtensor2 U = {vset_double(p->Uxx[i]), vset_double(p->Uxy[i]),
+                               vset_double(p->Uyx[i]), vset_double(p->Uyy[i])};
     const struct vtensor2 F = deformation(U);
     double thickness, sigma_zz;
     material_across(b, U, &thickness, &sigma_zz);
@@ -535,25 +536,25 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
 /* Energy of the hourglass force of a pack, J/m, half of it since each pair is met twice. Variational: the
  * sum of k |e|^2/2. The printed force has no potential, since it leaves out how e_ab depends on F: half of
  * force times stretch of the pair, which is the work it takes for small strains. */
-static vwide hourglass_energy(const struct solid *s, const struct solid_pack *pack,
-                              const struct particles *p)
+static vdouble hourglass_energy(const struct solid *s, const struct solid_pack *pack,
+                                const struct particles *p)
 {
     const struct solid_receiver a = receiver_of(p, pack->i);
-    vwide sum = vset_wide(0);
+    vdouble sum = vset_double(0);
     for (int m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
         const struct solid_slot *const slot = &s->slot[m];
         struct solid_pair q = pair_of(slot, p, pack->i, &a);
         q.U_b = load_gradient(p, q.j);
-        vwide ex, ey;
+        vdouble ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
         if (s->body[pack->body].variational) {
-            sum = sum + vload_wide(slot->hourglass) * (ex * ex + ey * ey);
+            sum = sum + vload_double(slot->hourglass) * (ex * ex + ey * ey);
             continue;
         }
-        const vwide x2 = q.x * q.x + q.y * q.y, x = vsqrt_wide(x2),
-                    X = vsqrt_wide(q.X * q.X + q.Y * q.Y);
-        const vwide stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
-        sum = sum - vload_wide(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;
+        const vdouble x2 = q.x * q.x + q.y * q.y, x = vsqrt_double(x2),
+                      X = vsqrt_double(q.X * q.X + q.Y * q.Y);
+        const vdouble stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
+        sum = sum - vload_double(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;
     }
     return sum * (0.25 * s->body[pack->body].mass);
 }
@@ -574,8 +575,8 @@ void solid_energy(const struct solid *s, const struct particles *p, int body, do
         if (body != SOLID_ALL && pack->body != body) continue;
         const struct solid_body *const b = &s->body[pack->body];
         const struct vtensor2 U = load_gradient(p, pack->i);
-        const vwide stored = material_energy(b, U), det = vtensor2_det(deformation(U));
-        const vwide locked = b->kappa > 0 ? hourglass_energy(s, pack, p) : vset_wide(0);
+        const vdouble stored = material_energy(b, U), det = vtensor2_det(deformation(U));
+        const vdouble locked = b->kappa > 0 ? hourglass_energy(s, pack, p) : vset_double(0);
         for (int l = 0; l < pack->lanes; l++) {
             *elastic += stored[l] * square(b->dp);
             *hourglass += locked[l];

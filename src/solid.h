@@ -29,11 +29,11 @@ struct solid_body {
 /* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
  * weights that are zero where that lane has no such neighbour. */
 struct solid_slot {
-    double Gx[LANES_WIDE],
-        Gy[LANES_WIDE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
-    double Hx[LANES_WIDE], Hy[LANES_WIDE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
-    double X[LANES_WIDE], Y[LANES_WIDE];   /* X_ab, m */
-    double hourglass[LANES_WIDE];          /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
+    double Gx[LANES_DOUBLE],
+        Gy[LANES_DOUBLE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    double Hx[LANES_DOUBLE], Hy[LANES_DOUBLE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
+    double X[LANES_DOUBLE], Y[LANES_DOUBLE];   /* X_ab, m */
+    double hourglass[LANES_DOUBLE];            /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
     int64_t offset;
 } __attribute__((aligned(64)));
 

@@ -147,14 +147,14 @@ void solid_find_step(struct solid *s, struct particles *p)
     s->stable_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
 }
 
-static vwide larger(vwide a, vwide b) { return -vmin_wide(-a, -b); }
+static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }
 
 /* The larger of dP_11/dF_11 and dP_22/dF_22 in the principal axes, which is what an axial wave meets, Pa.
  * From the stretches alone, since the laws are isotropic. */
-static vwide axial_stiffness(const struct solid_body *b, vwide first, vwide second)
+static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdouble second)
 {
     const double delta = 1e-5;
-    const vwide zero = vset_wide(0);
+    const vdouble zero = vset_double(0);
     const struct vtensor2 U = {first - 1.0, zero, zero, second - 1.0};
     struct vtensor2 along = U, across = U;
     along.xx = along.xx + delta;
@@ -164,21 +164,21 @@ static vwide axial_stiffness(const struct solid_body *b, vwide first, vwide seco
 }
 
 /* Principal stretches of a pack; whether one of its lanes is stretched or compressed by some 5 %. */
-static bool stretches(const struct particles *p, const struct solid_pack *pack, vwide *first,
-                      vwide *second)
+static bool stretches(const struct particles *p, const struct solid_pack *pack, vdouble *first,
+                      vdouble *second)
 {
     const int64_t i = pack->i;
     const struct vtensor2 F =
-        deformation((struct vtensor2){vload_wide(&p->Uxx[i]), vload_wide(&p->Uxy[i]),
-                                      vload_wide(&p->Uyx[i]), vload_wide(&p->Uyy[i])});
-    const vwide det = vtensor2_det(F);
-    const vwide trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
+        deformation((struct vtensor2){vload_double(&p->Uxx[i]), vload_double(&p->Uxy[i]),
+                                      vload_double(&p->Uyx[i]), vload_double(&p->Uyy[i])});
+    const vdouble det = vtensor2_det(F);
+    const vdouble trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
     bool any = false;
     for (int l = 0; l < pack->lanes; l++)
         any |= !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
     if (!any) return false;
-    const vwide sum = vsqrt_wide(larger(trace + 2.0 * det, vset_wide(0)));
-    const vwide difference = vsqrt_wide(larger(trace - 2.0 * det, vset_wide(0)));
+    const vdouble sum = vsqrt_double(larger(trace + 2.0 * det, vset_double(0)));
+    const vdouble difference = vsqrt_double(larger(trace - 2.0 * det, vset_double(0)));
     *first = 0.5 * (sum + difference);
     *second = 0.5 * (sum - difference);
     return true;
@@ -189,13 +189,13 @@ double solid_stiffening(const struct solid *s, const struct particles *p)
     double top = 1;
     double reference[s->n_bodies];
     for (int k = 0; k < s->n_bodies; k++)
-        reference[k] = axial_stiffness(&s->body[k], vset_wide(1), vset_wide(1))[0];
+        reference[k] = axial_stiffness(&s->body[k], vset_double(1), vset_double(1))[0];
 #pragma omp parallel for schedule(static) num_threads(s->threads) reduction(max : top)
     for (int64_t k = 0; k < s->n_packs; k++) {
         const struct solid_pack *const pack = &s->pack[k];
-        vwide first, second;
+        vdouble first, second;
         if (!stretches(p, pack, &first, &second)) continue;
-        const vwide now = axial_stiffness(&s->body[pack->body], first, second);
+        const vdouble now = axial_stiffness(&s->body[pack->body], first, second);
         for (int l = 0; l < pack->lanes; l++) top = max2(top, now[l] / reference[pack->body]);
     }
     return top;

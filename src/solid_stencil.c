@@ -8,7 +8,7 @@
 #include "solid_stencil.h"
 
 /* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
-enum { MAX_NEIGHBOURS = 96, MAX_SLOTS = MAX_NEIGHBOURS * LANES_WIDE };
+enum { MAX_NEIGHBOURS = 96, MAX_SLOTS = MAX_NEIGHBOURS * LANES_DOUBLE };
 
 struct bucket_grid {
     double lower[2], side;
@@ -94,7 +94,7 @@ static struct solid_slot *slot_for(struct solid_slot *slots, int *n, int64_t off
     memset(slot, 0, sizeof *slot);
     slot->offset = offset;
     /* Lanes without this neighbour divide by their distance all the same: it must not vanish. */
-    for (int l = 0; l < LANES_WIDE; l++) slot->X[l] = 1e6;
+    for (int l = 0; l < LANES_DOUBLE; l++) slot->X[l] = 1e6;
     return slot;
 }
 
@@ -265,7 +265,7 @@ static void cut_packs(struct solid *s, const struct particles *p)
     for (int64_t i = 0; i < p->n;) {
         struct solid_pack *const pack = &s->pack[s->n_packs++];
         *pack = (struct solid_pack){.i = (int32_t)i, .body = p->body[i]};
-        while (pack->lanes < LANES_WIDE && i < p->n && p->body[i] == pack->body) {
+        while (pack->lanes < LANES_DOUBLE && i < p->n && p->body[i] == pack->body) {
             pack->lanes++;
             i++;
         }

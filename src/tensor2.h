@@ -30,6 +30,6 @@
     }
 
 TENSOR2(double, tensor2)
-TENSOR2(vwide, vtensor2)
+TENSOR2(vdouble, vtensor2)
 
 #endif

@@ -3,17 +3,20 @@
 
 #include <math.h>
 
+/* What a bound follows from: the scene, and the fluid's extremes `now`, which are zero at rest. */
+typedef double bound_function(const struct simulation *s, const struct fluid_extremes *now);
+
 /* Eq. 28a. */
-static double bound_force(const struct simulation *s)
+static double bound_force(const struct simulation *s, const struct fluid_extremes *now)
 {
-    const double size = sqrt(max2(s->fluid.extremes.acceleration2, 1e-300));
+    const double size = sqrt(max2(now->acceleration2, 1e-300));
     return s->scene->numerics.cfl * sqrt(s->fluid.k.h / size);
 }
 
 /* Eq. 28b. */
-static double bound_acoustic(const struct simulation *s)
+static double bound_acoustic(const struct simulation *s, const struct fluid_extremes *now)
 {
-    return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + s->fluid.extremes.approach);
+    return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + now->approach);
 }
 
 /* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven lattices. */
@@ -23,54 +26,47 @@ static double bound_decay(const struct simulation *s, double limit, double rate)
 }
 
 /* Adams and Bashforth's third-order rule holds to 6/11. */
-static double bound_diffusion(const struct simulation *s)
+static double bound_diffusion(const struct simulation *s, const struct fluid_extremes *now)
 {
+    (void)now;
     return bound_decay(s, s->effects & FX_LEAPFROG ? 6.0 / 11 : 2, 6.5 * s->fluid.k.delta);
 }
 
 /* Leapfrog's velocity, which is seen half a step late, to 1. */
-static double bound_artificial(const struct simulation *s)
+static double bound_artificial(const struct simulation *s, const struct fluid_extremes *now)
 {
+    (void)now;
     return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
 }
 
 /* Morris et al. 1997, Eq. 21. */
-static double bound_viscous(const struct simulation *s)
+static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
 {
+    (void)now;
     return 0.125 * square(s->fluid.k.h) / s->fluid.k.nu;
 }
 
-static double bound_solid(const struct simulation *s)
+static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)
 {
+    (void)now;
     return s->effects & FX_MULTIRATE ? (double)INFINITY : s->dt_solid;
 }
 
 /* Found below, where the time that is left is known. */
-static double bound_output(const struct simulation *s)
+static double bound_output(const struct simulation *s, const struct fluid_extremes *now)
 {
-    (void)s;
+    (void)s, (void)now;
     return (double)INFINITY;
 }
 
-static double bound_fixed(const struct simulation *s)
+static double bound_fixed(const struct simulation *s, const struct fluid_extremes *now)
 {
+    (void)now;
     const double fixed = s->scene->numerics.fixed_step;
     return fixed > 0 ? fixed : (double)INFINITY;
 }
 
-double timestep_fluid_limit(const struct simulation *s)
-{
-    const double fixed = s->scene->numerics.fixed_step;
-    if (fixed > 0) return fixed;
-    double limit = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
-    if (s->effects & FX_DIFFUSION) limit = min2(limit, bound_diffusion(s));
-    if (s->effects & FX_VISCOSITY) limit = min2(limit, bound_artificial(s));
-    if (s->effects & FX_LAMINAR) limit = min2(limit, bound_viscous(s));
-    return limit;
-}
-
 /* One function for each row of bounds.def. */
-typedef double bound_function(const struct simulation *s);
 static bound_function *const bound_functions[BOUND_COUNT] = {
 #define BOUND(name, effect, source) bound_##name,
 #include "bounds.def"
@@ -84,16 +80,29 @@ static const unsigned bound_effects[BOUND_COUNT] = {
 #undef FX_NONE
 };
 
-double timestep_choose(struct simulation *s, double t_limit, bool *hits)
+static double bound_at(const struct simulation *s, int k, const struct fluid_extremes *now)
 {
     const bool fixed = s->scene->numerics.fixed_step > 0;
-    for (int k = 0; k < BOUND_COUNT; k++) {
-        const bool owned = bound_effects[k] == 0 || s->effects & bound_effects[k];
-        s->dt_bound[k] =
-            owned && (!fixed || k == BOUND_fixed) ? bound_functions[k](s) : (double)INFINITY;
-    }
+    const bool owned = bound_effects[k] == 0 || s->effects & bound_effects[k];
+    return owned && (!fixed || k == BOUND_fixed) ? bound_functions[k](s, now) : (double)INFINITY;
+}
+
+double timestep_fluid_limit(const struct simulation *s)
+{
+    static const struct fluid_extremes rest = {0};
+    double limit = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (k != BOUND_solid) limit = min2(limit, bound_at(s, k, &rest));
+    return limit;
+}
+
+double timestep_choose(struct simulation *s, double t_limit, bool *hits)
+{
     double dt = (double)INFINITY;
-    for (int k = 0; k < BOUND_COUNT; k++) dt = min2(dt, s->dt_bound[k]);
+    for (int k = 0; k < BOUND_COUNT; k++) {
+        s->dt_bound[k] = bound_at(s, k, &s->fluid.extremes);
+        dt = min2(dt, s->dt_bound[k]);
+    }
     /* Equal steps up to the limit rather than full ones and a rest: steps that change in a pattern feed
      * oscillations near the bound that each of them alone would keep (docs/theory.md). Round-off of the
      * time makes no step of its own. */

@@ -57,6 +57,18 @@ void rig_steps(struct rig *r, int steps, double limit)
     }
 }
 
+void rig_refuses(const char *text, const char *why)
+{
+    struct scene scene;
+    struct simulation sim;
+    struct diag d = {0};
+    if (scene_parse(&scene, text, "t.cfg", 0, NULL, &d) == ERR_OK) {
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
+        scene_free(&scene);
+    }
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
+}
+
 void rig_sort(struct rig *r)
 {
     for (int kind = 0; kind < KIND_COUNT; kind++)

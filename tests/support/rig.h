@@ -23,6 +23,8 @@ void rig_close(struct rig *r);
 void rig_run(struct rig *r, double time);
 /* Takes `steps` time steps (batches of a lone solid), none of which ends beyond `limit`. */
 void rig_steps(struct rig *r, int steps, double limit);
+/* Fails unless the case is bad input, with `why` in its message. */
+void rig_refuses(const char *text, const char *why);
 
 /* Sorts all particles into cells anew, after a test has moved them. */
 void rig_sort(struct rig *r);

@@ -175,29 +175,18 @@ static void test_restart_and_threads(void)
     }
 }
 
-static void refused(const char *text, const char *why)
-{
-    struct scene scene;
-    struct simulation sim;
-    struct diag d = {0};
-    if (scene_parse(&scene, text, "t.cfg", 0, NULL, &d) == ERR_OK) {
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
-        scene_free(&scene);
-    }
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
-}
-
 static void test_bad_input(void)
 {
 #define LOAD BAR "[load l]\n"
-    refused(LOAD "force = 1, 0\nshape = box 0, 0, 0.1, 0.1\n", "needs `body`");
-    refused(LOAD "body = baa\nforce = 1, 0\nshape = box 0, 0, 0.1, 0.1\n", "did you mean `bar`");
-    refused(LOAD "body = bar\nforce = 1, 0\n", "needs a `shape`");
-    refused(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "one of `force` and `traction`");
-    refused(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n", "holds no particle");
-    refused(BAR "velocity = t, 0\n", "`t`");
-    refused(BAR "clamp = box 0, 0, 0.02, 0.04\nclamp_motion = m\n", "no [motion] of that name");
-    refused(BAR "clamp_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `clamp`");
+    rig_refuses(LOAD "force = 1, 0\nshape = box 0, 0, 0.1, 0.1\n", "needs `body`");
+    rig_refuses(LOAD "body = baa\nforce = 1, 0\nshape = box 0, 0, 0.1, 0.1\n",
+                "did you mean `bar`");
+    rig_refuses(LOAD "body = bar\nforce = 1, 0\n", "needs a `shape`");
+    rig_refuses(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "one of `force` and `traction`");
+    rig_refuses(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n", "holds no particle");
+    rig_refuses(BAR "velocity = t, 0\n", "`t`");
+    rig_refuses(BAR "clamp = box 0, 0, 0.02, 0.04\nclamp_motion = m\n", "no [motion] of that name");
+    rig_refuses(BAR "clamp_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `clamp`");
 }
 
 int main(void)

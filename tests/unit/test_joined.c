@@ -172,25 +172,14 @@ static void test_composite_bar(void)
     }
 }
 
-static void refused(const char *text, const char *why)
-{
-    struct scene scene;
-    struct simulation sim;
-    struct diag d = {0};
-    if (scene_parse(&scene, text, "t.cfg", 0, NULL, &d) == ERR_OK) {
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
-        scene_free(&scene);
-    }
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
-}
-
 static void test_what_cannot_be_joined(void)
 {
 #define PAIR BAR "shape = box 0, 0, 0.1, 0.06\n[solid right]\nlike = left\n"
-    refused(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = lefd\n", "did you mean `left`");
-    refused(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = right\n", "one with itself");
-    refused(PAIR "shape = box 0.2, 0, 0.3, 0.06\njoined = left\n", "away from it");
-    refused(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = left\nhourglass = 10\n", "`hourglass`");
+    rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = lefd\n", "did you mean `left`");
+    rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = right\n", "one with itself");
+    rig_refuses(PAIR "shape = box 0.2, 0, 0.3, 0.06\njoined = left\n", "away from it");
+    rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = left\nhourglass = 10\n",
+                "`hourglass`");
 }
 
 int main(void)

@@ -21,13 +21,14 @@ static struct solid_body body(int law, int plane)
 
 static struct vtensor2 spread(struct tensor2 a)
 {
-    return (struct vtensor2){vset_wide(a.xx), vset_wide(a.xy), vset_wide(a.yx), vset_wide(a.yy)};
+    return (struct vtensor2){vset_double(a.xx), vset_double(a.xy), vset_double(a.yx),
+                             vset_double(a.yy)};
 }
 
 static struct tensor2 pk1(const struct solid_body *b, struct tensor2 U)
 {
     const struct vtensor2 P = material_pk1(b, spread(U));
-    for (int l = 1; l < LANES_WIDE; l++)
+    for (int l = 1; l < LANES_DOUBLE; l++)
         TEST_ASSERT_TRUE(P.xx[l] == P.xx[0] && P.xy[l] == P.xy[0] && P.yx[l] == P.yx[0]);
     return (struct tensor2){P.xx[0], P.xy[0], P.yx[0], P.yy[0]};
 }

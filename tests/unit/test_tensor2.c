@@ -58,17 +58,17 @@ static void test_determinant_and_cofactor(void)
 static void test_lanes_are_scalars_side_by_side(void)
 {
     uint64_t seed = 3;
-    struct tensor2 a[LANES_WIDE], b[LANES_WIDE];
+    struct tensor2 a[LANES_DOUBLE], b[LANES_DOUBLE];
     struct vtensor2 A, B;
-    for (int l = 0; l < LANES_WIDE; l++) {
+    for (int l = 0; l < LANES_DOUBLE; l++) {
         a[l] = draw(&seed);
         b[l] = draw(&seed);
         A.xx[l] = a[l].xx, A.xy[l] = a[l].xy, A.yx[l] = a[l].yx, A.yy[l] = a[l].yy;
         B.xx[l] = b[l].xx, B.xy[l] = b[l].xy, B.yx[l] = b[l].yx, B.yy[l] = b[l].yy;
     }
     const struct vtensor2 AB = vtensor2_mul(A, B), ABt = vtensor2_mul_t(A, B), C = vtensor2_cof(A);
-    const vwide det = vtensor2_det(A);
-    for (int l = 0; l < LANES_WIDE; l++) {
+    const vdouble det = vtensor2_det(A);
+    for (int l = 0; l < LANES_DOUBLE; l++) {
         TEST_ASSERT_TRUE(AB.xy[l] == tensor2_mul(a[l], b[l]).xy);
         TEST_ASSERT_TRUE(AB.yx[l] == tensor2_mul(a[l], b[l]).yx);
         TEST_ASSERT_TRUE(ABt.xy[l] == tensor2_mul_t(a[l], b[l]).xy);
