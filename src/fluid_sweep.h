@@ -254,6 +254,23 @@ static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
     force[1] = scale * (double)vsum(sum_y);
 }
 
+/* The surface per depth, m, on which a pressure of 1 Pa on both sides of the pair would press. */
+static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * tile,
+                           const struct receiver *s, double volume, double surface[2])
+{
+    vreal sum_x = vset(0), sum_y = vset(0);
+    for (int j = 0; j < tile->n; j += LANES) {
+        const struct pair q =
+            pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
+                      &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
+        sum_x = vfma(q.slope, q.x, sum_x);
+        sum_y = vfma(q.slope, q.y, sum_y);
+    }
+    const double scale = 2 * KERNEL_SLOPE * f->k.h * volume;
+    surface[0] = scale * (double)vsum(sum_x);
+    surface[1] = scale * (double)vsum(sum_y);
+}
+
 /* One wall or solid particle i at place `place` of the cell order. */
 static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place,
                          int32_t i, const struct cells *c, int32_t cell,
@@ -295,6 +312,10 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
+    if (!p->wet_x) return;
+    wetted_surface(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    p->wet_x[i] = force[0];
+    p->wet_y[i] = force[1];
 }
 
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],

@@ -233,15 +233,15 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
             d, ERR_GUARD,
             "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
             "%.3g J/m in motion and strain: the run is unstable; a smaller cfl or "
-            "solid_safety may help, or a structure that is not much lighter than the fluid",
+            "solid_safety may help, or numerics.multirate = off where a structure is light",
             s->state.time, gained, active);
     if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(
         d,
         "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
-        "strain: the run is not sound; light structures (density below the fluid's) and a high "
-        "cfl do this",
+        "strain: the run is not sound; a high cfl does this, and a light structure with "
+        "numerics.interface = held",
         s->state.time, gained, active);
     return ERR_OK;
 }

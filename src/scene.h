@@ -63,6 +63,7 @@ enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED }; /* what presets are told apart by */
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
+enum interface { INTERFACE_HELD, INTERFACE_IMPEDANCE, INTERFACE_AUTO };
 enum suction { SUCTION_OFF, SUCTION_ON };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum slip { SLIP_FREE, SLIP_NONE };

@@ -98,6 +98,8 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
+    if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)FX_IMPEDANCE;
+    if (s->effects & FX_IMPEDANCE) s->solid.impedance = s->scene->rho0 * s->scene->c0;
     return ERR_OK;
 }
 
@@ -156,6 +158,7 @@ static void forget_touch(struct simulation *s, enum kind kind)
             const int32_t i = list->order[j];
             p->p[i] = p->dens[i] = 0;
             if (p->fx) p->fx[i] = p->fy[i] = 0;
+            if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
         }
     }
 }
@@ -167,6 +170,10 @@ static void forget_all_touch(struct particles *p)
     if (p->fx) {
         memset(p->fx, 0, bytes);
         memset(p->fy, 0, bytes);
+    }
+    if (p->wet_x) {
+        memset(p->wet_x, 0, bytes);
+        memset(p->wet_y, 0, bytes);
     }
     memset(p->p, 0, bytes);
     memset(p->dens, 0, bytes);

@@ -6,6 +6,7 @@
 
 #include "contact.h"
 #include "drive.h"
+#include "interface.h"
 #include "material.h"
 #include "smoothing.h"
 #include "solid_stencil.h"
@@ -499,6 +500,7 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     const double first = centred ? 0.5 * dt : 0;
 #pragma omp parallel num_threads(s->threads)
     {
+        if (s->impedance > 0) interface_return(p, n * dt);
         if (centred) {
             kick_and_drift(p, 0, first);
             place_driven(s, p, s->time + first);
@@ -508,7 +510,12 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
             forces_loop(s, p);
             outer_forces(s, p, s->time + k * dt + first);
             book_work(s, p, dt);
-            kick_and_drift(p, dt, k + 1 < n ? dt : dt - first);
+            const double drift = k + 1 < n ? dt : dt - first;
+            kick_and_drift(p, dt, s->impedance > 0 ? 0 : drift);
+            if (s->impedance > 0) {
+                interface_answer(s, p, dt);
+                kick_and_drift(p, 0, drift);
+            }
             place_driven(s, p, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
         }
     }

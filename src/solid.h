@@ -67,7 +67,8 @@ struct solid {
     /* What acts from outside, each NULL where there is none. */
     struct contact *contact;
     struct drive *drive;
-    const double *push[2];              /* accelerations, x and y, m/s^2 */
+    const double *push[2]; /* accelerations, x and y, m/s^2 */
+    double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */
     double outer_omega2, outer_damping; /* what contact can add to omega_max^2 and damping_max */
     double work; /* of walls, clamps and loads on the solid since it was last asked for, J/m */
 };

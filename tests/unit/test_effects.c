@@ -49,8 +49,10 @@ static const struct {
      "line 3: [solid s] hourglass"},
     {TOP SOLID "hourglass = 0\n", FX_SOLID | FX_SOLID_VISCOSITY, EFFECT_SOLID_VISCOSITY,
      "line 3: [solid s] artificial_viscosity"},
-    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING, EFFECT_COUPLING,
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_COUPLING,
      "line 6: [solid s]"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_IMPEDANCE,
+     "line 8: [solid s] density"},
 };
 
 static struct rig rig;
