@@ -8,6 +8,7 @@
 #include "drive.h"
 #include "interface.h"
 #include "material.h"
+#include "meeting.h"
 #include "smoothing.h"
 #include "solid_stencil.h"
 
@@ -63,7 +64,7 @@ static void join_bodies(struct solid *s, const struct scene *scene, struct parti
 /* Threads that pay: each needs enough packs between two barriers to outweigh them. */
 static int useful_threads(const struct solid *s)
 {
-    enum { PACKS_PER_THREAD = 96 };
+    enum { PACKS_PER_THREAD = 24 };
     const int64_t useful = s->n_packs / PACKS_PER_THREAD;
     return useful < 1 ? 1 : useful < thread_count() ? (int)useful : thread_count();
 }
@@ -114,6 +115,8 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
         if (!s->scratch[k]) return ERR_MEMORY;
     }
+    s->meeting = arena_alloc(a, 1, sizeof *s->meeting, "meeting point of the threads", d);
+    if (!s->meeting) return ERR_MEMORY;
     s->threads = useful_threads(s);
     return ERR_OK;
 }
@@ -412,24 +415,28 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
 /* The loops over packs, for use inside a parallel region: each ends with all threads together. */
 static void stress_loop(const struct solid *s, struct particles *p)
 {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
     for (int64_t k = 0; k < s->n_packs; k++) stress_of_pack(s, &s->pack[k], p);
+    meet(s->meeting);
     if (s->kelvin_voigt) {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
         for (int64_t k = 0; k < s->n_packs; k++)
             if (s->body[s->pack[k].body].damping_time > 0) damping_stress(s, &s->pack[k], p);
+        meet(s->meeting);
     }
     if (s->variational) {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
         for (int64_t k = 0; k < s->n_packs; k++)
             if (s->body[s->pack[k].body].variational) hourglass_stress(s, &s->pack[k], p);
+        meet(s->meeting);
     }
 }
 
 static void forces_loop(const struct solid *s, struct particles *p)
 {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
     for (int64_t k = 0; k < s->n_packs; k++) forces_of_pack(s, &s->pack[k], p);
+    meet(s->meeting);
 }
 
 /* What acts on the solid from outside, each a pass of its own. */
@@ -442,15 +449,16 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
     }
 }
 
-static void kick_and_drift(struct particles *p, double kick, double drift)
+static void kick_and_drift(const struct solid *s, struct particles *p, double kick, double drift)
 {
-#pragma omp for schedule(static)
+#pragma omp for schedule(static) nowait
     for (int64_t i = 0; i < p->n; i++) {
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }
+    meet(s->meeting);
 }
 
 void solid_stress(const struct solid *s, struct particles *p)
@@ -502,7 +510,7 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     {
         if (s->impedance > 0) interface_return(p, n * dt);
         if (centred) {
-            kick_and_drift(p, 0, first);
+            kick_and_drift(s, p, 0, first);
             place_driven(s, p, s->time + first);
         }
         for (int k = 0; k < n; k++) {
@@ -511,10 +519,10 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
             outer_forces(s, p, s->time + k * dt + first);
             book_work(s, p, dt);
             const double drift = k + 1 < n ? dt : dt - first;
-            kick_and_drift(p, dt, s->impedance > 0 ? 0 : drift);
+            kick_and_drift(s, p, dt, s->impedance > 0 ? 0 : drift);
             if (s->impedance > 0) {
                 interface_answer(s, p, dt);
-                kick_and_drift(p, 0, drift);
+                kick_and_drift(s, p, 0, drift);
             }
             place_driven(s, p, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
         }

@@ -55,14 +55,15 @@ struct solid {
     int threads; /* that its loops use */
     struct solid_pack *pack;
     struct solid_slot *slot;
-    bool coupled;       /* meets fluid */
-    bool variational;   /* some body has its hourglass force from an energy */
-    bool kelvin_voigt;  /* some body has a damping_time */
-    double omega_max;   /* largest frequency of the linearised operator, 1/s */
-    double damping_max; /* largest rate of its viscous part, 1/s */
-    double stable_step; /* the largest stable step that follows from both, s */
-    double paper_step;  /* Eq. 29, s */
-    double *scratch[4]; /* room for the search of the step */
+    bool coupled;            /* meets fluid */
+    bool variational;        /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;       /* some body has a damping_time */
+    double omega_max;        /* largest frequency of the linearised operator, 1/s */
+    double damping_max;      /* largest rate of its viscous part, 1/s */
+    double stable_step;      /* the largest stable step that follows from both, s */
+    double paper_step;       /* Eq. 29, s */
+    struct meeting *meeting; /* of the threads between two loops */
+    double *scratch[4];      /* room for the search of the step */
     double time; /* of the displacements, s: walls that are touched stand where they are then */
     /* What acts from outside, each NULL where there is none. */
     struct contact *contact;
