@@ -127,7 +127,7 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, st
 
 /* Opens the spare, or makes a new one: where there is none, where it is damaged, and where a reader
  * still holds it open from the time when it had the name. */
-static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points)
+static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points, hid_t named)
 {
     hid_t file = access(w->spare, F_OK) == 0 ? H5Fopen(w->spare, H5F_ACC_RDWR, H5P_DEFAULT) : -1;
     int64_t rows[D_COUNT];
@@ -136,7 +136,7 @@ static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points
     if (file >= 0) H5Fclose(file);
     unlink(w->spare);
     file = H5Fcreate(w->spare, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
-    if (file >= 0 && !snapshot_file_lay_out(file, w->scene, w->version, points)) {
+    if (file >= 0 && !snapshot_file_lay_out(file, w->scene, w->version, points, named)) {
         H5Fclose(file);
         return -1;
     }
@@ -177,7 +177,7 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
     const bool is_named = access(w->path, F_OK) == 0;
     const hid_t named = is_named ? H5Fopen(w->path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
     if (steps < 0) steps = named >= 0 ? snapshot_file_steps(named) : 0;
-    const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points) : -1;
+    const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points, named) : -1;
     const bool ok = file >= 0 &&
                     (named < 0 || snapshot_file_catch_up(&w->layout, named, file, steps)) &&
                     (!s || append_snapshot(&w->layout, file, s));

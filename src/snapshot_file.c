@@ -38,10 +38,9 @@ static const struct column {
 };
 
 enum {
-    COPY_ROWS = 1 << 16,
     STEP_CHUNK = 128,
     POINT_CHUNK_LEAST = 64,
-    POINT_CHUNK_MOST = 1 << 14,
+    POINT_CHUNK_MOST = 1 << 16,
     METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
 };
 
@@ -80,17 +79,44 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 
 /* --- one dataset --- */
 
-static int64_t point_chunk(int64_t n)
+/* Rows of a chunk of a dataset: those of a snapshot, as long as that is not too much at a time. A chunk
+ * that two snapshots share is packed twice. */
+static int64_t chunk_rows(const struct column *c, int64_t n)
 {
-    return n < POINT_CHUNK_LEAST ? POINT_CHUNK_LEAST : n < POINT_CHUNK_MOST ? n : POINT_CHUNK_MOST;
+    if (c->growth == BY_STEP) return STEP_CHUNK;
+    const int64_t rows = n + (c->growth == BY_POINT_AND_ONE);
+    return rows < POINT_CHUNK_LEAST  ? POINT_CHUNK_LEAST
+           : rows < POINT_CHUNK_MOST ? rows
+                                     : POINT_CHUNK_MOST;
+}
+
+/* Rows of a chunk of an open dataset; 0: it cannot be told. */
+static int64_t rows_of_chunk(hid_t set)
+{
+    hsize_t size[2] = {0, 0};
+    const hid_t how = H5Dget_create_plist(set);
+    const bool ok = how >= 0 && H5Pget_chunk(how, 2, size) > 0;
+    if (how >= 0) H5Pclose(how);
+    return ok ? (int64_t)size[0] : 0;
+}
+
+/* Rows of a chunk of the dataset in another file; 0: there is no such file. */
+static int64_t rows_of_chunk_in(hid_t file, const struct column *c)
+{
+    char name[96];
+    snprintf(name, sizeof name, "VTKHDF/%s", c->name);
+    const hid_t set = file >= 0 ? H5Dopen2(file, name, H5P_DEFAULT) : -1;
+    const int64_t rows = set >= 0 ? rows_of_chunk(set) : 0;
+    if (set >= 0) H5Dclose(set);
+    return rows;
 }
 
 static bool create_dataset(hid_t root, const struct snapshot_layout *layout, const struct column *c,
-                           int64_t n)
+                           int64_t chunk_rows)
 {
     const hsize_t width = (hsize_t)c->width;
     const hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width};
-    const hsize_t chunk[2] = {(hsize_t)(c->growth == BY_STEP ? STEP_CHUNK : point_chunk(n)), width};
+    const hsize_t chunk[2] = {(hsize_t)chunk_rows, width};
     const int rank = c->width > 1 ? 2 : 1;
     const hid_t space = H5Screate_simple(rank, size, most);
     const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
@@ -189,7 +215,8 @@ static bool put_case(hid_t file, const struct scene *scene, const char *version)
     return ok;
 }
 
-bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *program, int64_t n)
+bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *program, int64_t n,
+                           hid_t like)
 {
     static const char *const groups[] = {"Steps", "PointData", "Steps/PointDataOffsets"};
     const int64_t version[2] = {2, 0}, none = 0;
@@ -202,8 +229,11 @@ bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *pr
         H5Gclose(group);
     }
     const struct snapshot_layout layout = snapshot_file_layout(scene);
-    for (int k = 0; ok && k < D_COUNT; k++)
-        ok = !layout.has[k] || create_dataset(root, &layout, &columns[k], n);
+    for (int k = 0; ok && k < D_COUNT; k++) {
+        if (!layout.has[k]) continue;
+        const int64_t rows = rows_of_chunk_in(like, &columns[k]);
+        ok = create_dataset(root, &layout, &columns[k], rows ? rows : chunk_rows(&columns[k], n));
+    }
     /* All arrays of points are read from the same place: their offsets are one dataset. */
     for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++) {
         char link[64];
@@ -263,19 +293,52 @@ bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT])
     return ok;
 }
 
-static bool copy_rows(hid_t from, hid_t to, const struct column *c, int64_t until, void *buffer)
+struct chunk_buffer {
+    void *bytes;
+    size_t size;
+};
+
+/* Copies the chunk that begins at a row as it lies in the file, without unpacking it. */
+static bool copy_chunk(hid_t source, hid_t target, int64_t row, struct chunk_buffer *b)
+{
+    const hsize_t at[2] = {(hsize_t)row, 0};
+    hsize_t bytes = 0;
+    uint32_t filters = 0;
+    if (H5Dget_chunk_storage_size(source, at, &bytes) < 0) return false;
+    if (bytes > b->size) {
+        void *const more = realloc(b->bytes, bytes);
+        if (!more) return false;
+        b->bytes = more;
+        b->size = bytes;
+    }
+    return bytes > 0 && H5Dread_chunk(source, H5P_DEFAULT, at, &filters, b->bytes) >= 0 &&
+           H5Dwrite_chunk(target, H5P_DEFAULT, filters, at, bytes, b->bytes) >= 0;
+}
+
+/* Appends what `target` lacks of the first `until` rows of `source`, which begins with all that it has: a
+ * chunk that both have in part is taken over whole. */
+static bool copy_rows(hid_t source, hid_t target, int64_t width, int64_t until,
+                      struct chunk_buffer *b)
+{
+    const int64_t at = count_rows(target), chunk = rows_of_chunk(source);
+    const hsize_t size[2] = {(hsize_t)until, (hsize_t)width};
+    if (at < 0 || count_rows(source) < until || chunk < 1 || rows_of_chunk(target) != chunk)
+        return false;
+    bool ok = at >= until || H5Dset_extent(target, size) >= 0;
+    for (int64_t row = at - at % chunk; ok && at < until && row < until; row += chunk)
+        ok = copy_chunk(source, target, row, b);
+    return ok;
+}
+
+static bool copy_dataset(hid_t from, hid_t to, const struct column *c, int64_t until,
+                         struct chunk_buffer *b)
 {
     char name[96];
     snprintf(name, sizeof name, "VTKHDF/%s", c->name);
     const hid_t source = H5Dopen2(from, name, H5P_DEFAULT),
                 target = H5Dopen2(to, name, H5P_DEFAULT);
-    bool ok = source >= 0 && target >= 0 && count_rows(source) >= until;
-    int64_t at = ok ? count_rows(target) : until;
-    for (int64_t n; ok && at < until; at += n) {
-        n = until - at < COPY_ROWS ? until - at : COPY_ROWS;
-        ok = move_rows(source, c, at, n, buffer, false) && append_rows(target, c, n, buffer);
-    }
-    H5Dclose(source);
+    const bool ok = source >= 0 && target >= 0 && copy_rows(source, target, c->width, until, b);
+    if (source >= 0) H5Dclose(source);
     return (target < 0 || H5Dclose(target) >= 0) && ok;
 }
 
@@ -283,11 +346,11 @@ bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hi
                             int64_t steps)
 {
     int64_t rows[D_COUNT];
-    void *buffer = malloc((size_t)COPY_ROWS * SNAPSHOT_WIDTH * 8);
-    bool ok = buffer && snapshot_file_rows(from, steps, rows);
+    struct chunk_buffer buffer = {0};
+    bool ok = snapshot_file_rows(from, steps, rows);
     for (int k = 0; ok && k < D_COUNT; k++)
-        ok = !layout->has[k] || copy_rows(from, to, &columns[k], rows[k], buffer);
-    free(buffer);
+        ok = !layout->has[k] || copy_dataset(from, to, &columns[k], rows[k], &buffer);
+    free(buffer.bytes);
     return ok && snapshot_file_set_steps(to, steps);
 }
 
@@ -309,5 +372,6 @@ int64_t snapshot_file_point(const struct snapshot_layout *layout)
  * cover what grows by the step. */
 int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n)
 {
-    return snapshot_file_point(layout) * (n + 1 + point_chunk(n)) + METADATA_BYTES;
+    return snapshot_file_point(layout) * (n + 1 + chunk_rows(&columns[D_POINTS], n)) +
+           METADATA_BYTES;
 }

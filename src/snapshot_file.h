@@ -39,8 +39,10 @@ struct snapshot_layout {
 };
 struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
-/* Makes the groups and empty datasets of a new file for snapshots of about n points. */
-bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n);
+/* Makes the groups and empty datasets of a new file for snapshots of about n points, in chunks like those
+ * of another file, whose rows can then be taken over; negative: there is none. */
+bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n,
+                           hid_t like);
 
 /* Columns of a dataset, and whether its values are handed over as double; otherwise as int64. */
 int snapshot_file_width(enum data what);
@@ -59,7 +61,7 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
 /* Rows of every dataset in the first `steps` snapshots of a file; false: it does not hold them. */
 bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT]);
 
-/* Appends to `to` what it lacks of the first `steps` snapshots of `from`. */
+/* Appends to `to`, which has the chunks of `from`, what it lacks of the first `steps` snapshots. */
 bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
                             int64_t steps);
 
