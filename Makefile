@@ -12,7 +12,8 @@
 #   make absence         an effect that is off costs nothing: instructions and bytes (ARGS=--quick: together)
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
-#   make stability       run the hard cases in their long form and write docs/stability.md
+#   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
+#                        it was interrupted
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
 #   make performance     the same, longest steps and the gate: docs/performance.md
@@ -183,7 +184,7 @@ fuzz:
 	@tools/fuzz.sh $(ARGS)
 
 stability: $(PROGRAM)
-	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/stability.py --report $(ARGS)
+	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
 
 reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
