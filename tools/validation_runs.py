@@ -152,8 +152,8 @@ def verifications():
               for n in (30, 60) for h in (1.35, 2)]
     specs += [Spec(f"block-{n}", "verify/rotating_block", [f"ratio={n}", "turns=1"], f"L/dp = {n}",
                    n == 10) for n in (10, 20)]
-    specs += [Spec(f"elastica-{n}", "verify/elastica", [f"ratio={n}"], f"thickness/dp = {n}", n == 4)
-              for n in (4, 6)]
+    specs += [Spec(f"elastica-{n}", "verify/elastica", [f"ratio={n}"], f"thickness/dp = {n}", n < 16)
+              for n in (4, 8, 16)]
     specs += [Spec(f"bar-{n}", "verify/stretched_bar", [f"ratio={n}"], f"thickness/dp = {n}", True)
               for n in (5, 10, 20)]
     return specs
