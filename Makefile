@@ -19,6 +19,7 @@
 #   make performance     the same, longest steps and the gate: docs/performance.md
 #   make examples        build examples/*.c, programs that use the library
 #   make accuracy        run what is missing of the accuracy study, write docs/accuracy.md (ARGS=--list)
+#   make forecast        what --explain foresees against what the shipped cases take: docs/accuracy.md
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
 #                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
@@ -44,7 +45,7 @@ IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
-             $(if $(filter gate accuracy validate bench performance,$(GOALS)),plot))
+             $(if $(filter gate accuracy forecast validate bench performance,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -223,9 +224,13 @@ gallery: $(PROGRAM)
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
-.PHONY: accuracy
+.PHONY: accuracy forecast
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
+	@$(MAKE) --no-print-directory all
+
+forecast: $(PROGRAM)
+	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/forecast.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
 	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)

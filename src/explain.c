@@ -117,11 +117,11 @@ static void say_bounds(const struct simulation *s, const struct sphfsi_options *
 static void text_of_seconds(double seconds, char text[32])
 {
     if (seconds < 120)
-        snprintf(text, 32, "%.0f s", seconds);
+        snprintf(text, 32, "%.3g s", seconds);
     else if (seconds < 7200)
-        snprintf(text, 32, "%.0f min", seconds / 60);
+        snprintf(text, 32, "%.3g min", seconds / 60);
     else
-        snprintf(text, 32, "%.1f h", seconds / 3600);
+        snprintf(text, 32, "%.3g h", seconds / 3600);
 }
 
 static void text_of_bytes(double bytes, char text[32])

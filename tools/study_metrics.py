@@ -4,6 +4,7 @@
 Each returns the value that was found (None where it is a whole curve) and its relative error.
 """
 
+import metrics
 from runfiles import BadFile, Run, np, read_table
 from snapshots import KINDS as PARTICLES
 from snapshots import Snapshots
@@ -11,7 +12,8 @@ from snapshots import Snapshots
 # kind: keys that its [[case.NAME.error]] must have
 KINDS = {
     "period": ("name", "column", "reference"),
-    "fitted_period": ("name", "column", "reference"),
+    "damped_period": ("name", "column", "reference"),
+    "damped_loss": ("name", "column", "reference"),
     "phase": ("name", "column", "reference"),
     "settled": ("name", "column", "reference", "from"),
     "noise": ("name", "column", "from"),
@@ -20,17 +22,20 @@ KINDS = {
     "against_file": ("name", "column", "file"),
     "against_finest": ("name", "column"),
     "hydrostatic": ("name", "density", "gravity", "surface"),
-    "decay": ("name", "column", "rate"),
-    "loss": ("name", "column", "period"),
     "front": ("name", "file"),
+    "front_finest": ("name",),
+    "tip": ("name", "probe", "length", "load", "from"),
 }
 
 
 def column(run, name):
-    table = Run(run).table("probes.csv")
-    if name not in table:
-        raise BadFile(f"{run}/probes.csv: no column {name}")
-    return table["time_s"], table[name]
+    """Times and values of a column of the probes or, if they have none of that name, of the ledger."""
+    for file in ("probes.csv", "ledger.csv"):
+        if (Run(run).folder / file).exists():
+            table = Run(run).table(file)
+            if name in table:
+                return table["time_s"], table[name]
+    raise BadFile(f"{run}: neither probes.csv nor ledger.csv has a column {name}")
 
 
 def window(time, value, error):
@@ -40,39 +45,36 @@ def window(time, value, error):
     return time[keep], value[keep]
 
 
-def zeros(time, value):
-    turns = np.flatnonzero(value[1:-1] * value[2:] < 0) + 1
-    return time[turns] + (time[turns + 1] - time[turns]) * value[turns] / (value[turns] - value[turns + 1])
-
-
 def period(error, run, _finest, _root):
     time, value = window(*column(run, error["column"]), error)
-    crossings = zeros(time, value - error.get("middle", 0))
+    crossings = metrics.crossings(time, value - error.get("middle", 0))
     if len(crossings) < 3:
         raise BadFile("fewer than three zero crossings: no period")
     found = 2 * (crossings[-1] - crossings[0]) / (len(crossings) - 1)
     return found, abs(found / error["reference"] - 1)
 
 
-def fitted_period(error, run, _finest, _root):
-    """Period of the sine that explains most of the curve, within half and twice the reference: unlike
-    zero crossings it does not mind the acoustic noise of a pressure."""
+def damped(error, run):
+    """Frequency and decay of the damped sine that fits best: unlike zero crossings it does not mind noise."""
     time, value = window(*column(run, error["column"]), error)
-    best, found = np.inf, np.nan
-    for trial in error["reference"] * np.geomspace(0.5, 2, 4001):
-        angle = 2 * np.pi * time / trial
-        basis = np.stack([np.sin(angle), np.cos(angle), np.ones_like(angle)], axis=1)
-        solution = np.linalg.lstsq(basis, value, rcond=None)[0]
-        left = np.sum((basis @ solution - value)**2)
-        if left < best:
-            best, found = left, trial
+    return metrics.damped_sine(time, value, 2 * np.pi / error["reference"])
+
+
+def damped_period(error, run, _finest, _root):
+    found = 2 * np.pi / damped(error, run)[0]
     return found, abs(found / error["reference"] - 1)
+
+
+def damped_loss(error, run, _finest, _root):
+    """Part of its amplitude that an oscillation without friction loses in a period."""
+    found = 1 - np.exp(-damped(error, run)[1] * error["reference"])
+    return found, found
 
 
 def phase(error, run, _finest, _root):
     """Part of a period by which the last zero crossing comes early or late."""
     time, value = window(*column(run, error["column"]), error)
-    crossings = zeros(time, value - error.get("middle", 0))
+    crossings = metrics.crossings(time, value - error.get("middle", 0))
     if len(crossings) == 0:
         raise BadFile("no zero crossing: no phase")
     turns = crossings[-1] / error["reference"]
@@ -133,42 +135,41 @@ def hydrostatic(error, run, _finest, _root):
     return None, np.sqrt(np.mean((p - weight * depth)**2)) / (weight * depth.max())
 
 
-def decay_rate(error, run):
-    """Rate at which the turns of an oscillation shrink."""
-    time, value = window(*column(run, error["column"]), error)
-    value = value - error.get("middle", 0)
-    turns = np.flatnonzero((value[1:-1] - value[:-2]) * (value[2:] - value[1:-1]) < 0) + 1
-    if len(turns) < 3:
-        raise BadFile("fewer than three turns: no decay")
-    return -np.polyfit(time[turns], np.log(np.abs(value[turns])), 1)[0]
-
-
-def decay(error, run, _finest, _root):
-    found = decay_rate(error, run)
-    return found, abs(found / error["rate"] - 1)
-
-
-def loss(error, run, _finest, _root):
-    """Part of its amplitude that an oscillation loses, or gains, in a period."""
-    found = 1 - np.exp(-decay_rate(error, run) * error["period"])
-    return found, abs(found)
+def places(run):
+    """Times of the snapshots, and where the water's foremost particle is."""
+    shots = Snapshots(Run(run).folder / "fields.vtkhdf")
+    found = []
+    for step in range(len(shots.times)):
+        fluid = shots.load(step, "kind") == PARTICLES["fluid"]
+        found.append(shots.load(step, "Points")[fluid, 0].max())
+    return np.array(shots.times), np.array(found)
 
 
 def front(error, run, _finest, root):
-    """Way of the water's foremost particle against measured rows of time and place."""
-    shots = Snapshots(Run(run).folder / "fields.vtkhdf")
-    places = []
-    for step in range(len(shots.times)):
-        fluid = shots.load(step, "kind") == PARTICLES["fluid"]
-        places.append(shots.load(step, "Points")[fluid, 0].max())
+    """Way of the foremost particle against measured rows of time and place."""
+    time, place = places(run)
     table, _ = read_table(root / error["file"])
     when, wanted = table.values()
     when, wanted = when * error.get("time_unit", 1), wanted * error.get("length_unit", 1)
-    keep = when <= shots.times[-1]
+    keep = when <= time[-1]
     if not keep.any():
         raise BadFile(f"{error['file']} has no row in the time of the run")
-    off = np.interp(when[keep], shots.times, places) - wanted[keep]
-    return places[-1], np.sqrt(np.mean(off**2)) / wanted[keep].max()
+    off = np.interp(when[keep], time, place) - wanted[keep]
+    return place[-1], np.sqrt(np.mean(off**2)) / wanted[keep].max()
+
+
+def front_finest(_error, run, finest, _root):
+    (time, place), (when, wanted) = places(run), places(finest)
+    off = np.interp(when, time, place) - wanted
+    return place[-1], np.sqrt(np.mean(off**2)) / wanted.max()
+
+
+def tip(error, run, _finest, _root):
+    """End of a cantilever under a dead load against Euler's elastica, in lengths."""
+    name, length = error["probe"], error["length"]
+    x, y = metrics.elastica(error["load"])
+    mean = [window(*column(run, f"{name}_{axis}_m"), error)[1].mean() / length for axis in ("dx", "dy")]
+    return mean[1], np.hypot(mean[0] + 1 - x, mean[1] - y)
 
 
 def measure(error, run, finest, root):

@@ -12,8 +12,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 try:
-    import tomllib  # noqa: F401
+    import tomllib
     from study_metrics import measure
+    from study_points import points_of
     from study_order import convergence
     from runfiles import BadFile, np
 except (ImportError, SystemExit):
@@ -25,6 +26,9 @@ STUDY = """
 threads = 1
 repeats = 2
 time_limit = 60
+[preset]
+draft = { solid = "kappa=0" }
+fine = { solid = "kapa=0", air = "base" }
 [case.plate]
 file = "cases/cantilever.cfg"
 scene = "solid"
@@ -38,18 +42,45 @@ name = "end"
 kind = "final"
 column = "M1_dy_m"
 reference = 0.01
+[[case.plate.error]]
+name = "elsewhere"
+kind = "final"
+column = "M2_dy_m"
+reference = 0.01
 [case.strange]
 file = "cases/none.cfg"
 scene = "solid"
 levels = []
 across = 1
 error = []
+[case.lost]
+file = "cases/cantilever.cfg"
+scene = "solid"
+levels = ["ratio=4"]
+across = 0.02
+[[case.lost.error]]
+name = "curve"
+kind = "against_file"
+column = "M1_dy_m"
+file = "cases/reference/none.csv"
 [knob.kappa]
 values = { "0" = ["{solid}.hourglass=0"], same = ["{solid}.hourglass=50"] }
 [knob.wrong]
 values = { key = ["{solid}.hourglas=0"], unstable = ["numerics.fixed_step=0.01"] }
+[knob.killed]
+values = { it = ["{solid}.density=1234"] }
 [knob.fluid]
 values = { any = ["{fluid}.density_diffusion=0"] }
+[knob.empty]
+cases = ["plate"]
+"""
+# The program, but for a run that is killed as long as there is a file `kill`.
+KILLER = """#!/bin/sh
+case "$* " in
+*--effective*|*--explain*) ;;
+*density=1234*) [ -e '{folder}/kill' ] && kill -9 $$ ;;
+esac
+exec '{program}' "$@"
 """
 
 
@@ -58,43 +89,118 @@ def check(wanted, what):
         sys.exit(what)
 
 
-def study(folder, *more):
+def prepare(folder):
+    """A study, and a program of which one run is killed."""
+    (folder / "study.toml").write_text(STUDY)
+    (folder / "kill").touch()
+    program = folder / "program"
+    real = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
+    program.write_text(KILLER.format(folder=folder, program=real))
+    program.chmod(0o755)
+    return dict(os.environ, SPHFSI=str(program))
+
+
+def study(folder, environment, *more):
     done = subprocess.run(
         [sys.executable, ROOT / "tools" / "accuracy_cost.py", "--study", folder / "study.toml",
          "--runs", folder / "runs", "--out", folder, "--data", folder / "results.json", *more],
-        capture_output=True, text=True, check=False)
+        capture_output=True, text=True, check=False, env=environment)
     return done.returncode, done.stdout + done.stderr
 
 
+def points_in(folder):
+    return {p["name"]: p for p in json.loads((folder / "results.json").read_text())["points"]}
+
+
 def whole_study(folder):
-    (folder / "study.toml").write_text(STUDY)
-    status, text = study(folder)
+    environment = prepare(folder)
+    status, text = study(folder, environment, "--jobs", "2")
     check(status == 0, f"the study failed: {text}")
-    check("[case.strange] file = cases/none.cfg: there is no such case" in text, text)
-    check("did you mean `hourglass`" in text, f"the misspelt knob is not named: {text}")
-    points = {p["name"]: p for p in json.loads((folder / "results.json").read_text())["points"]}
-    check(len(points) == 7 and not any("fluid" in name for name in points), f"points: {list(points)}")
-    check(points["plate/0/wrong=key"]["outcome"] == "refused", "a refused point is not shown as such")
-    check(points["plate/0/wrong=unstable"]["outcome"] == "unstable", "an unstable point is not shown so")
+    for words in ("[case.strange] file = cases/none.cfg: there is no such case",
+                  "[case.lost] error curve: there is no reference cases/reference/none.csv",
+                  "[knob.empty] lacks `values`", "[preset] fine: solid = kapa=0: no such",
+                  "[preset] fine: air = base: no such", "did you mean `hourglass`",
+                  "plate/0/base: elsewhere:", "has a column M2_dy_m",
+                  "plate/0/killed=it: failed: exit status -9"):
+        check(words in text, f"it does not say '{words}': {text}")
+    points = points_in(folder)
+    check(len(points) == 8 and not any("fluid" in name for name in points), f"points: {list(points)}")
+    for name, outcome in (("wrong=key", "refused"), ("wrong=unstable", "unstable"), ("killed=it", "failed"),
+                          ("kappa=0", "finished")):
+        check(points[f"plate/0/{name}"]["outcome"] == outcome, f"{name} is not shown as {outcome}")
     base = points["plate/0/base"]
     check(len(base["timing"]) == 2 and base["errors"]["end"] > 0 and base["evaluations"] > 0, str(base))
+    check(base["timing"][0]["beside"] == 1, "runs side by side are not marked")
     check(points["plate/0/kappa=same"]["timing"] == base["timing"], "an equal case was run twice")
     check(points["plate/0/kappa=0"]["values"] != base["values"], "the knob changed nothing")
     report = (folder / "accuracy.md").read_text()
-    for words in ("unstable", "did you mean", "cases/none.cfg", "| plate | end |"):
+    for words in ("unstable", "did you mean", "cases/none.cfg", "| plate | end |", "**failed**",
+                  "exit status -9", "‡ was timed beside another run of the study: 7 of 7"):
         check(words in report, f"the report lacks '{words}'")
+    resumed(folder, environment, points)
 
-    status, text = study(folder)
-    check(status == 0 and "finished," not in text, f"a cached study ran again: {text}")
+
+def resumed(folder, environment, points):
+    """Only what failed or is missing runs again."""
+    (folder / "kill").unlink()
+    status, text = study(folder, environment, "--list")
+    check(status == 0 and "1 to run" in text and "min left" in text, text)
+    status, text = study(folder, environment)
+    check(status == 0 and text.count(" s of CPU (") == 1 and "killed=it: finished" in text,
+          f"not just what had failed ran: {text}")
     result = next((folder / "runs").glob("*/result.json"))
     result.unlink()
-    status, text = study(folder)
-    check(text.count(" s of CPU") == 1, f"not just what was missing ran: {text}")
-    status, text = study(folder, "--point", "plate/9/base")
+    status, text = study(folder, environment)
+    check(text.count(" s of CPU (") == 1, f"not just what was missing ran: {text}")
+    older_program(folder, environment)
+    for path in (folder / "runs").glob("*/result.json"):
+        path.unlink()
+    status, text = study(folder, environment, "--cached")
+    check(status == 0 and points_in(folder)["plate/2/base"]["errors"] == points["plate/2/base"]["errors"],
+          f"without runs the collected results are lost: {text}")
+    status, text = study(folder, environment, "--point", "plate/9/base")
     check(status == 1 and "no point plate/9/base" in text, text)
     (folder / "study.toml").write_text("[case")
-    status, text = study(folder)
+    status, text = study(folder, environment)
     check(status == 1 and "study.toml" in text and "Traceback" not in text, text)
+
+
+def older_program(folder, environment):
+    """Runs of an older program stand for those of this one if that is asked for, and are marked."""
+    for path in (folder / "runs").glob("*/result.json"):
+        record = json.loads(path.read_text())
+        path.write_text(json.dumps(dict(record, program="older")))
+        path.parent.rename(path.parent.with_name("0" + path.parent.name[1:]))
+    status, text = study(folder, environment, "--older")
+    check(status == 0 and "points to run" not in text, f"older runs were not taken: {text}")
+    report = (folder / "accuracy.md").read_text()
+    check("§ is of an older program in the same effective case: 7 of 7" in report,
+          "points of an older program are not marked")
+
+
+def presets():
+    """Points that stand for a preset are the case that the preset makes; `standard` is the default."""
+    with open(ROOT / "tools" / "study" / "study.toml", "rb") as file:
+        definition = tomllib.load(file)
+    sets = {p["name"]: p["set"] for p in points_of(definition)}
+    program = os.environ.get("SPHFSI", ROOT / "sphfsi")
+
+    def effective(case, arguments):
+        words = [word for text in arguments for word in ("--set", text)]
+        text = subprocess.run([program, "--effective", ROOT / case, *words], capture_output=True, text=True,
+                              check=True).stdout
+        return [line for line in text.splitlines() if not line.startswith(("accuracy", "#"))]
+
+    for preset, scenes in definition["preset"].items():
+        for name, case in definition["case"].items():
+            level = case.get("knob_levels", [0])[0]
+            base = sets[f"{name}/{level}/base"]
+            point = sets[f"{name}/{level}/{scenes[case['scene']]}"]
+            check(effective(case["file"], base + [f"accuracy={preset}"]) == effective(case["file"], point),
+                  f"{name}: `{preset}` of presets.def is not {scenes[case['scene']]} of study.toml")
+    for case in sorted((ROOT / "cases").glob("*.cfg")):
+        check(effective(case, ["accuracy=standard"]) == effective(case, []),
+              f"{case.name}: the defaults are not the preset standard")
 
 
 def write_probes(folder, time, value):
@@ -106,7 +212,7 @@ def write_probes(folder, time, value):
 def errors_by_hand(folder):
     time = np.linspace(0, 3, 3001)
     run, other = folder / "a", folder / "b"
-    write_probes(run, time, np.exp(-0.2 * time) * np.sin(2 * np.pi * time / 0.5) + 0)
+    write_probes(run, time, np.exp(-0.2 * time) * np.sin(2 * np.pi * time / 0.5) )
     write_probes(other, time, np.full_like(time, 2.0))
 
     def off(of, **error):
@@ -114,10 +220,10 @@ def errors_by_hand(folder):
 
     value, error = off(run, kind="period", reference=0.4)
     check(abs(value - 0.5) < 1e-3 and abs(error - 0.25) < 3e-3, f"period {value}, {error}")
-    value, error = off(run, kind="fitted_period", reference=0.4)
-    check(abs(value - 0.5) < 2e-3, f"fitted period {value}")
-    value, error = off(run, kind="decay", rate=0.1)
-    check(abs(value - 0.2) < 1e-3 and abs(error - 1) < 1e-2, f"decay {value}, {error}")
+    value, error = off(run, kind="damped_period", reference=0.48)
+    check(abs(value - 0.5) < 1e-3 and abs(error - 0.0417) < 3e-3, f"damped period {value}, {error}")
+    value, error = off(run, kind="damped_loss", reference=0.5)
+    check(abs(value - (1 - np.exp(-0.1))) < 1e-3 and error == value, f"damped loss {value}, {error}")
     check(off(other, kind="settled", reference=4.0, **{"from": 1})[1] == 0.5, "settled")
     check(off(other, kind="final", reference=1.0) == (2.0, 1.0), "final")
     check(abs(off(other, kind="against_finest")[1]) == 0, "a run is off itself")
@@ -135,6 +241,7 @@ def errors_by_hand(folder):
 
 def main():
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    presets()
     with tempfile.TemporaryDirectory() as name:
         errors_by_hand(Path(name))
     with tempfile.TemporaryDirectory() as name:
