@@ -16,9 +16,8 @@ static struct solid_body body_of(const struct scene *scene, int k)
 {
     const struct scene_solid *const c = &scene->solid[k];
     const double dp = scene_solid_dp(scene, k), h = scene->numerics.h_over_dp * dp;
-    const double E = c->young, nu = c->poisson;
+    const double E = c->young, nu = c->poisson, on = c->gravity ? 1 : 0;
     const double bulk = E / (3 * (1 - 2 * nu));
-    const double on = c->gravity ? 1 : 0;
     return (struct solid_body){
         .dp = dp,
         .h = h,

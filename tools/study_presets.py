@@ -12,10 +12,10 @@ DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
 RULE = f"""Means (geometric) of cost and main error over those of the base settings at the same resolution,
 over all cases of the kind; settings that choose a model rather than numerics (viscosity, diffusion, the
-solid's forces) are left to the case. The rule: `draft` is the cheapest setting with at most {DRAFT_WORSE:g} times
-the error; `fine` is the most exact one on the front for at most {FINE_COST:g} times the cost, if its error is
-at most {FINE_ERROR:g} times; neither may be more than {WORST:g} times worse in any point, or fail in one;
-else it is the base settings."""
+solid's forces) are left to the case. The rule: `draft` is the cheapest setting with at most
+{DRAFT_WORSE:g} times the error; `fine` is the most exact one on the front for at most {FINE_COST:g} times
+the cost, if its error is at most {FINE_ERROR:g} times; neither may be more than {WORST:g} times worse in
+any point, or fail in one; else it is the base settings."""
 
 
 def mean(values):

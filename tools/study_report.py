@@ -6,6 +6,8 @@ import os
 import re
 from pathlib import Path
 
+from matplotlib.ticker import LogFormatter
+
 from runfiles import COLOURS, WIDTH, BadFile, np, plt, read_text, save
 from study_points import ROOT
 from study_presets import fronts, preset_table, write_evidence
@@ -69,6 +71,9 @@ def draw_case(study, case, path):
     for axes, (group, settings) in zip(panels[:, 0], groups.items()):
         draw_group(axes, study, case, group, settings)
     panels[-1, 0].set_xlabel("CPU time (s)")
+    for axis in (panels[0, 0].xaxis, panels[0, 0].yaxis):  # all panels share them
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.5)))
     figure.suptitle(study.cases[case].get("title", case), fontsize=10)
     figure.tight_layout()
     save(figure, path)
