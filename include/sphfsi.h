@@ -191,8 +191,9 @@ SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 SPHFSI_API enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds);
 
 /** Runs a case in `runs` resolutions (3 to 6), dp growing by `ratio` (1.1 to 4), coarsest first, in
- * sub-folders of the run's folder, and says what the probes converge to, with the order and the error
- * band of the finest run; refine.json holds the same. Runs that have finished are not repeated. */
+ * sub-folders of the run's folder, and says what the probes and the energies converge to, with the order
+ * and the error band of the finest run; refine.json holds the same. Runs that have finished are not
+ * repeated. */
 SPHFSI_API enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs,
                                             double ratio);
 

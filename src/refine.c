@@ -35,9 +35,11 @@ struct convergence converge(const double value[3], double ratio)
     const double fine = value[1] - value[0], coarse = value[2] - value[1];
     const double widest = max2(max2(fabs(fine), fabs(coarse)), fabs(value[2] - value[0]));
     struct convergence c = {.extrapolated = value[0], .band = 3 * widest, .order = NAN};
+    c.why = widest > 0 ? "not monotone" : "no difference";
     if (!(fine / coarse > 0)) return c;
     c.order = log(coarse / fine) / log(ratio);
     c.ordered = c.order >= 0.5;
+    c.why = c.ordered ? "" : "slower than order 0.5";
     if (!c.ordered) return c;
     const double gain = pow(ratio, min2(c.order, 2)) - 1;
     c.extrapolated = value[0] - fine / gain;
@@ -163,15 +165,22 @@ static enum err run_one(struct refinement *x, int k)
 
 /* --- their values --- */
 
-/* The three measures of each column of a probes.csv; the number of columns, the time's not counted. */
-static enum err measure_run(const struct refinement *x, int k, int columns,
-                            double (*value)[MEASURES])
+/* A file of a run in the folder of its resolution; k = runs - 1: the finest. */
+static enum err path_of(const struct refinement *x, int k, const char *file, char path[FOLDER_PATH])
 {
-    char name[40], folder[FOLDER_PATH], path[FOLDER_PATH], *csv;
-    size_t size;
+    char name[40], folder[FOLDER_PATH];
     snprintf(name, sizeof name, "dp-%.6g", spacing(x, k));
     TRY(folder_join(folder, x->folder, name, x->diag));
-    TRY(folder_join(path, folder, "probes.csv", x->diag));
+    return folder_join(path, folder, file, x->diag);
+}
+
+/* The three measures of each column of a file; the number of columns, the time's not counted. */
+static enum err measure_run(const struct refinement *x, int k, const char *file, int columns,
+                            double (*value)[MEASURES])
+{
+    char path[FOLDER_PATH], *csv;
+    size_t size;
+    TRY(path_of(x, k, file, path));
     TRY(file_read(path, &csv, &size, x->diag));
     const char *const last = strrchr(csv, '\n') ? csv : NULL;
     double end = 0;
@@ -196,47 +205,92 @@ static enum err measure_run(const struct refinement *x, int k, int columns,
 }
 
 static void say_value(const struct refinement *x, struct json *j, const char *name,
-                      const double value[3])
+                      const double value[3], bool aloud)
 {
     const struct convergence c = converge(value, x->ratio);
     char order[32] = "none";
     if (c.ordered) snprintf(order, sizeof order, "%.2f", c.order);
     const double percent = value[0] != 0 ? 100 / fabs(value[0]) : 0;
-    session_say(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)", name,
-                value[2], value[1], value[0], c.extrapolated, order, c.band, percent * c.band);
+    if (aloud)
+        session_say(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
+                    name, value[2], value[1], value[0], c.extrapolated, order, c.band,
+                    percent * c.band, *c.why ? "; " : "", c.why);
     json_open(j, name, '{');
     json_numbers(j, "values", value, 3);
     json_number(j, "order", c.ordered ? c.order : (double)NAN);
+    json_text(j, "why_no_order", c.why);
     json_number(j, "extrapolated", c.extrapolated);
     json_number(j, "band", c.band);
     json_close(j, '}');
 }
 
-static enum err say_all(const struct refinement *x, const char *header, int columns,
-                        double (*value[3])[MEASURES])
+/* Columns of one file of the runs. Of the ledger only what ends at other than zero is said aloud. */
+static void say_columns(const struct refinement *x, struct json *j, const char *header, int columns,
+                        bool ledger, double (*value[3])[MEASURES])
 {
-    struct beside out;
-    TRY(beside_open(&out, x->folder, "refine.json", x->diag));
-    struct json j = {.file = out.file};
-    const double dp[3] = {x->dp, x->dp * x->ratio, x->dp * x->ratio * x->ratio};
-    json_open(&j, NULL, '{');
-    json_numbers(&j, "dp", dp, 3);
-    session_say(x->options,
-                "dp (m)     %12.5g %12.5g %12.5g extrapolated  order  band of the finest", dp[2],
-                dp[1], dp[0]);
     const char *name = header;
     for (int c = 0; c < columns; c++) {
         char text[2 * SCENE_NAME];
         name += strcspn(name, ",") + 1;
         snprintf(text, sizeof text, "%.*s", (int)strcspn(name, ","), name);
-        session_say(x->options, "%s", text);
-        json_open(&j, text, '{');
+        const bool energy = strstr(text, "_J_per_m") && value[0][c][FINAL] != 0;
+        if (!ledger || energy) session_say(x->options, "%s", text);
+        json_open(j, text, '{');
         for (int m = 0; m < MEASURES; m++)
-            say_value(x, &j, measure_names[m],
-                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]});
-        json_close(&j, '}');
+            say_value(x, j, measure_names[m],
+                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]},
+                      !ledger || energy);
+        json_close(j, '}');
     }
-    json_close(&j, '}');
+}
+
+static enum err tell_file(const struct refinement *x, struct json *j, const char *file, bool ledger)
+{
+    struct arena arena = {0};
+    char path[FOLDER_PATH], *header;
+    size_t size;
+    TRY(path_of(x, x->runs - 1, file, path));
+    TRY(file_read(path, &header, &size, x->diag));
+    header[strcspn(header, "\n")] = '\0';
+    int columns = 0;
+    for (const char *at = header; (at = strchr(at, ',')) != NULL; at++) columns++;
+    double(*value[3])[MEASURES];
+    enum err e = ERR_OK;
+    for (int k = 0; k < 3 && !e; k++) {
+        value[k] = arena_alloc(&arena, (size_t)columns, sizeof *value[k], "values", x->diag);
+        e = value[k] ? measure_run(x, x->runs - 1 - k, file, columns, value[k]) : ERR_MEMORY;
+    }
+    if (!e) say_columns(x, j, header, columns, ledger, value);
+    arena_free(&arena);
+    free(header);
+    return e;
+}
+
+static enum err tell_probes(const struct refinement *x, const struct scene *scene, struct json *j)
+{
+    bool shared = false;
+    for (int k = 0; k < scene->n_probe; k++) shared |= !(scene->probe[k].interval > 0);
+    if (shared) TRY(tell_file(x, j, "probes.csv", false));
+    for (int k = 0; k < scene->n_probe; k++) {
+        char file[SCENE_NAME + 16];
+        snprintf(file, sizeof file, "probes_%s.csv", scene->probe[k].common.name);
+        if (scene->probe[k].interval > 0) TRY(tell_file(x, j, file, false));
+    }
+    return ERR_OK;
+}
+
+static void say_head(const struct refinement *x, struct json *j)
+{
+    const double dp[3] = {x->dp, x->dp * x->ratio, x->dp * x->ratio * x->ratio};
+    json_numbers(j, "dp", dp, 3);
+    json_integer(j, "off_lattice", x->off_lattice);
+    session_say(x->options,
+                "dp (m)     %12.5g %12.5g %12.5g extrapolated  order  band of the finest", dp[2],
+                dp[1], dp[0]);
+}
+
+static void say_foot(const struct refinement *x)
+{
     session_say(x->options,
                 "peak: value of largest size; settled: mean of the last quarter; band: "
                 "grid convergence index, or 3 times the largest difference without order");
@@ -245,42 +299,27 @@ static enum err say_all(const struct refinement *x, const char *header, int colu
             x->options,
             "bodies are off the lattice in some of these resolutions and so differ from one to "
             "the next: the orders mean little");
-    return beside_commit(&out, x->diag);
 }
 
-/* The first line of the finest run's probes.csv. Probes with an interval of their own stand elsewhere. */
-static enum err read_header(const struct refinement *x, char **header)
+static enum err tell(const struct refinement *x, const struct scene *scene)
 {
-    char name[40], folder[FOLDER_PATH], path[FOLDER_PATH];
-    size_t size;
-    snprintf(name, sizeof name, "dp-%.6g", spacing(x, x->runs - 1));
-    TRY(folder_join(folder, x->folder, name, x->diag));
-    TRY(folder_join(path, folder, "probes.csv", x->diag));
-    TRY(file_read(path, header, &size, x->diag));
-    (*header)[strcspn(*header, "\n")] = '\0';
-    return ERR_OK;
-}
-
-static enum err tell(const struct refinement *x)
-{
-    struct arena arena = {0};
-    char *header;
-    TRY(read_header(x, &header));
-    int columns = 0;
-    for (const char *at = header; (at = strchr(at, ',')) != NULL; at++) columns++;
-    double(*value[3])[MEASURES];
-    enum err e = ERR_OK;
-    for (int k = 0; k < 3 && !e; k++) {
-        value[k] = arena_alloc(&arena, (size_t)columns, sizeof *value[k], "values", x->diag);
-        e = value[k] ? measure_run(x, x->runs - 1 - k, columns, value[k]) : ERR_MEMORY;
-    }
-    if (!e) e = say_all(x, header, columns, value);
-    arena_free(&arena);
-    free(header);
+    struct beside out;
+    TRY(beside_open(&out, x->folder, "refine.json", x->diag));
+    struct json j = {.file = out.file};
+    json_open(&j, NULL, '{');
+    say_head(x, &j);
+    enum err e = tell_probes(x, scene, &j);
+    json_open(&j, "ledger", '{');
+    if (!e) e = tell_file(x, &j, "ledger.csv", true);
+    json_close(&j, '}');
+    json_close(&j, '}');
+    say_foot(x);
+    if (!e) return beside_commit(&out, x->diag);
+    beside_abandon(&out);
     return e;
 }
 
-static enum err check(struct refinement *x, const struct scene *scene)
+static enum err check(struct refinement *x)
 {
     if (x->options->restart || x->options->fork)
         return diag_fail(
@@ -292,9 +331,6 @@ static enum err check(struct refinement *x, const struct scene *scene)
     if (!(x->ratio >= 1.1 && x->ratio <= 4))
         return diag_fail(x->diag, ERR_INPUT, "refine: a ratio of %g; from 1.1 to 4 are possible",
                          x->ratio);
-    if (scene->n_probe == 0)
-        return diag_fail(x->diag, ERR_INPUT, "%s: has no [probe], and refine compares probes",
-                         scene->path);
     for (int k = 0; k < x->runs; k++) TRY(try_case(x, k));
     return ERR_OK;
 }
@@ -312,9 +348,9 @@ enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, str
         return diag_fail(d, e, "%s", quiet.text);
     }
     x.dp = s->scene.top.dp;
-    e = check(&x, &s->scene);
+    e = check(&x);
     for (int k = 0; k < runs && !e; k++) e = run_one(&x, k);
-    if (!e) e = tell(&x);
+    if (!e) e = tell(&x, &s->scene);
     scene_free(&s->scene);
     free(s);
     return e;

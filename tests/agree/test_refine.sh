@@ -34,7 +34,21 @@ run cases/cantilever.cfg --set ratio=2 --ratio 4 --out "$work/none" 2>"$work/err
 grep -q 'refine: at dp = ' "$work/error" || fail "$(cat "$work/error")"
 [ ! -e "$work/none" ] || fail "something was run all the same"
 
-# Two resolutions, a restart, a case without probes.
+# Probes with a rate of their own; without any the energies are left.
+sed 's/^\[probe M1\]/&\ninterval = 5 ms/' cases/cantilever.cfg >"$work/own.cfg"
+sed '/^\[probe/,$d' cases/cantilever.cfg >"$work/none.cfg"
+cp -r cases/reference "$work"
+value='/"M1_dy_m"/,/}/s/.*"values": \[\([^,]*\),.*/\1/p'
+run "$work/own.cfg" --set ratio=8 --until 0.02 --out "$work/own" \
+    2>"$work/error" || fail "own rate: $(cat "$work/error")"
+[ "$(sed -n "$value" "$work/own/refine.json")" = "$(sed -n "$value" <<<"$whole")" ] ||
+    fail "a probe with its own rate has another final value"
+run "$work/none.cfg" --set ratio=8 --until 0.02 --out "$work/bare" 2>"$work/error" ||
+    fail "without probes: $(cat "$work/error")"
+grep -q '"ledger"' "$work/bare/refine.json" || fail "no energies"
+grep -q '"why_no_order": "' "$work/bare/refine.json" || fail "it does not say why there is no order"
+
+# Two resolutions, a restart.
 "$SPHFSI" --refine 2 cases/gate.cfg 2>"$work/error" && fail "two resolutions were accepted"
 grep -q 'from 3 to 6' "$work/error" || fail "$(cat "$work/error")"
 run "${case[@]}" --restart 2>"$work/error" && fail "a restart was accepted"
