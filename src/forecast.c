@@ -20,9 +20,9 @@
 #endif
 
 enum { CACHE_BYTES = 1 << 20, FIRST_STEPS = 20 };
-/* Short repeats: some then fall between the slices that other work takes of a busy machine. */
-/* Part of the ideal speed-up that a further thread brings (docs/design.md). */
+/* Part of the ideal speed-up that a further thread brings: assumed; docs/accuracy.md holds what it is. */
 static const double thread_efficiency = 0.93;
+/* Short repeats: some then fall between the slices that other work takes of a busy machine. */
 static const double calibration_seconds = 1.0, repeat_seconds = 0.005;
 
 /* --- the cache: lines of `key numbers`, the last of a key counts --- */

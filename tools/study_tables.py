@@ -164,10 +164,23 @@ def forecast_cells(row):
     return head + cells + [f"{row['taken']['load']:.1f}"]
 
 
+def speed_up(data):
+    """What more threads gained, by the time of a step."""
+    each = {(r["case"], r["threads"]): r["taken"]["seconds"] / r["taken"]["steps"]
+            for r in data["rows"] if "failed" not in r}
+    text = ""
+    for threads in sorted({n for _, n in each if n > 1}):
+        gains = [each[case, 1] / each[case, n] for case, n in each if n == threads and (case, 1) in each]
+        if gains:
+            text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast as one, "
+                     f"in the geometric mean {np.exp(np.mean(np.log(gains))):.2f} times.")
+    return text
+
+
 def forecast_table(data):
     off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
            for r in data["rows"] if "failed" not in r]
-    text = f"Seconds within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs."
+    text = f"Seconds within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs.{speed_up(data)}"
     return table(["case", "threads", "until (s)", "steps foreseen / taken", "off (%)",
                   "seconds foreseen / taken", "off (%)", "load before"],
                  [forecast_cells(row) for row in data["rows"]]) + "\n\n" + text
