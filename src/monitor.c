@@ -73,17 +73,22 @@ static bool fluid_sound(struct simulation *s)
            low >= -s->guard.dens_limit;
 }
 
+#define UNSTABLE                                                                                  \
+    "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, or a " \
+    "wall or light structure presses harder than the fluid can follow"
+/* Molteni's diffusion wears off by how much the density of a front's first particle is above the others',
+ * until it lies in the bed that it runs over. */
+#define STRAY                                                                                     \
+    "fluid had entered a wall or solid before; diffusion_form = antuono, shifting or a finer dp " \
+    "may keep it out"
+
 static enum err check_fluid(struct simulation *s, struct diag *d)
 {
     if (!fluid_sound(s)) {
         const struct finding f =
             look_at(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
         if (f.at >= 0)
-            return complain(
-                s, KIND_FLUID, f,
-                "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this "
-                "flow, or a wall or light structure presses harder than the fluid can follow",
-                d);
+            return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
     }
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
