@@ -467,7 +467,7 @@ void simulation_refresh(struct simulation *s)
         s->state.evaluations--;
         /* A caller's own forces and motions may change between two looks. */
         s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
-        memcpy(s->phase_seconds, seconds, sizeof seconds);
+        if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
 }
