@@ -266,7 +266,7 @@ def gate_reading(report, numbers):
     base = numbers(report.run("gate-1mm-leapfrog"))
     for name, words in (("gate-leapfrog", "half the spacing"), ("gate-1mm", "symplectic for leapfrog"),
                         ("gate-1mm-verlet", "Verlet for leapfrog"),
-                        ("gate-1mm-cfl0.2", "C_CFL = 0.2 for 0.5"),
+                        ("gate-1mm-cfl0.2", "C_CFL = 0.2 for the default"),
                         ("gate-1mm-h1.5", "h/dp = 1.5 for 1.35"),
                         ("gate-1mm-alpha0.05", "alpha = 0.05 for 0.01"),
                         ("gate-1mm-kappa10", "kappa = 10 for 50"),

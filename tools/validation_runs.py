@@ -139,8 +139,9 @@ def verifications():
                   ("diffusion", "water.density_diffusion=0.01", "delta = 0.01"),
                   ("viscous", "water.artificial_viscosity=0.05", "alpha = 0.05"),
                   ("suction", "numerics.suction=on", "walls may pull"))]
-    specs += [Spec("wave-20-2", "verify/standing_wave", ["ratio=20", "numerics.h_over_dp=2"],
-                   "H/dp = 20, h/dp = 2", True)]
+    specs += [Spec(f"wave-{n}-{h}", "verify/standing_wave", [f"ratio={n}", f"numerics.h_over_dp={h}"],
+                   f"H/dp = {n}, h/dp = {h}", n < 40)
+              for h in (1.6, 1.7, 1.8, 2) for n in (20, 40)]
     specs += [Spec(f"taylor-green-{n}", "verify/taylor_green", [f"ratio={n}"], f"L/dp = {n}", n < 100)
               for n in (25, 50, 100)]
     specs += [Spec(f"front-{n}", "verify/dam_break_front", [f"ratio={n}"], f"a/dp = {n}", n < 80)
