@@ -4,13 +4,13 @@
 
 import argparse
 import shutil
-import sys
 from pathlib import Path
 
 import runfiles
-from plot_fields import arrange, colour_scale, draw_bars, draw_panel, frame, load_panel
+from plot_fields import (add_look, arrange, check_look, chosen_fields, common_scales, draw_bars, draw_panel,
+                         frame, load_panel)
 from runfiles import BadFile, plt
-from snapshots import FIELDS, Snapshots
+from snapshots import Snapshots
 from matplotlib.animation import FFMpegWriter, PillowWriter
 
 EXAMPLE = """example:
@@ -23,28 +23,15 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
-    parser.add_argument("--field", choices=FIELDS["fluid"], default="pressure",
-                        help="colours the fluid (default: %(default)s)")
-    parser.add_argument("--solid", choices=FIELDS["solid"], default="von_mises",
-                        help="colours the solid (default: %(default)s)")
-    parser.add_argument("--range", nargs=2, type=float, metavar=("LO", "HI"),
-                        help="of the fluid's colours, in SI units (default: from the data)")
-    parser.add_argument("--solid-range", nargs=2, type=float, metavar=("LO", "HI"),
-                        help="of the solid's colours, in SI units")
-    parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Y0", "Y1"),
-                        help="part of the plane to draw, m (default: all but single drops)")
+    add_look(parser)
     parser.add_argument("--fps", type=float, default=10, help="frames a second (%(default)s)")
     parser.add_argument("--dpi", type=float, default=150, help="dots an inch (%(default)s)")
     parser.add_argument("--out", metavar="FILE", help=".mp4 (needs ffmpeg) or .gif "
                         "(default: fields.mp4 or fields.gif in the first run's folder)")
     args = parser.parse_args()
-    if not args.run:
-        parser.print_help()
-        sys.exit(1)
+    check_look(parser, args)
     if args.fps <= 0 or args.dpi <= 0:
         parser.error("--fps and --dpi are more than 0")
-    if args.window and (args.window[0] >= args.window[1] or args.window[2] >= args.window[3]):
-        parser.error("--window needs X0 < X1 and Y0 < Y1")
     return args
 
 
@@ -67,17 +54,13 @@ def main():
     files = [Snapshots(run.folder / "fields.vtkhdf") for run in runs]
     out = args.out or runs[0].folder / f"fields.{'mp4' if shutil.which('ffmpeg') else 'gif'}"
     writer = choose_writer(out, args.fps)
-    entries = {"fluid": FIELDS["fluid"][args.field], "solid": FIELDS["solid"][args.solid]}
+    entries = chosen_fields(args)
     last = min(file.times[-1] for file in files)
     times = [time for time in files[0].times if time <= last]
     rows = [[load_panel(run, file, time, entries, quiet=True) for run, file in zip(runs, files)]
             for time in times]
     panels = [panel for row in rows for panel in row]
-    given = {"fluid": args.range, "solid": args.solid_range}
-    scales = {name: colour_scale(panels, name, entries[name], given[name]) for name in entries}
-    scales = {name: scale for name, scale in scales.items() if scale}
-    if not scales:
-        raise BadFile("the snapshots hold neither fluid nor solid")
+    scales = common_scales(panels, entries, args)
     window = args.window or frame(panels)
     figure, axes = arrange(len(runs), len(runs), window)
     draw_bars(figure, scales)

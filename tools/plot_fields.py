@@ -20,13 +20,8 @@ TALLEST = 9.0  # inches: a page
 WALL_COLOUR = "0.75"
 
 
-def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
-    parser.add_argument("--time", nargs="+", type=float, metavar="T",
-                        help="instants in s; the nearest snapshots are drawn (default: four over "
-                        "the run; of several runs the last)")
+def add_look(parser):
+    """Options of what is drawn and how, for all that draws fields."""
     parser.add_argument("--field", choices=FIELDS["fluid"], default="pressure",
                         help="colours the fluid (default: %(default)s)")
     parser.add_argument("--solid", choices=FIELDS["solid"], default="von_mises",
@@ -37,14 +32,28 @@ def arguments():
                         help="of the solid's colours, in SI units")
     parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Y0", "Y1"),
                         help="part of the plane to draw, m (default: all but single drops)")
-    parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
-                        "(default: fields.png in the first run's folder)")
-    args = parser.parse_args()
+
+
+def check_look(parser, args):
     if not args.run:
         parser.print_help()
         sys.exit(1)
     if args.window and (args.window[0] >= args.window[1] or args.window[2] >= args.window[3]):
         parser.error("--window needs X0 < X1 and Y0 < Y1")
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run")
+    parser.add_argument("--time", nargs="+", type=float, metavar="T",
+                        help="instants in s; the nearest snapshots are drawn (default: four over "
+                        "the run; of several runs the last)")
+    add_look(parser)
+    parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
+                        "(default: fields.png in the first run's folder)")
+    args = parser.parse_args()
+    check_look(parser, args)
     return args
 
 
@@ -200,21 +209,33 @@ def draw_bars(figure, scales):
         bar.update_ticks()
 
 
+def chosen_fields(args):
+    return {"fluid": FIELDS["fluid"][args.field], "solid": FIELDS["solid"][args.solid]}
+
+
+def common_scales(panels, entries, args):
+    """One scale of colours for all panels, of each kind that they hold."""
+    given = {"fluid": args.range, "solid": args.solid_range}
+    scales = {name: colour_scale(panels, name, entries[name], given[name]) for name in entries}
+    scales = {name: scale for name, scale in scales.items() if scale}
+    if not scales:
+        raise BadFile("the snapshots hold neither fluid nor solid")
+    return scales
+
+
 def main():
     args = arguments()
     runs = runfiles.make_runs(args.run)
     files = [Snapshots(run.folder / "fields.vtkhdf") for run in runs]
     last = min(file.times[-1] for file in files)
     quarters = [files[0].nearest(last * k / 4) for k in (1, 2, 3, 4)]
-    times = args.time or ([last] if len(runs) > 1 else files[0].times[np.unique(quarters)])
-    entries = {"fluid": FIELDS["fluid"][args.field], "solid": FIELDS["solid"][args.solid]}
+    # Of a run that ended early several instants have the same nearest snapshot.
+    times = args.time and list({files[0].nearest(time): time for time in reversed(args.time)}.values())[::-1]
+    times = times or ([last] if len(runs) > 1 else files[0].times[np.unique(quarters)])
+    entries = chosen_fields(args)
     panels = [load_panel(run, file, time, entries) for time in times
               for run, file in zip(runs, files)]
-    given = {"fluid": args.range, "solid": args.solid_range}
-    scales = {name: colour_scale(panels, name, entries[name], given[name]) for name in entries}
-    scales = {name: scale for name, scale in scales.items() if scale}
-    if not scales:
-        raise BadFile("the snapshots hold neither fluid nor solid")
+    scales = common_scales(panels, entries, args)
     window = args.window or frame(panels)
     figure, axes = arrange(len(runs), len(panels), window)
     for place, panel in zip(axes, panels):

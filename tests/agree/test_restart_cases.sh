@@ -1,22 +1,9 @@
 #!/usr/bin/env bash
 # Every shipped case, made coarse and short: cut in the middle and continued, it ends with the bits
 # and rows of the run that was not cut; by both integrators, and Verlet at a single rate as well.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
-# In memory where that is possible: hundreds of synced files say nothing here.
-dir=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $1"
-    sed 's/^/    /' "$dir/output"
-    failures=$((failures + 1))
-}
+. tests/support/shell.sh
 
 run() { "$sphfsi" "$@" --quiet >"$dir/output" 2>&1 || fail "$*"; }
-
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 
 # CASE END SETTINGS...: ends at END s; snapshots, rows and the cut are on a grid of END/8.
 short() {

@@ -2,20 +2,10 @@
 # What a run touches, by the system's own account (strace): nothing is made, written, renamed or removed
 # outside of its folder, no other program is started, no connection is opened. And a clock that steps
 # back, wall time and monotonic, by a library in front of the C library's.
-set -u
-sphfsi=$(realpath "${SPHFSI:-./sphfsi}")
+. tests/support/shell.sh
 case=$(realpath tests/fault/tiny.cfg)
-dir=$(realpath "$(mktemp -d)")
-trap 'rm -rf "$dir"' EXIT
-failures=0 calls=0
+calls=0
 export OMP_NUM_THREADS=2
-
-fail() {
-    echo "FAILED: $1"
-    failures=$((failures + 1))
-}
-
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 
 "$sphfsi" "$case" --quiet --out "$dir/whole" >"$dir/output" 2>&1 || fail "the run itself"
 

@@ -1,16 +1,7 @@
 #!/usr/bin/env bash
 # The command line: what is printed instead of running, exit statuses, quiet, no colour in a file.
-set -u
-sphfsi=$(realpath "${SPHFSI:-./sphfsi}")
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
+. tests/support/shell.sh
 cd "$dir" || exit 1
-failures=0
-
-fail() {
-    echo "FAILED: $1"
-    failures=$((failures + 1))
-}
 
 # Exit status $1 and, on standard error, one line that has $2 in it.
 refuses() {

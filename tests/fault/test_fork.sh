@@ -1,27 +1,7 @@
 #!/usr/bin/env bash
 # What a checkpoint says of itself, runs that fork from one, and what is refused by name.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
+. tests/support/shell.sh
 case=tests/fault/tiny.cfg
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $1"
-    sed 's/^/    /' "$dir/output"
-    failures=$((failures + 1))
-}
-
-# expect STATUS WORDS ARGUMENTS...: the program ends so and says so.
-expect() {
-    local status=$1 words=$2
-    shift 2
-    "$sphfsi" "$@" >"$dir/output" 2>&1
-    local got=$?
-    [ $got = "$status" ] || fail "$*: exit status $got instead of $status"
-    grep -q -- "$words" "$dir/output" || fail "$*: does not say '$words'"
-}
 
 run=$dir/run
 expect 0 'simulated' "$case" --threads 1 --out "$run"
@@ -62,8 +42,6 @@ grep -q '"start_time": 0.02' "$dir/stiff/summary.json" || fail "summary: start_t
 [ "$(sed -n 2p "$dir/stiff/probes.csv")" = "$(tail -n 1 "$run/probes.csv")" ] ||
     fail "the first row of the fork is not the last one before it"
 [ "$(wc -l <"$dir/stiff/probes.csv")" = 102 ] || fail "rows of the fork's probes.csv"
-hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
-
 # A fork that changes nothing but where it begins goes the same way, by the folder's newest one.
 expect 0 'simulated' "$case" --threads 1 --until 0.03 --out "$dir/whole"
 expect 0 'fork from' "$case" --fork "$run" --out "$dir/same" "${go[@]}"

@@ -1,28 +1,8 @@
 #!/usr/bin/env bash
 # The program's door: exit status and sentence for wrong command lines and folders, a full disk, a
 # signal, a killed run.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
+. tests/support/shell.sh
 case=tests/fault/tiny.cfg
-dir=$(mktemp -d)
-trap 'chmod -R u+w "$dir"; rm -rf "$dir"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $1"
-    sed 's/^/    /' "$dir/output"
-    failures=$((failures + 1))
-}
-
-# expect STATUS WORDS ARGUMENTS...: the program ends so and says so.
-expect() {
-    local status=$1 words=$2
-    shift 2
-    "$sphfsi" "$@" >"$dir/output" 2>&1
-    local got=$?
-    [ $got = "$status" ] || fail "$*: exit status $got instead of $status"
-    grep -q -- "$words" "$dir/output" || fail "$*: does not say '$words'"
-}
 
 # --- command line ---
 expect 0 'usage:' --help

@@ -1,10 +1,6 @@
 #!/usr/bin/env bash
 # Settings that lead to a blow-up: refused, or accepted with a sentence that says what will go wrong.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
+. tests/support/shell.sh
 
 # says STATUS WORDS CASE SETTINGS...: explaining the case ends so and says so.
 says() {

@@ -1,17 +1,7 @@
 #!/usr/bin/env bash
 # Runs that go wrong: the guard says in one sentence where, when and why, leaves a checkpoint and a
 # snapshot, and the program ends with status 2.
-set -u
-sphfsi=${SPHFSI:-./sphfsi}
-dir=$(mktemp -d)
-trap 'rm -rf "$dir"' EXIT
-failures=0
-
-fail() {
-    echo "FAILED: $1"
-    sed 's/^/    /' "$dir/output"
-    failures=$((failures + 1))
-}
+. tests/support/shell.sh
 
 # stopped NAME WARNING SENTENCE: reads a case from the input, runs it, looks for both.
 stopped() {

@@ -19,6 +19,13 @@ struct rig {
 void rig_open(struct rig *r, const char *text, ...) __attribute__((sentinel));
 void rig_close(struct rig *r);
 
+/* For tests of solids, which have a `rig` and its solid particles `p`. */
+#define RIG_OPEN_SOLID(text, ...)                \
+    do {                                         \
+        rig_open(&rig, text, __VA_ARGS__, NULL); \
+        p = &rig.sim.kind[KIND_SOLID];           \
+    } while (0)
+
 /* Steps until the time is reached exactly; the test fails if a guard stops the run. */
 void rig_run(struct rig *r, double time);
 /* Takes `steps` time steps (batches of a lone solid), none of which ends beyond `limit`. */

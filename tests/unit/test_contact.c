@@ -13,12 +13,6 @@ static struct particles *p;
 void setUp(void) { rig_one_thread(); }
 void tearDown(void) { rig_close(&rig); }
 
-#define OPEN(text, ...)                          \
-    do {                                         \
-        rig_open(&rig, text, __VA_ARGS__, NULL); \
-        p = &rig.sim.kind[KIND_SOLID];           \
-    } while (0)
-
 #define BLOCKS                                                                                    \
     "dp = 1 cm\nend_time = 1\nintegrator = symplectic\n[contact all]\n[solid a]\nshape = box 0, " \
     "0, 0.04, 0.04\ndensity = "                                                                   \
@@ -60,8 +54,8 @@ static void contact_force(int64_t i, double f[2])
  * through the damping, the rest through friction. */
 static void test_a_pair_by_hand(void)
 {
-    OPEN(BLOCKS "shape = box 0.05, 0.05, 0.09, 0.09\n", "all.stiffness=2", "all.damping=0.1",
-         "all.friction=0.5");
+    RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.05, 0.09, 0.09\n", "all.stiffness=2",
+                   "all.damping=0.1", "all.friction=0.5");
     const int64_t a = at(0.035, 0.035), b = at(0.055, 0.055);
     for (int64_t i = 0; i < p->n; i++)
         if (p->body[i] == 1) {
@@ -111,7 +105,8 @@ static struct sums sums(void)
  * no overlap is left, and the blocks go the other way. */
 static void test_collision(void)
 {
-    OPEN(BLOCKS "shape = box 0.05, 0.01, 0.09, 0.05\nvelocity = -1, 0\n", "a.velocity=1, 0.2");
+    RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.01, 0.09, 0.05\nvelocity = -1, 0\n",
+                   "a.velocity=1, 0.2");
     const struct sums before = sums();
     double most = 0, drift = 0, leak = 0;
     while (rig.sim.state.time < 0.05) {
@@ -134,11 +129,12 @@ static void test_collision(void)
  * p = rho g H = 400 Pa. After 40 ms of damped ringing the force is the weight to 1 %. */
 static void test_block_on_a_floor(void)
 {
-    OPEN("dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[contact all]\ndamping = 1\n"
-         "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
-         "[solid a]\nshape = box 0, 0, 0.06, 0.04\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
-         "artificial_viscosity = 1\n",
-         NULL);
+    RIG_OPEN_SOLID(
+        "dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[contact all]\ndamping = 1\n"
+        "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
+        "[solid a]\nshape = box 0, 0, 0.06, 0.04\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+        "artificial_viscosity = 1\n",
+        NULL);
     rig_run(&rig, 0.3);
     double carried = 0, overlap = 0;
     for (int64_t i = 0; i < p->n; i++) {
@@ -166,7 +162,7 @@ static void test_work_of_a_moving_wall(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        OPEN(press, integrators[k]);
+        RIG_OPEN_SOLID(press, integrators[k]);
         rig_run(&rig, 0.1);
         const struct ledger row = simulation_ledger(&rig.sim);
         /* In a row: the block from centre to centre of its outer particles, and two contacts, each as
@@ -184,8 +180,8 @@ static void test_out_of_reach_changes_no_bit(void)
 {
     uint64_t hash[2];
     for (int k = 0; k < 2; k++) {
-        OPEN(BLOCKS "shape = box 0.1, 0, 0.14, 0.04\nvelocity = 0, 1\n", "numerics.fixed_step=2e-5",
-             "a.artificial_viscosity=0.1");
+        RIG_OPEN_SOLID(BLOCKS "shape = box 0.1, 0, 0.14, 0.04\nvelocity = 0, 1\n",
+                       "numerics.fixed_step=2e-5", "a.artificial_viscosity=0.1");
         if (k) rig.sim.solid.contact = NULL;
         for (int64_t i = 0; i < p->n; i++) p->ux[i] = 1e-4 * sin(100 * p->X[i] + 70 * p->Y[i]);
         rig_run(&rig, 0.005);
@@ -199,9 +195,9 @@ static void test_same_bits(void)
 {
     uint64_t hash[4];
     for (int k = 0; k < 4; k++) {
-        OPEN(BLOCKS "shape = box 0.042, 0.011, 0.082, 0.051\nvelocity = -2, 0\n"
-                    "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n",
-             "a.velocity=1, -0.5", "all.friction=0.3", "all.damping=0.1");
+        RIG_OPEN_SOLID(BLOCKS "shape = box 0.042, 0.011, 0.082, 0.051\nvelocity = -2, 0\n"
+                              "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n",
+                       "a.velocity=1, -0.5", "all.friction=0.3", "all.damping=0.1");
         if (k == 1) rig.sim.solid.threads = 3;
         double most = 0;
         for (int n = 0; n < 40; n++) {
@@ -222,7 +218,7 @@ static void test_restart(void)
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
         struct image image = {0};
-        OPEN(text, integrators[k], "all.friction=0.3");
+        RIG_OPEN_SOLID(text, integrators[k], "all.friction=0.3");
         rig_run(&rig, 0.004);
         TEST_ASSERT_TRUE(sums().contact > 0);
         TEST_ASSERT_EQUAL_INT(ERR_OK,
@@ -230,7 +226,7 @@ static void test_restart(void)
         checkpoint_seal(&image);
         rig_run(&rig, 0.006);
         const uint64_t whole = simulation_hash(&rig.sim);
-        OPEN(text, integrators[k], "all.friction=0.3");
+        RIG_OPEN_SOLID(text, integrators[k], "all.friction=0.3");
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &rig.sim, &rig.diag),
                                       rig.diag.text);
         rig_run(&rig, 0.006);
@@ -243,10 +239,11 @@ static void test_restart(void)
  * contact to the round-off of the fluid's pairs in single precision. */
 static void test_with_fluid(void)
 {
-    OPEN(BLOCKS "shape = box 0.041, 0, 0.081, 0.04\n"
-                "[fluid drop]\nshape = box -0.05, 0, 0, 0.04\nsound_speed = 20\nvelocity = 1, 0\n"
-                "[domain]\nlower = -0.2, -0.1\nupper = 0.3, 0.15\n",
-         "numerics.multirate=on", "numerics.interface=held"); /* nothing owed between them */
+    RIG_OPEN_SOLID(
+        BLOCKS "shape = box 0.041, 0, 0.081, 0.04\n"
+               "[fluid drop]\nshape = box -0.05, 0, 0, 0.04\nsound_speed = 20\nvelocity = 1, 0\n"
+               "[domain]\nlower = -0.2, -0.1\nupper = 0.3, 0.15\n",
+        "numerics.multirate=on", "numerics.interface=held"); /* nothing owed between them */
     const struct sums before = sums();
     double most = 0;
     while (rig.sim.state.time < 0.02) {
@@ -287,15 +284,16 @@ static void test_bad_input(void)
 /* Sections that name bodies hold for those only, and differ from one that names nobody. */
 static void test_between(void)
 {
-    OPEN(TWO "between = b, w\nstiffness = 3\n", NULL);
+    RIG_OPEN_SOLID(TWO "between = b, w\nstiffness = 3\n", NULL);
     const struct contact_law *const law = rig.sim.contact.law; /* [a, b][a, b, w, v] */
     TEST_ASSERT_EQUAL_DOUBLE(1e6, law[0 * 4 + 1].stiffness);
     TEST_ASSERT_EQUAL_DOUBLE(2e6, law[0 * 4 + 2].stiffness);
     TEST_ASSERT_EQUAL_DOUBLE(3e6, law[1 * 4 + 2].stiffness);
     TEST_ASSERT_EQUAL_DOUBLE(1e6, law[1 * 4 + 3].stiffness);
     TEST_ASSERT_FALSE(law[0].on);
-    OPEN(BLOCKS "shape = box 0.05, 0, 0.09, 0.04\n[wall w]\nshape = box 0, -0.1, 0.1, -0.05\n",
-         "all.between=a, b");
+    RIG_OPEN_SOLID(BLOCKS
+                   "shape = box 0.05, 0, 0.09, 0.04\n[wall w]\nshape = box 0, -0.1, 0.1, -0.05\n",
+                   "all.between=a, b");
     TEST_ASSERT_TRUE(rig.sim.kind[KIND_WALL].n == 0 && rig.sim.contact.n_walls == 0);
 }
 

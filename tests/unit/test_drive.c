@@ -13,12 +13,6 @@ static struct particles *p;
 void setUp(void) { rig_one_thread(); }
 void tearDown(void) { rig_close(&rig); }
 
-#define OPEN(text, ...)                          \
-    do {                                         \
-        rig_open(&rig, text, __VA_ARGS__, NULL); \
-        p = &rig.sim.kind[KIND_SOLID];           \
-    } while (0)
-
 #define BAR                                                                                        \
     "dp = 1 cm\nend_time = 10\n[solid bar]\nshape = box 0, 0, 0.2, 0.04\ndensity = 1000\nyoung = " \
     "1e6\n"                                                                                        \
@@ -40,7 +34,7 @@ static void test_loads_by_hand(void)
         "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\nforce = 30, 0\nhistory = t/0.5\n"
         "[load top]\nbody = bar\nshape = box 0, 0.03, 0.1, 0.04\n"
         "traction = 0, 1000*x\nhistory = sin(2*t)\n";
-    OPEN(text, "dp=1 cm");
+    RIG_OPEN_SOLID(text, "dp=1 cm");
     accelerations(0.2);
     int loaded = 0;
     for (int64_t i = 0; i < p->n; i++) {
@@ -61,9 +55,10 @@ static void test_work_of_a_load(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        OPEN(BAR "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\nforce = 0, 20\nhistory = "
-                 "min(t/0.02, 1)\n",
-             integrators[k]);
+        RIG_OPEN_SOLID(
+            BAR "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\nforce = 0, 20\nhistory = "
+                "min(t/0.02, 1)\n",
+            integrators[k]);
         rig_run(&rig, 0.05);
         const struct ledger row = simulation_ledger(&rig.sim);
         const double late =
@@ -80,9 +75,10 @@ static void test_work_of_a_load(void)
  * by less than half a percent of the square of the strain, 1e-4. */
 static void test_bar_under_traction(void)
 {
-    OPEN(BAR "clamp = box 0, 0, 0.02, 0.04\ndamping_time = 5 ms\n"
-             "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\ntraction = 100, 0\n",
-         NULL);
+    RIG_OPEN_SOLID(BAR
+                   "clamp = box 0, 0, 0.02, 0.04\ndamping_time = 5 ms\n"
+                   "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\ntraction = 100, 0\n",
+                   NULL);
     rig_run(&rig, 0.25);
     for (int64_t i = 0; i < p->n; i++) {
         if (p->X[i] < 0.19) continue;
@@ -99,7 +95,7 @@ static void test_bar_under_traction(void)
 /* A clamp that moves takes the body along; a steady motion is no motion to the body itself. */
 static void test_clamp_moves_the_body(void)
 {
-    OPEN(SHAKEN "poly_x = 0.5\npoly_y = -0.2\n", "bar.velocity=0.5, -0.2");
+    RIG_OPEN_SOLID(SHAKEN "poly_x = 0.5\npoly_y = -0.2\n", "bar.velocity=0.5, -0.2");
     rig_run(&rig, 0.1);
     for (int64_t i = 0; i < p->n; i++) {
         assert_near(1e-12, 0.05, p->ux[i], "ux");
@@ -113,7 +109,7 @@ static void test_work_of_a_clamp(void)
 {
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
-        OPEN(SHAKEN "poly_y = 0, 5\n", integrators[k]);
+        RIG_OPEN_SOLID(SHAKEN "poly_y = 0, 5\n", integrators[k]);
         rig_run(&rig, 0.05);
         const struct ledger row = simulation_ledger(&rig.sim);
         TEST_ASSERT_TRUE(rig.sim.state.wall_work > 0.1);
@@ -128,7 +124,7 @@ static void test_work_of_a_clamp(void)
 
 static uint64_t bits_after(const char *text, const char *integrator, const char *velocity)
 {
-    OPEN(text, integrator, velocity);
+    RIG_OPEN_SOLID(text, integrator, velocity);
     rig_run(&rig, 0.01);
     /* But for who is called free. */
     for (int64_t i = 0; i < p->n; i++) p->free[i] = 1;
@@ -158,14 +154,14 @@ static void test_restart_and_threads(void)
     const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
     for (int k = 0; k < 2; k++) {
         struct image image = {0};
-        OPEN(both, integrators[k]);
+        RIG_OPEN_SOLID(both, integrators[k]);
         rig_run(&rig, 0.01);
         TEST_ASSERT_EQUAL_INT(ERR_OK,
                               checkpoint_capture(&image, &rig.sim, "case", "test", &rig.diag));
         checkpoint_seal(&image);
         rig_run(&rig, 0.02);
         const uint64_t whole = simulation_hash(&rig.sim);
-        OPEN(both, integrators[k]);
+        RIG_OPEN_SOLID(both, integrators[k]);
         rig.sim.solid.threads = 3;
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &rig.sim, &rig.diag),
                                       rig.diag.text);

@@ -12,12 +12,6 @@ static struct particles *p;
 void setUp(void) { rig_one_thread(); }
 void tearDown(void) { rig_close(&rig); }
 
-#define OPEN(text, ...)                          \
-    do {                                         \
-        rig_open(&rig, text, __VA_ARGS__, NULL); \
-        p = &rig.sim.kind[KIND_SOLID];           \
-    } while (0)
-
 static const char *const spacings[] = {"floor.dp=10 mm", "floor.dp=5 mm", "floor.dp=10 mm/3"};
 
 /* Water 0.2 m deep over a floor of 0.4 m that is a solid. */
@@ -34,7 +28,7 @@ static void test_force_of_still_water(void)
 {
     double coarse[2] = {0};
     for (int k = 0; k < 3; k++) {
-        OPEN(tank, spacings[k]);
+        RIG_OPEN_SOLID(tank, spacings[k]);
         TEST_ASSERT_EQUAL_INT64(120 * (k + 1) * (k + 1), p->n);
         rig_evaluate(&rig);
         double fx = 0, fy = 0, middle = 0;
@@ -57,9 +51,10 @@ static void test_mass_and_step(void)
 {
     double step[3], mass[3];
     for (int k = 0; k < 3; k++) {
-        OPEN("dp = 10 mm\nend_time = 1\n[solid floor]\nshape = box 0, -0.03, 0.4, 0\n"
-             "clamp = box 0, -0.03, 0.04, 0\ndensity = 2000\nyoung = 1e7\npoisson = 0.3\n",
-             spacings[k]);
+        RIG_OPEN_SOLID(
+            "dp = 10 mm\nend_time = 1\n[solid floor]\nshape = box 0, -0.03, 0.4, 0\n"
+            "clamp = box 0, -0.03, 0.04, 0\ndensity = 2000\nyoung = 1e7\npoisson = 0.3\n",
+            spacings[k]);
         step[k] = rig.sim.solid.stable_step * (k + 1);
         mass[k] = rig.sim.solid.body[0].mass * (double)p->n;
     }
@@ -73,12 +68,12 @@ static void test_mass_and_step(void)
  * pairs in double precision. */
 static void test_momentum(void)
 {
-    OPEN("dp = 10 mm\nend_time = 1\nprecision = double\nintegrator = symplectic\n"
-         "[fluid drop]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nvelocity = 1, 0.1\n"
-         "[solid plate]\nshape = box 0.11, -0.05, 0.13, 0.15\ndp = 5 mm\n"
-         "density = 2000\nyoung = 1e6\npoisson = 0.3\nviscosity_form = symmetric\n"
-         "[domain]\nlower = -0.2, -0.2\nupper = 0.4, 0.3\n",
-         "plate.gravity=off");
+    RIG_OPEN_SOLID("dp = 10 mm\nend_time = 1\nprecision = double\nintegrator = symplectic\n"
+                   "[fluid drop]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nvelocity = 1, 0.1\n"
+                   "[solid plate]\nshape = box 0.11, -0.05, 0.13, 0.15\ndp = 5 mm\n"
+                   "density = 2000\nyoung = 1e6\npoisson = 0.3\nviscosity_form = symmetric\n"
+                   "[domain]\nlower = -0.2, -0.2\nupper = 0.4, 0.3\n",
+                   "plate.gravity=off");
     const struct ledger before = simulation_ledger(&rig.sim);
     rig_run(&rig, 0.03);
     const struct ledger after = simulation_ledger(&rig.sim);
