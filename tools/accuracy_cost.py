@@ -70,7 +70,7 @@ def run_all(points, study, args, again):
                (again(p["name"]) or not cached_record(args.runs, p["key"]))}
     missing = {} if args.cached else dict(reversed(missing.items()))
     if missing:
-        cost = expected_costs(points, study, args.runs, args.data)
+        cost = expected_costs(points, study, args.runs, args.data, False)
         print(f"{len(missing)} points to run; {forecast(missing, cost, args.jobs)}", flush=True)
         started, done = time.monotonic(), []
 
@@ -156,7 +156,7 @@ def collect(records, study, data):
 
 
 def list_points(points, study, args):
-    cost = expected_costs(points, study, args.runs, args.data)
+    cost = expected_costs(points, study, args.runs, args.data, True)
     for p in points:
         record = cached_record(args.runs, p["key"])
         state = record["outcome"] if record else "missing" if p["key"] else "refused"

@@ -195,8 +195,8 @@ def give_key(case, p, program):
 
 def give_keys(points, study):
     program = program_hash()
-    for p in points:
-        give_key(study["case"][p["case"]], p, program)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda p: give_key(study["case"][p["case"]], p, program), points))
     return program
 
 
@@ -230,9 +230,10 @@ def foreseen(case, p):
     return float(found[1]) * {"s": 1, "min": 60, "h": 3600}[found[2]] if found else None
 
 
-def expected_costs(points, study, runs, data):
+def expected_costs(points, study, runs, data, ask_program):
     """{key: CPU s} of the points that are not cached: as the last collected results tell of the same point,
-    else as the program foresees it with one thread, which is asked once and kept."""
+    else as the program foresees it with one thread, which is asked (`ask_program`) once and kept; not just
+    before a run, whose first timings that would disturb."""
     kept, before = runs / "forecasts.json", {}
     try:
         known = json.loads(kept.read_text())
@@ -246,7 +247,7 @@ def expected_costs(points, study, runs, data):
         pass
     missing = {p["key"]: p for p in points if p["key"] and not cached_record(runs, p["key"])}
     once = {key: before.get((p["name"], tuple(p["set"])), known.get(key)) for key, p in missing.items()}
-    unknown = [key for key in once if once[key] is None]
+    unknown = [key for key in once if once[key] is None and ask_program]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         once.update(zip(unknown, pool.map(
             lambda key: foreseen(study["case"][missing[key]["case"]], missing[key]), unknown)))

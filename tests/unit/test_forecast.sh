@@ -51,6 +51,11 @@ key=cfl
 [ "$(value --set accuracy=draft --set numerics.cfl=0.3)" = 0.3 ] || fail "a preset overrides a key"
 [ "$(value --set accuracy=draft --set integrator=verlet)" = "$(value --set integrator=verlet)" ] ||
     fail "a step for leapfrog is given to verlet"
+"$SPHFSI" "${still[@]}" --until 0.01 --set accuracy=draft --out "$work/draft" >"$work/said" 2>&1 ||
+    fail "$(cat "$work/said")"
+grep -q '^expected error at accuracy = draft, from the study in docs/accuracy.md' "$work/said" ||
+    fail "a run with a preset does not say what error to expect: $(cat "$work/said")"
+grep -q '^ *Still water, pressure (L2): [0-9]' "$work/said" || fail "without evidence: $(cat "$work/said")"
 key=sound_factor
 [ "$(value --set accuracy=fine)" = 20 ] || fail "fine is not what presets.def says"
 "$SPHFSI" --effective cases/still_water.cfg --set accuracy=fast >/dev/null 2>"$work/error" &&
