@@ -372,3 +372,8 @@ void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
     }
     session_say(o, "%s", at > 0 ? line : "  the study has no such scene");
 }
+
+void forecast_say_preset(const struct scene *s, const struct sphfsi_options *o)
+{
+    if (scene_given(s, SECTION_top, 0, "accuracy")) forecast_say_errors(s, o);
+}

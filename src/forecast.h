@@ -40,6 +40,9 @@ enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct d
 /* Says what error the study has found with the scene's `accuracy`, in cases of its kind. */
 void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o);
 
+/* The same where the case names its `accuracy`. */
+void forecast_say_preset(const struct scene *s, const struct sphfsi_options *o);
+
 /* The whole run of the scene, or of the same with dp times `scale`. */
 struct forecast forecast_run(const struct unit_costs *c, const struct simulation *s, int threads,
                              double scale);

@@ -3,7 +3,6 @@
 
 #include "checkpoint.h"
 #include "forecast.h"
-#include "params.h"
 #include "probes.h"
 #include "report.h"
 #include "run_change.h"
@@ -490,8 +489,7 @@ static enum err begin(struct run *r)
     r->record.start_time = time;
     r->record.start_particle_steps = r->s->state.particle_steps;
     r->wall_start = r->wall_checkpoint = wall_clock();
-    if (scene_given(&r->session.scene, SECTION_top, 0, "accuracy"))
-        forecast_say_errors(&r->session.scene, r->options);
+    forecast_say_preset(&r->session.scene, r->options);
     return ERR_OK;
 }
 
