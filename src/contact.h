@@ -48,6 +48,7 @@ struct contact {
     double *vx, *vy;             /* [points of walls] with power: velocities now */
     struct motion_state *motion; /* [n_walls] now */
     double omega2, damping;      /* what contact can add to the largest eigenvalues of the solid */
+    double seconds;              /* that its forces have taken since they were last asked for */
 };
 
 /* Laws from the [contact] sections, surface points of solids and walls. */

@@ -11,6 +11,12 @@ double phase_add(struct simulation *s, enum phase phase, double since)
     if (!phase_runs(phase, s->effects)) return since; /* what there is goes to the next one */
     const double now = wall_clock();
     s->phase_seconds[phase] += now - since;
+    if (phase == PHASE_solid && s->effects & FX_CONTACT) {
+        /* Its forces are found among the solid's sub-steps. */
+        s->phase_seconds[PHASE_solid] -= s->contact.seconds;
+        s->phase_seconds[PHASE_contact] += s->contact.seconds;
+        s->contact.seconds = 0;
+    }
     return now;
 }
 
@@ -106,14 +112,27 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
 /* Steps of a lone solid that are taken between two looks at its state. */
 enum { SOLID_BATCH = LOOK_INTERVAL };
 
+/* Bounds of a lone solid; returns the one that binds. */
+static enum bound lone_bounds(struct simulation *s)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
+    if (fixed > 0) {
+        s->dt_bound[BOUND_fixed] = fixed;
+        return BOUND_fixed;
+    }
+    s->dt_bound[BOUND_solid] = s->dt_lone_solid;
+    if (!(s->effects & FX_CONTACT)) return BOUND_solid;
+    s->dt_bound[BOUND_contact] = s->dt_solid;
+    return BOUND_contact;
+}
+
 void solid_only_step(struct simulation *s, double t_limit)
 {
     struct state *const st = &s->state;
     const double start = wall_clock();
-    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
-    const double fixed = s->scene->numerics.fixed_step;
-    s->dt_bound[fixed > 0 ? BOUND_fixed : BOUND_solid] = fixed > 0 ? fixed : s->dt_solid;
-    const double bound = fixed > 0 ? fixed : s->dt_solid;
+    const enum bound binding = lone_bounds(s);
+    const double bound = s->dt_bound[binding];
     const bool pushed = s->push[KIND_SOLID].at != NULL;
     if (pushed) find_push(s, KIND_SOLID, st->time);
     const int batch = pushed ? 1 : SOLID_BATCH;
@@ -140,6 +159,6 @@ void solid_only_step(struct simulation *s, double t_limit)
     st->steps += n;
     st->solid_substeps += n;
     st->particle_steps += n * s->kind[KIND_SOLID].n;
-    st->bound_steps[cut ? BOUND_output : fixed > 0 ? BOUND_fixed : BOUND_solid] += n;
+    st->bound_steps[cut ? BOUND_output : binding] += n;
     s->substeps = 1;
 }

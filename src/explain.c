@@ -109,9 +109,13 @@ static void say_bounds(const struct simulation *s, const struct sphfsi_options *
         session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
                     k == binding ? "  <- binds" : "");
     }
-    if (s->kind[KIND_SOLID].n > 0)
-        session_say(o, "  the solid is stable up to %.4g s: %d steps of it in one of the fluid",
-                    s->dt_solid, s->substeps);
+    if (s->kind[KIND_SOLID].n == 0) return;
+    session_say(o, "  the solid is stable up to %.4g s", s->dt_solid);
+    if (s->effects & FX_COUPLING)
+        session_say(o, "  %d step%s of it in one of the fluid", s->substeps,
+                    s->substeps == 1 ? "" : "s");
+    if (s->effects & FX_CONTACT)
+        session_say(o, "  without contact it would be up to %.4g s", s->dt_lone_solid);
 }
 
 static void text_of_seconds(double seconds, char text[32])

@@ -196,7 +196,8 @@ static void set_costs(struct unit_costs *c, struct least *l, const struct simula
     all += l->phase[PHASE_sort];
     for (int k = 0; k < PHASE_COUNT; k++) c->phase_share[k] = all > 0 ? l->phase[k] / all : 0;
     all = min2(all, l->step);
-    const double solid = n_fluid > 0 ? all * c->phase_share[PHASE_solid] : all;
+    const double solid =
+        n_fluid > 0 ? all * (c->phase_share[PHASE_solid] + c->phase_share[PHASE_contact]) : all;
     c->evaluations = (double)l->evaluations / steps;
     if (n_solid > 0 && l->substeps > 0) c->solid = solid * steps / (double)l->substeps / n_solid;
     if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;

@@ -56,6 +56,7 @@ struct simulation {
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
     double dt_solid;              /* stable step of the solid times its safety, s */
+    double dt_lone_solid;         /* the same as if there were no contact */
     int substeps;                 /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
     double fluid_speed2; /* of the fastest fluid particle, squared, (m/s)^2 */

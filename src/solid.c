@@ -441,7 +441,12 @@ static void forces_loop(const struct solid *s, struct particles *p)
 /* What acts on the solid from outside, each a pass of its own. */
 static void outer_forces(const struct solid *s, struct particles *p, double time)
 {
-    if (s->contact) contact_forces(s->contact, s, p, time);
+    if (s->contact) {
+        const double start = wall_clock();
+        contact_forces(s->contact, s, p, time);
+#pragma omp master
+        s->contact->seconds += wall_clock() - start;
+    }
     if (s->drive) {
 #pragma omp single
         drive_forces(s->drive, s, p, time);

@@ -61,6 +61,7 @@ struct solid {
     double omega_max;        /* largest frequency of the linearised operator, 1/s */
     double damping_max;      /* largest rate of its viscous part, 1/s */
     double stable_step;      /* the largest stable step that follows from both, s */
+    double lone_step;        /* the same as if there were no contact, s */
     double paper_step;       /* Eq. 29, s */
     struct meeting *meeting; /* of the threads between two loops */
     double *scratch[4];      /* room for the search of the step */

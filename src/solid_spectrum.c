@@ -144,7 +144,7 @@ double solid_stable_step(const struct solid *s, struct particles *p, double *ome
 
 void solid_find_step(struct solid *s, struct particles *p)
 {
-    s->stable_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
+    s->stable_step = s->lone_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
 }
 
 static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }

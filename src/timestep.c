@@ -49,6 +49,13 @@ static double bound_viscous(const struct simulation *s, const struct fluid_extre
 static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
+    if (s->effects & FX_MULTIRATE) return (double)INFINITY;
+    return s->effects & FX_CONTACT ? s->dt_lone_solid : s->dt_solid;
+}
+
+static double bound_contact(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
     return s->effects & FX_MULTIRATE ? (double)INFINITY : s->dt_solid;
 }
 
@@ -92,7 +99,7 @@ double timestep_fluid_limit(const struct simulation *s)
     static const struct fluid_extremes rest = {0};
     double limit = (double)INFINITY;
     for (int k = 0; k < BOUND_COUNT; k++)
-        if (k != BOUND_solid) limit = min2(limit, bound_at(s, k, &rest));
+        if (k != BOUND_solid && k != BOUND_contact) limit = min2(limit, bound_at(s, k, &rest));
     return limit;
 }
 
@@ -125,7 +132,9 @@ int timestep_substeps(struct simulation *s, double dt)
 
 void timestep_set_solid(struct simulation *s)
 {
-    s->dt_solid = s->scene->numerics.solid_safety * s->solid.stable_step * s->state.solid_slowing;
+    const double safety = s->scene->numerics.solid_safety;
+    s->dt_solid = safety * s->solid.stable_step * s->state.solid_slowing;
+    s->dt_lone_solid = safety * s->solid.lone_step * s->state.solid_slowing;
 }
 
 /* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses up what

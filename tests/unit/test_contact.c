@@ -266,6 +266,33 @@ static void refused(const char *text, const char *why)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
 }
 
+/* Contact's share of the step is told apart from the solid's: by hand, with n springs on a particle (T-34),
+ * and without contact the solid's bound alone. So is its time. */
+static void test_bound_and_phase_of_its_own(void)
+{
+    rig_open(&rig, BLOCKS "shape = box 0.2, 0, 0.24, 0.04\n", NULL);
+    const struct simulation *const s = &rig.sim;
+    const double omega2 = square(s->solid.omega_max) + 2 * 3 * 1e6 / 0.1;
+    assert_near(1e-15, 0.9 * solid_step_of(omega2, s->solid.damping_max), s->dt_solid, "bound");
+    assert_near(1e-15, 0.9 * solid_step_of(square(s->solid.omega_max), s->solid.damping_max),
+                s->dt_lone_solid, "bound of the solid alone");
+    TEST_ASSERT_TRUE(s->dt_solid < 0.99 * s->dt_lone_solid);
+    rig_steps(&rig, 10, 1);
+    TEST_ASSERT_EQUAL_INT64(s->state.steps, s->state.bound_steps[BOUND_contact]);
+    TEST_ASSERT_TRUE(s->dt_bound[BOUND_contact] == s->dt_solid);
+    TEST_ASSERT_TRUE(s->dt_bound[BOUND_solid] == s->dt_lone_solid);
+    TEST_ASSERT_TRUE(s->phase_seconds[PHASE_contact] > 0 && s->phase_seconds[PHASE_solid] > 0);
+    TEST_ASSERT_TRUE(s->contact.seconds == 0);
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.04, 0.04\n"
+             "density = 1000\nyoung = 2e6\npoisson = 0.3\n",
+             NULL);
+    rig_steps(&rig, 10, 1);
+    TEST_ASSERT_TRUE(s->dt_solid == s->dt_lone_solid && isinf(s->dt_bound[BOUND_contact]));
+    TEST_ASSERT_EQUAL_INT64(s->state.steps, s->state.bound_steps[BOUND_solid]);
+    TEST_ASSERT_TRUE(s->phase_seconds[PHASE_contact] == 0);
+}
+
 static void test_bad_input(void)
 {
 #define TWO                                                                               \
@@ -308,6 +335,7 @@ int main(void)
     RUN_TEST(test_same_bits);
     RUN_TEST(test_restart);
     RUN_TEST(test_with_fluid);
+    RUN_TEST(test_bound_and_phase_of_its_own);
     RUN_TEST(test_bad_input);
     RUN_TEST(test_between);
     return UNITY_END();

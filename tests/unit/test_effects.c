@@ -53,6 +53,22 @@ static const struct {
      "line 6: [solid s]"},
     {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_IMPEDANCE,
      "line 8: [solid s] density"},
+    {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_KELVIN_VOIGT, EFFECT_KELVIN_VOIGT,
+     "line 10: [solid s] damping_time"},
+    {TOP PLAIN_SOLID "[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\njoined = s\n",
+     FX_SOLID | FX_JOINED, EFFECT_JOINED, "line 13: [solid t] joined"},
+    {TOP PLAIN_SOLID "[contact c]\n[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\n",
+     FX_SOLID | FX_CONTACT, EFFECT_CONTACT, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID "[contact c]\n" WALL, FX_SOLID | FX_CONTACT | FX_CONTACT_WALL,
+     EFFECT_CONTACT_WALL, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID "[load l]\nbody = s\nshape = box 0.05, 0.12, 0.06, 0.16\nforce = 1, 0\n",
+     FX_SOLID | FX_LOAD, EFFECT_LOAD, "line 10: [load l]"},
+    {TOP PLAIN_SOLID "clamp = box 0.05, 0.12, 0.07, 0.16\nclamp_motion = m\n[motion m]\n",
+     FX_SOLID | FX_CLAMP_MOTION, EFFECT_CLAMP_MOTION, "line 11: [solid s] clamp_motion"},
+    {TOP FLUID WALL "[probe p]\nquantity = force\nbody = bed\n", FX_FLUID | FX_WALL | FX_WALL_FORCE,
+     EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
+    {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
+    {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
 };
 
 static struct rig rig;
@@ -62,10 +78,13 @@ void tearDown(void) { rig_close(&rig); }
 
 static void test_the_set_follows_from_the_case(void)
 {
+    unsigned tested = 1u << EFFECT_MULTIRATE; /* follows from the bounds: test_timestep.c */
     for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         rig_open(&rig, scenes[k].text, NULL);
         /* The default integrator is an effect of the fluid. */
-        const unsigned integrator = scenes[k].effects & FX_FLUID ? FX_LEAPFROG : 0;
+        const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
+        const unsigned integrator = by_default ? FX_LEAPFROG : 0;
+        tested |= 1u << scenes[k].effect;
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(scenes[k].effects | integrator,
                                         rig.sim.effects & ~(unsigned)FX_MULTIRATE, scenes[k].text);
         struct effect_caller by;
@@ -74,6 +93,8 @@ static void test_the_set_follows_from_the_case(void)
         effect_caller_text(&rig.scene, &by, text);
         TEST_ASSERT_EQUAL_STRING(scenes[k].caller, text);
     }
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        TEST_ASSERT_TRUE_MESSAGE(tested & (1u << k), effect_table[k].name);
 }
 
 static void test_a_set_is_named_as_the_caller(void)
@@ -129,6 +150,7 @@ static void test_phases_run_by_need(void)
     check_phases(TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\nshifting = 1\n",
                  "sort lanes slope fluid shift update output ");
     check_phases(TOP SOLID, "solid update output ");
+    check_phases(TOP SOLID "[contact c]\n" WALL, "solid contact update output ");
     check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid update output ");
 }
 
