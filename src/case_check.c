@@ -4,6 +4,7 @@
 #include "case.h"
 
 #include "effects.h"
+#include "expr.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -104,6 +105,68 @@ static enum err no_such(struct reader *r, int line, const char *what, const char
     return bad_line(r, line, "%s = %.60s: no [%s] of that name", what, given, word);
 }
 
+/* A key that says something to some kinds of motion only. */
+static enum err check_motion_keys(struct reader *r, const struct scene_motion *m)
+{
+#define KIND(kind) (1u << MOTION_##kind)
+    static const struct {
+        const char *key, *kinds;
+        unsigned of;
+    } owned[] = {
+        {"velocity", "velocity", KIND(VELOCITY)},
+        {"poly_x", "polynomial", KIND(POLYNOMIAL)},
+        {"poly_y", "polynomial", KIND(POLYNOMIAL)},
+        {"amplitude", "sine", KIND(SINE)},
+        {"period", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
+        {"phase", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
+        {"centre", "rotation and expression", KIND(ROTATION) | KIND(EXPRESSION)},
+        {"angle", "rotation", KIND(ROTATION)},
+        {"angle_amplitude", "rotation", KIND(ROTATION)},
+        {"file", "table and rotation", KIND(TABLE) | KIND(ROTATION)},
+        {"x", "expression", KIND(EXPRESSION)},
+        {"y", "expression", KIND(EXPRESSION)},
+        {"turn", "expression", KIND(EXPRESSION)},
+    };
+#undef KIND
+    for (size_t k = 0; k < COUNT_OF(owned); k++) {
+        const struct param *const p = param_find(SECTION_motion, owned[k].key);
+        if (owned[k].of & (1u << m->kind) || param_is_default(p, m)) continue;
+        char name[SCENE_NAME];
+        param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
+        const struct scene_given *const given =
+            scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), owned[k].key);
+        return bad_line(r, given ? given->line : m->common.line,
+                        "[motion %s] `%s` is of kind = %s, and this one is of kind = %s",
+                        m->common.name, owned[k].key, owned[k].kinds, name);
+    }
+    return ERR_OK;
+}
+
+/* Finite with its derivatives at the start and at a thousand times until the end. */
+static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
+{
+    enum { TIMES = 1000 };
+    const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
+    if (!m->x.e[0] && !m->y.e[0] && !m->turn.e[0])
+        return bad_line(r, m->common.line,
+                        "[motion %s] kind = expression needs `x`, `y` or `turn`, expressions in t",
+                        m->common.name);
+    const double length = fmin(r->scene->top.end_time, m->stop) - m->start;
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        for (int n = 0; each[k]->e[0] && n <= TIMES; n++) {
+            const double t = fmax(length, 0) * n / TIMES;
+            const struct expr_jet at = expr_jet_at(each[k]->e[0], t);
+            if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
+                return bad_line(
+                    r, m->common.line,
+                    "[motion %s] %.200s is not finite, or its velocity or acceleration is "
+                    "not, at t = %g s since start",
+                    m->common.name, expr_source(each[k]->e[0]), t);
+        }
+    }
+    return ERR_OK;
+}
+
 static enum err check_motions(struct reader *r)
 {
     const struct scene *s = r->scene;
@@ -130,6 +193,8 @@ static enum err check_motions(struct reader *r)
         if (!(m->start < m->stop))
             return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                             m->common.name, m->start, m->stop);
+        TRY(check_motion_keys(r, m));
+        if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
         if (m->kind == MOTION_SINE && m->period == 0)
             return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
         if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)

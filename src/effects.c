@@ -170,32 +170,13 @@ static enum err check_rule(const struct scene *s, const struct rule *rule, struc
                      s->path, text, name, its, place, rule->reason);
 }
 
-static bool is_default(const struct param *p, const void *section)
-{
-    const char *const value = (const char *)section + p->offset;
-    double number;
-    int choice;
-    switch (p->type) {
-    case PARAM_REAL: return memcpy(&number, value, sizeof number), number == p->number_default[0];
-    case PARAM_INTEGER:
-    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number_default[0];
-    case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
-    case PARAM_VECTOR:
-    case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR:
-    case PARAM_SHAPES:
-    case PARAM_NUMBERS: break;
-    }
-    return true;
-}
-
 static enum err check_owned(const struct scene *s, const struct owned *row, struct diag *d)
 {
     const struct param *const p = param_find(row->section, row->key);
     struct effect_caller by;
     if (effect_called(s, row->effect, &by)) return ERR_OK;
     for (int k = 0; k < section_count(s, row->section); k++) {
-        if (is_default(p, section_at(s, row->section, k))) continue;
+        if (param_is_default(p, section_at(s, row->section, k))) continue;
         char text[EFFECT_CALLER_TEXT];
         by = (struct effect_caller){row->section, k, row->key};
         effect_caller_text(s, &by, text);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Recursive descent to a small stack program; constant parts are folded while they are read, so a
  * value without x and y is a program of one number. */
-#include "expr.h"
+#include "expr_ops.h"
 #include "scene.h"
 
 #include <ctype.h>
@@ -10,42 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum op_code {
-    OP_NUMBER,
-    OP_X,
-    OP_Y,
-    OP_ADD,
-    OP_SUB,
-    OP_MUL,
-    OP_DIV,
-    OP_POW,
-    OP_MIN,
-    OP_MAX, /* two operands, from OP_ADD on */
-    OP_NEG,
-    OP_SQRT,
-    OP_SIN,
-    OP_COS,
-    OP_TAN,
-    OP_SINH,
-    OP_COSH,
-    OP_TANH,
-    OP_EXP,
-    OP_LOG,
-    OP_ROUND,
-    OP_ABS
-};
-
-struct op {
-    enum op_code code;
-    double value;
-};
-
-struct expr {
-    int n;
-    struct op *op;
-    char *source;
-};
 
 static const struct function {
     const char *name;
@@ -56,7 +20,7 @@ static const struct function {
     {"abs", OP_ABS},   {"min", OP_MIN},   {"max", OP_MAX},
 };
 
-enum { MAX_OPS = 1024, MAX_STACK = 64, MAX_NESTING = 64 };
+enum { MAX_OPS = 1024, MAX_NESTING = 64 };
 
 struct compiler {
     struct slice rest;
@@ -95,8 +59,6 @@ static void skip(struct compiler *c, size_t n)
     c->rest.at += n;
     c->rest.length -= n;
 }
-
-static bool is_binary(enum op_code code) { return code >= OP_ADD && code <= OP_MAX; }
 
 static double run_unary(enum op_code code, double a)
 {

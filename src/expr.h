@@ -65,6 +65,13 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
 
+/* The value of an expression in t with its first two derivatives, which are exact; where min, max, abs and
+ * round have a kink or a step, those of one side. */
+struct expr_jet {
+    double value, d1, d2;
+};
+struct expr_jet expr_jet_at(const struct expr *e, double t);
+
 /* The text it was compiled from. */
 const char *expr_source(const struct expr *e);
 

@@ -1,6 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Prescribed motion: constant velocity, a polynomial of time, a table, a sine, or a rotation. */
+ * Prescribed motion: constant velocity, a polynomial of time, a table, a sine, a rotation, or expressions
+ * in time. */
 #include "case.h"
+
+#include "expr.h"
 
 #include <errno.h>
 #include <math.h>
@@ -224,6 +227,16 @@ static void turning_at(const struct scene_motion *motion, const struct motion_ta
     memcpy(m->centre, motion->centre, sizeof m->centre);
 }
 
+/* So that a body starts where it was sampled, and the derivatives are exact. */
+static void expression_at(const struct scene_expr *of, double t, double *d, double *v, double *a)
+{
+    if (!of->e[0]) return;
+    const struct expr_jet now = expr_jet_at(of->e[0], t);
+    *d = now.value - expr_jet_at(of->e[0], 0).value;
+    *v = now.d1;
+    *a = now.d2;
+}
+
 static struct motion_state moving_at(const struct scene_motion *motion,
                                      const struct motion_table *table, double t)
 {
@@ -249,6 +262,12 @@ static struct motion_state moving_at(const struct scene_motion *motion,
         }
         return m;
     case MOTION_ROTATION: turning_at(motion, table, t, &m); return m;
+    case MOTION_EXPRESSION:
+        expression_at(&motion->x, t, &m.d[0], &m.v[0], &m.a[0]);
+        expression_at(&motion->y, t, &m.d[1], &m.v[1], &m.a[1]);
+        expression_at(&motion->turn, t, &m.angle, &m.rate, &m.angular_acceleration);
+        memcpy(m.centre, motion->centre, sizeof m.centre);
+        return m;
     }
     return m;
 }

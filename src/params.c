@@ -120,3 +120,26 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
     if (best->name && best->distance <= distance) return;
     *best = (struct nearest){candidate, distance};
 }
+
+bool param_is_default(const struct param *p, const void *section)
+{
+    const char *const value = (const char *)section + p->offset;
+    double number[2];
+    int choice;
+    switch (p->type) {
+    case PARAM_REAL:
+        memcpy(number, value, sizeof *number);
+        return number[0] == p->number_default[0] || isnan(number[0]);
+    case PARAM_VECTOR:
+        memcpy(number, value, sizeof number);
+        return number[0] == p->number_default[0] && number[1] == p->number_default[1];
+    case PARAM_INTEGER:
+    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number_default[0];
+    case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
+    case PARAM_SHAPES: return ((const struct shape_list *)(const void *)value)->n == 0;
+    case PARAM_NUMBERS: return ((const struct number_list *)(const void *)value)->n == 0;
+    }
+    return true;
+}

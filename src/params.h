@@ -76,6 +76,9 @@ void *section_at(const struct scene *s, enum section_id id, int index);
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
 
+/* Whether a section has the value that the key has when it is left out. */
+bool param_is_default(const struct param *p, const void *section);
+
 /* The name of a CHOICE's value, copied into `name`. */
 void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
 

@@ -77,7 +77,14 @@ enum plane { PLANE_STRAIN, PLANE_STRESS };
 enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
 enum hourglass_form { HOURGLASS_PRINTED, HOURGLASS_VARIATIONAL };
 enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
-enum motion_kind { MOTION_VELOCITY, MOTION_POLYNOMIAL, MOTION_TABLE, MOTION_SINE, MOTION_ROTATION };
+enum motion_kind {
+    MOTION_VELOCITY,
+    MOTION_POLYNOMIAL,
+    MOTION_TABLE,
+    MOTION_SINE,
+    MOTION_ROTATION,
+    MOTION_EXPRESSION
+};
 enum probe_quantity {
 #define QUANTITY(NAME, name, target, columns, meaning) PROBE_##NAME,
 #include "quantities.def"

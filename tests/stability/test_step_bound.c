@@ -52,7 +52,8 @@ static void open_bar(const struct combination *c, const char *step, const char *
              "density = 1200\nyoung = 2e7\npoisson = %g\nlaw = %s\nhourglass = %g\n"
              "gradient = %s\nhourglass_form = %s\n",
              c->h_over_dp, 0.01 * c->across, c->nu, c->law, c->kappa,
-             c->quadratic ? "quadratic" : "linear", c->quadratic ? "variational" : "printed");
+             c->quadratic ? "quadratic" : "linear",
+             c->quadratic || c->kappa == 0 ? "variational" : "printed");
     rig_open(&rig, text, integrator, step, NULL);
 }
 

@@ -63,6 +63,11 @@ static const char *companion(const struct param *p)
     if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(p, "probe", "point") || is(p, "probe", "to")) return "probe more.quantity=flux";
+    if (is(p, "motion", "poly_x") || is(p, "motion", "poly_y"))
+        return "motion more.kind=polynomial";
+    if (is(p, "motion", "x") || is(p, "motion", "y") || is(p, "motion", "turn"))
+        return "motion more.kind=expression";
+    if (is(p, "motion", "file")) return "motion more.kind=table";
     if (is(p, "reference", "file")) return "reference more.label=x";
     return NULL;
 }
@@ -102,7 +107,12 @@ static void example_is_accepted(const struct param *p)
 
 static void every_example_is_accepted(void)
 {
+    FILE *const table = fopen("lift.csv", "w"); /* which the motion's example names */
+    TEST_ASSERT_NOT_NULL(table);
+    fputs("0, 0, 0\n1, 0, 0.1\n", table);
+    fclose(table);
     for (int k = 0; k < PARAM_COUNT; k++) example_is_accepted(&param_table[k]);
+    remove("lift.csv");
 }
 
 /* --- traps --- */

@@ -156,6 +156,113 @@ static void test_table_is_smooth_and_does_not_overshoot(void)
     }
 }
 
+/* x = 0.1 sin(2 pi t) + 0.3: from where the body is; velocity and acceleration by hand. After the stop it
+ * rests where it has come to. */
+static void test_expression_by_hand(void)
+{
+    must_read("kind = expression\nx = 0.1*sin(2*pi*t) + 0.3\nstart = 0.5\nstop = 1.75\n");
+    const double w = 2 * M_PI;
+    expect(0.4, 0, 0, 0);
+    expect(0.5, 0, 0.1 * w, 0);
+    expect(0.625, 0.1 * sqrt(0.5), 0.1 * w * sqrt(0.5), -0.1 * w * w * sqrt(0.5));
+    expect(1.25, -0.1, 0, 0.1 * w * w);
+    expect(9, 0.1, 0, 0);
+}
+
+/* A turn about (1, 2), and a way: as the kinds that say the same. */
+static void test_expression_as_rotation_and_polynomial(void)
+{
+    must_read("kind = rotation\ncentre = 1, 2\nangle = 0.5, -1\n");
+    const struct motion_point turned = point_at(0.7, 0.3, -0.1);
+    scene_free(&scene);
+    must_read("kind = expression\ncentre = 1, 2\nturn = 0.5*t - t^2\n");
+    const struct motion_point p = point_at(0.7, 0.3, -0.1);
+    for (int c = 0; c < 2; c++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.x[c], p.x[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.v[c], p.v[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-13, turned.a[c], p.a[c]);
+    }
+    scene_free(&scene);
+    must_read("kind = expression\nx = t*(1 + t*(2 + 3*t))\ny = t^2\n");
+    expect(1, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
+    TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 1).d[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(2, motion_at(&scene, 0, 0).a[1]);
+}
+
+/* Every function of the language: derivatives against central differences, at times where none has a kink. */
+static void test_derivatives_of_every_function(void)
+{
+    static const char *const each[] = {"sqrt(t + 1)",
+                                       "sin(3*t)",
+                                       "cos(t*t)",
+                                       "tan(0.5*t)",
+                                       "sinh(t)",
+                                       "cosh(2*t)",
+                                       "tanh(t - 0.2)",
+                                       "exp(-t)*t",
+                                       "log(1 + t)",
+                                       "round(t/3)",
+                                       "abs(t - 2)",
+                                       "abs(t)",
+                                       "min(t, t^3)",
+                                       "max(t, t^3)",
+                                       "-t^2",
+                                       "t^3",
+                                       "(1 + t)^-1.5",
+                                       "(1 + t)^t",
+                                       "2^t",
+                                       "t/(1 + t^2)",
+                                       "(t + 1)^0 - 2*t",
+                                       "min(t/0.1, 1)*sin(2*pi*t)"};
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        char text[128];
+        snprintf(text, sizeof text, "kind = expression\nx = %s\n", each[k]);
+        must_read(text);
+        for (double t = 0.15; t < 0.95; t += 0.2) {
+            const double h = 1e-4;
+            const struct motion_state before = motion_at(&scene, 0, t - h),
+                                      now = motion_at(&scene, 0, t),
+                                      after = motion_at(&scene, 0, t + h);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, (after.d[0] - before.d[0]) / (2 * h), now.v[0],
+                                              each[k]);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-5, (after.v[0] - before.v[0]) / (2 * h), now.a[0],
+                                              each[k]);
+        }
+        scene_free(&scene);
+    }
+}
+
+static void refuses(const char *motion, const char *message)
+{
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read(motion));
+    TEST_ASSERT_EQUAL_STRING(message, diag.text);
+}
+
+static void test_bad_expressions(void)
+{
+    refuses("kind = expression\n",
+            "motion.cfg:9: [motion move] kind = expression needs `x`, `y` or "
+            "`turn`, expressions in t");
+    refuses(
+        "kind = expression\nx = 0.1*log(t)\n",
+        "motion.cfg:9: [motion move] 0.1*log(t) is not finite, or its velocity or acceleration is "
+        "not, at t = 0 s since start");
+    refuses(
+        "kind = expression\ny = sqrt(0.5 - t)\n",
+        "motion.cfg:9: [motion move] sqrt(0.5 - t) is not finite, or its velocity or acceleration "
+        "is not, at t = 0.5 s since start");
+    refuses(
+        "kind = expression\nx = 0.1*sin(2*pi*x)\n",
+        "motion.cfg:11: x = 0.1*sin(2*pi*x): `x` has a value only where a key takes an expression "
+        "in x and y");
+    refuses("velocity = 1, 0\nx = t\n",
+            "motion.cfg:11: [motion move] `x` is of kind = expression, and "
+            "this one is of kind = velocity");
+    refuses("kind = sine\nperiod = 1\namplitude = 1, 0\nangle = 1\n",
+            "motion.cfg:13: [motion move] `angle` is of kind = rotation, and this one is of kind = "
+            "sine");
+}
+
 static void bad_table(const char *table, const char *message)
 {
     write_table(table);
@@ -196,6 +303,10 @@ int main(void)
     RUN_TEST(test_rotation_is_rigid_and_smooth);
     RUN_TEST(test_no_rotation_is_the_limit);
     RUN_TEST(test_table_is_smooth_and_does_not_overshoot);
+    RUN_TEST(test_expression_by_hand);
+    RUN_TEST(test_expression_as_rotation_and_polynomial);
+    RUN_TEST(test_derivatives_of_every_function);
+    RUN_TEST(test_bad_expressions);
     RUN_TEST(test_bad_tables);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
