@@ -50,6 +50,8 @@ short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
 short two_posts 0.005 "dp=10 mm" "wall=30 mm" "held=20 mm"
 short beam_on_beam 0.02 "across=4" "press=10 ms"
+short rotating_patch 0.02 "dp=L/20"
+short accelerated_tank 0.02 "dp=20 mm"
 short still_water 0.01 "dp=20 mm" wall=60mm
 integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
 integrators=symplectic short rolling_tank 0.01
