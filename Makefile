@@ -9,7 +9,7 @@
 #   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
 #   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
 #   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
-#   make absence         an effect that is off costs nothing: instructions and bytes (ARGS=--quick: together)
+#   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
@@ -179,7 +179,7 @@ faults: $(PROGRAM)
 	   agree/test_restart_cases; do bash tests/$$t.sh; done
 
 absence:
-	@ABSENCE=1 SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py $(ARGS)
+	@SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py --each
 
 fuzz:
 	@tools/fuzz.sh $(ARGS)
@@ -217,7 +217,8 @@ gate: $(PROGRAM)
 
 # CASE:TIME:FIELD
 GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:1.2:pressure \
-           beam_on_beam:1.2:pressure two_posts:0.16:pressure
+           beam_on_beam:1.2:pressure two_posts:0.16:pressure \
+           rotating_patch:0.6:pressure accelerated_tank:1:pressure
 gallery: $(PROGRAM)
 	@set -e; for g in $(GALLERY); do \
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
