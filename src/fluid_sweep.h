@@ -271,10 +271,37 @@ static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * til
     surface[1] = scale * (double)vsum(sum_y);
 }
 
+/* Corners of the candidates of a tile, in its coordinates. */
+struct SWEEP(box) {
+    real low[2], high[2];
+};
+
+static struct SWEEP(box) box_of_tile(const struct SWEEP(tile) * tile, int n)
+{
+    struct SWEEP(box) box = {{TILE_FAR, TILE_FAR}, {-TILE_FAR, -TILE_FAR}};
+    for (int k = 0; k < n; k++) {
+        const real place[2] = {tile->field[LANE_X][k], tile->field[LANE_Y][k]};
+        for (int axis = 0; axis < 2; axis++) {
+            box.low[axis] = place[axis] < box.low[axis] ? place[axis] : box.low[axis];
+            box.high[axis] = place[axis] > box.high[axis] ? place[axis] : box.high[axis];
+        }
+    }
+    return box;
+}
+
+/* Whether all candidates are further away than the kernel reaches, with a margin for rounding: every sum
+ * over them is zero. */
+static bool out_of_reach(const struct SWEEP(box) * box, real x, real y)
+{
+    const double dx = max2(0, max2(box->low[0] - x, x - box->high[0]));
+    const double dy = max2(0, max2(box->low[1] - y, y - box->high[1]));
+    return dx * dx + dy * dy > square(1.001 * KERNEL_REACH);
+}
+
 /* One wall or solid particle i at place `place` of the cell order. */
 static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place,
                          int32_t i, const struct cells *c, int32_t cell,
-                         const struct SWEEP(tile) * tile)
+                         const struct SWEEP(tile) * tile, const struct SWEEP(box) * box)
 {
     const bool grips = f->effects & FX_NO_SLIP;
     const double inv_h = 1 / f->k.h;
@@ -284,8 +311,11 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     const double *const u = solid ? p->wx : p->vx, *const v = solid ? p->wy : p->vy;
     real *const *const out = (real *const *)(const void *)f->lanes[kind].field;
     const real x = (real)(from_centre_x * inv_h), y = (real)(from_centre_y * inv_h);
-    p->p[i] = extrapolated_pressure(f, tile, x, y, p->ax ? p->ax[i] : 0, p->ax ? p->ay[i] : 0);
-    p->dens[i] = eos_dens(p->p[i], f->k.rho0, f->k.c0);
+    const bool alone = !f->idle_is_work && out_of_reach(box, x, y);
+    p->p[i] =
+        alone ? 0
+              : extrapolated_pressure(f, tile, x, y, p->ax ? p->ax[i] : 0, p->ax ? p->ay[i] : 0);
+    p->dens[i] = alone ? 0 : eos_dens(p->p[i], f->k.rho0, f->k.c0);
     out[LANE_X][place] = x;
     out[LANE_Y][place] = y;
     out[LANE_U][place] = (real)u[i];
@@ -295,7 +325,7 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     out[LANE_VOLUME][place] = (real)(volume / (1 + p->dens[i]));
     out[LANE_P][place] = (real)p->p[i];
     out[LANE_DENS][place] = (real)p->dens[i];
-    const bool sticks = grips && f->sticks[kind][p->body[i]];
+    const bool sticks = grips && f->sticks[kind][p->body[i]] && !alone;
     struct receiver s = {.x = vset(x), .y = vset(y), .p = vset(out[LANE_P][place])};
     if (grips) {
         double mirror_u = u[i], mirror_v = v[i];
@@ -307,13 +337,13 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
         s.v = vset((real)mirror_v);
     }
     if (!p->fx) return;
-    double force[2];
-    fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    double force[2] = {0, 0};
+    if (!alone) fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
     if (!p->wet_x) return;
-    wetted_surface(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    if (!alone) wetted_surface(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->wet_x[i] = force[0];
     p->wet_y[i] = force[1];
 }
@@ -327,9 +357,11 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
         const int32_t cell = f->near_fluid[kind][k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
         tile->fields = f->lanes[KIND_FLUID].n;
-        tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
+        const int n = tile_gather(tile, 0, f, c, KIND_FLUID, cell);
+        tile_close(tile, n);
+        const struct SWEEP(box) box = box_of_tile(tile, n);
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
-            dummy_update(f, &kinds[kind], kind, j, list->order[j], c, cell, tile);
+            dummy_update(f, &kinds[kind], kind, j, list->order[j], c, cell, tile, &box);
     }
 }
 
