@@ -257,6 +257,22 @@ static const struct {
     {TOP FLUID, "w.diffusion_form=fourtakas",
      "bad.cfg, --set: [fluid w] diffusion_form is of DIFFUSION, which the scene does not have: "
      "fluid.density_diffusion > 0 calls for it"},
+    {TOP SOLID "hourglass = 0\nhourglass_form = printed\n", NULL,
+     "bad.cfg, line 9: [solid a] hourglass_form is of HOURGLASS, which the scene does not have: "
+     "solid.hourglass > 0 calls for it"},
+    {TOP SOLID "artificial_viscosity = 0\nviscosity_form = printed\n", NULL,
+     "bad.cfg, line 9: [solid a] viscosity_form is of SOLID_VISCOSITY, which the scene does not "
+     "have: solid.artificial_viscosity > 0 calls for it"},
+    {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
+               "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",
+     NULL,
+     "bad.cfg, line 8: [contact c] calls for CONTACT, which excludes PERIODIC, called for by line "
+     "16: [domain] periodic: contact does not reach through the sides"},
+    {TOP FLUID "[contact c]\n", NULL,
+     "bad.cfg:6: [contact c] needs a [solid] and something that it may touch"},
+    {TOP FLUID "[load l]\nshape = box 0, 0, 1 mm, 1 mm\nforce = 1, 0\n", NULL, "bad.cfg:6: "},
+    {TOP FLUID "[wall b]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = m\n[motion m]\nkind = sine\n",
+     NULL, "bad.cfg:9: [motion m] kind = sine needs `period`"},
     {TOP FLUID "[domain]\nperiodic = x\n", NULL,
      "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
     {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,

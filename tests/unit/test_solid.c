@@ -120,6 +120,44 @@ static struct balance balance(void)
     return (struct balance){hypot(fx, fy) / size, fabs(torque) / arm};
 }
 
+/* Two particles by hand: a block at rest, of which one particle a is moved by (1, 2) mm, with gradients and
+ * stresses left at zero: e_ab = -u_ab, and what remains on the neighbour b = a + (dp, 0) is a spring to
+ * a. dp = 1 cm, h = 1.35 cm, q = 1/1.35: W = 7/(4 pi h^2) (1 - q/2)^4 (2q + 1) = 1191.9892;
+ * k/m = kappa E V W/(r^2 rho) = 10 * 2e6 * 1e-4 * 1191.9892/(1e-4 * 1100) = 2.1672530e7 1/s^2. */
+static void test_a_pair_by_hand(void)
+{
+    const char *const forms[] = {"block.hourglass_form=variational",
+                                 "block.hourglass_form=printed"};
+    const double h = 0.0135, q = 0.01 / h;
+    const double W = 7 / (4 * M_PI * h * h) * pow(1 - q / 2, 4) * (2 * q + 1);
+    const double k = 10 * 2e6 * 1e-4 * W / (1e-4 * 1100), u[2] = {1e-3, 2e-3};
+    assert_near(1e1, 2.1672530e7, k, "k/m");
+    for (int form = 0; form < 2; form++) {
+        OPEN(block, forms[form], "block.hourglass=10", "block.artificial_viscosity=0");
+        int64_t a = -1, b = -1;
+        for (int64_t i = 0; i < p->n; i++) {
+            if (hypot(p->X[i] - 0.055, p->Y[i] - 0.035) < 1e-6) a = i;
+            if (hypot(p->X[i] - 0.065, p->Y[i] - 0.035) < 1e-6) b = i;
+        }
+        TEST_ASSERT_TRUE(a >= 0 && b >= 0);
+        p->ux[a] = u[0];
+        p->uy[a] = u[1];
+        solid_forces(&rig.sim.solid, p);
+        /* On b, x_ba = (dp - u_x, -u_y) and e_ba = u_a: the whole of it, or its part along x_ba. */
+        const double x = 0.01 - u[0], y = -u[1], along = (u[0] * x + u[1] * y) / (x * x + y * y);
+        assert_near(1e-9 * k, form ? k * along * x : k * u[0], p->sx[b], "on b, x");
+        assert_near(1e-9 * k, form ? k * along * y : k * u[1], p->sy[b], "on b, y");
+        /* And its mirror image, of all neighbours together, on a. */
+        double sum[2] = {0, 0};
+        for (int64_t i = 0; i < p->n; i++) {
+            sum[0] += p->sx[i];
+            sum[1] += p->sy[i];
+        }
+        assert_near(1e-9 * k * u[1], 0, sum[0], "sum, x");
+        assert_near(1e-9 * k * u[1], 0, sum[1], "sum, y");
+    }
+}
+
 /* Forces of a free body close to the round-off of their sum, and so do torques, for the stress and for
  * both hourglass forces. */
 static void test_forces_and_torques_close(void)
@@ -310,6 +348,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_rigid_motion_has_no_stress_and_no_force);
     RUN_TEST(test_rigid_rotation_has_no_viscous_force);
+    RUN_TEST(test_a_pair_by_hand);
     RUN_TEST(test_forces_and_torques_close);
     RUN_TEST(test_symmetric_viscosity_closes_and_the_printed_form_leaks);
     RUN_TEST(test_forces_are_the_slope_of_the_energy);
