@@ -260,19 +260,40 @@ static enum err create_contact(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* A body that nothing holds falls, which is seldom what a case with gravity means. */
+/* A body that nothing holds moves away, which is seldom what a case with gravity or a load means. */
 static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
 {
-    if (!(s->effects & FX_GRAVITY)) return;
     for (int k = 0; k < s->scene->n_solid; k++) {
         const struct scene_solid *const b = &s->scene->solid[k];
-        if (b->clamp.n == 0 && b->gravity && !b->joined[0])
+        if (b->clamp.n || b->joined[0]) continue;
+        bool loaded = false;
+        for (int m = 0; m < s->scene->n_load; m++)
+            loaded |= scene_find_solid(s->scene, s->scene->load[m].body) == k;
+        if (b->gravity && s->effects & FX_GRAVITY)
             diag_warn(
                 d,
                 "[solid %s] is clamped nowhere, and gravity acts on it: it falls unless fluid "
                 "carries it; `clamp` holds it, `gravity = off` spares it",
                 b->common.name);
+        else if (loaded)
+            diag_warn(d,
+                      "[solid %s] is clamped nowhere, and a [load] acts on it: it is driven away; "
+                      "`clamp` holds it",
+                      b->common.name);
     }
+}
+
+/* Up to these a column of water that falls together (tests/stability/column.cfg) was found stable; for
+ * leapfrog the analysis of docs/theory.md says the same. */
+static void warn_of_cfl(const struct simulation *s, struct diag *d)
+{
+    static const double largest[] = {0.4, 0.2, 0.6};
+    const double cfl = s->scene->numerics.cfl, limit = largest[s->scene->top.integrator];
+    if (s->effects & FX_FLUID && !(s->scene->numerics.fixed_step > 0) && cfl > limit)
+        diag_warn(d,
+                  "numerics.cfl = %g is beyond %g, up to which this integrator is stable: the "
+                  "fluid may blow up, and a guard would stop the run",
+                  cfl, limit);
 }
 
 /* fixed_step is taken as it is, also where it must end in a blow-up. */
@@ -324,6 +345,7 @@ static enum err build(struct simulation *s, struct diag *d)
     }
     TRY(choose_rate(s, d));
     warn_of_fixed_step(s, d);
+    warn_of_cfl(s, d);
     set_guards(s);
     s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
     find_speed(s);

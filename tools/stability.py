@@ -89,7 +89,8 @@ def measure(folder, log):
         "lost": summary["fluid_left_domain"], "crossed": log.count("has entered a wall or solid"),
         "peak": peak, "settled": settled, "mean": mean, "apart": apart,
         "lowest": lambda column: min(probes[column]),
-        "message": summary["message"], "guarded": summary["exit_reason"] == "guard",
+        "message": summary["message"], "version": summary["version"],
+        "guarded": summary["exit_reason"] == "guard",
         "solid_bound": (summary["time_step"].get("solid") or 0.0) /
                        summary["parameters"]["numerics"]["solid_safety"],
     }
@@ -114,21 +115,38 @@ def run(command, folder, minutes):
     return log, cpu_seconds() - begin
 
 
-def simulate(scene, form, top, minutes=60):
-    """Measures of a scene and its user time; a run of the same program and settings is not repeated."""
-    folder = top / re.sub("[^a-z0-9]+", "-", scene["name"].lower())
-    command = [os.environ.get("SPHFSI", str(ROOT / "sphfsi")), str(SUITE / scene["case"]),
-               "--out", str(folder), "--quiet", "--threads", "1"]
-    for item in scene.get("set", []) + scene.get(form, []):
-        command += ["--set", item]
-    program = hashlib.sha256(Path(command[0]).read_bytes() + Path(command[1]).read_bytes()).hexdigest()
-    done = top / (folder.name + ".json")
-    known = json.loads(done.read_text(encoding="utf-8")) if done.exists() else {}
-    if known.get("command") != command or known.get("program") != program:
-        log, seconds = run(command, folder, minutes)
-        known = {"command": command, "program": program, "log": log, "seconds": seconds}
-        done.write_text(json.dumps(known), encoding="utf-8")
-    return measure(folder, known["log"]), known["seconds"]
+class Run:
+    """One form of a scene in the folder `top`; what the same program has done with the same
+    settings is kept."""
+
+    def __init__(self, scene, form, top):
+        self.folder = top / re.sub("[^a-z0-9]+", "-", f"{scene['name']} {form}".lower())
+        self.command = [os.environ.get("SPHFSI", str(ROOT / "sphfsi")), str(SUITE / scene["case"]),
+                        "--out", str(self.folder), "--quiet", "--threads", "1"]
+        for item in scene.get("set", []) + scene.get(form, []):
+            self.command += ["--set", item]
+        self.record = top / (self.folder.name + ".json")
+
+    def program(self):
+        files = [Path(name).read_bytes() for name in self.command[:2]]
+        return hashlib.sha256(b"".join(files)).hexdigest()
+
+    def known(self):
+        if not self.record.exists():
+            return None
+        known = json.loads(self.record.read_text(encoding="utf-8"))
+        same = known["command"][1:] == self.command[1:] and known["program"] == self.program()
+        return known if same else None
+
+    def measure(self, minutes=60):
+        """Measures and user time."""
+        known = self.known()
+        if not known:
+            log, seconds = run(self.command, self.folder, minutes)
+            known = {"command": self.command, "program": self.program(), "log": log,
+                     "seconds": seconds}
+            self.record.write_text(json.dumps(known), encoding="utf-8")
+        return measure(self.folder, known["log"]), known["seconds"]
 
 
 def words(found):
@@ -141,16 +159,26 @@ def words(found):
     return ", ".join(text)
 
 
+def chosen(scene, form, top):
+    """The form that is run, or None; `kept`: the long one where there is a run of it, or else the
+    quick one."""
+    if form == "kept":
+        form = "long" if Run(scene, "long", top).known() else "quick"
+    return form if scene.get("only", form) == form else None
+
+
 def run_suite(scenes, form, top, minutes):
-    """Rows of (scene, whether the criterion holds, whether that is as expected, measures, seconds)."""
+    """Rows of (scene, whether the criterion holds, whether that is as expected, measures, seconds,
+    form)."""
     rows = []
     for scene in scenes:
-        if scene.get("only", form) != form:
+        this = chosen(scene, form, top)
+        if not this:
             continue
-        found, seconds = simulate(scene, form, top, minutes)
+        found, seconds = Run(scene, this, top).measure(minutes)
         holds = bool(eval(scene["criterion"], {"__builtins__": {}}, found))  # the table is our own
         as_said = holds != scene.get("fails", False)
-        rows.append((scene, holds, as_said, found, seconds))
+        rows.append((scene, holds, as_said, found, seconds, this))
         print(f"{'ok  ' if as_said else 'NOT '} {seconds:6.1f} s  {scene['name']}: "
               f"{'holds' if holds else 'does not hold'} ({words(found)})", flush=True)
     return rows
@@ -167,7 +195,7 @@ def integrators(top):
             if factor is not None:
                 scene["set"] += [f"numerics.fixed_step={factor * bound:.9g}"]
             scene["name"] = f"plate {integrator} {factor}"
-            found, _ = simulate(scene, "", top)
+            found, _ = Run(scene, "quick", top).measure()
             cells.append(f"gain {found['gain']:.1e}" if found["finished"] else
                          f"stopped at {1e3 * found['time']:.2g} ms")
         if factor is None:
@@ -184,14 +212,16 @@ def main():
     parser.add_argument("--report", action="store_true", help="write docs/stability.md")
     parser.add_argument("--keep", action="store_true",
                         help="keep the runs in build/stability; those that are there are not repeated")
+    parser.add_argument("--kept", action="store_true",
+                        help="the long form of scenes whose long run is kept, the quick one of others")
     parser.add_argument("--minutes", type=float, default=60, help="a run that takes longer is ended (60)")
     parser.add_argument("--only", default="", help="scenes whose name has this in it")
     args = parser.parse_args()
     scenes = tomllib.loads((SUITE / "suite.toml").read_text(encoding="utf-8"))["scene"]
     scenes = [scene for scene in scenes if args.only in scene["name"]]
-    form = "quick" if args.quick else "long"
+    form = "quick" if args.quick else "kept" if args.kept else "long"
     with tempfile.TemporaryDirectory() as scratch:
-        top = ROOT / "build" / "stability" if args.keep else Path(scratch)
+        top = ROOT / "build" / "stability" if args.keep or args.kept else Path(scratch)
         top.mkdir(parents=True, exist_ok=True)
         return work(scenes, form, top, args)
 
@@ -202,7 +232,8 @@ def work(scenes, form, top, args):
     if bad:
         print(f"not as the table says: {', '.join(bad)}")
     if args.report:
-        command = "tools/stability.py --quick --report" if args.quick else "make stability"
+        command = {"quick": "tools/stability.py --quick --report", "long": "make stability",
+                   "kept": "tools/stability.py --kept --report"}[form]
         stability_report.write(rows, integrators(top), REPORT, form, command)
     return 1 if bad and not args.report else 0
 

@@ -24,6 +24,10 @@ says 1 'is 1 particle thick' gate.cfg 'thickness=5 mm'
 says 0 'only 2 particles thick' gate.cfg 'thickness=10 mm'
 says 2 'fixed_step = .* s is beyond the .* s of the solid.s bound' beam.cfg 'numerics.fixed_step=0.07 ms'
 says 0 'fixed_step = .* s is beyond the .* s of Eq. 28b' column.cfg 'numerics.fixed_step=0.15 ms'
+says 0 'numerics.cfl = 0.5 is beyond 0.2' column.cfg integrator=verlet numerics.cfl=0.5
+says 0 'numerics.cfl = 0.5 is beyond 0.4' column.cfg integrator=symplectic numerics.cfl=0.5
+says 0 'numerics.cfl = 0.7 is beyond 0.6' column.cfg integrator=leapfrog numerics.cfl=0.7
+says 0 'is clamped nowhere, and a .load. acts on it' free.cfg
 says 0 'is clamped nowhere, and gravity acts on it' wedge.cfg
 says 0 'growing modes' beam.cfg beam.hourglass_form=printed beam.gradient=linear
 "$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1
