@@ -203,4 +203,8 @@ def main():
 
 
 if __name__ == "__main__":
-    run_tool(main)
+    try:
+        run_tool(main)
+    except KeyboardInterrupt:
+        complain("interrupted; the same command goes on")
+        sys.exit(130)
