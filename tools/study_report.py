@@ -21,6 +21,14 @@ PANEL = 2.5  # inches
 
 # --- figures ---
 
+class PlainLog(LogFormatter):
+    """0.2 instead of 2e-01; which ticks have a label is left to its parent."""
+
+    def __call__(self, x, pos=None):
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+
 def groups_of(study, case):
     """{group: [(knob, value)]} of the settings that the case has, in the order of the definition."""
     groups = {}
@@ -73,7 +81,7 @@ def draw_case(study, case, path):
     panels[-1, 0].set_xlabel("CPU time (s)")
     for axis in (panels[0, 0].xaxis, panels[0, 0].yaxis):  # all panels share them
         axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(LogFormatter(minor_thresholds=(1, 0.5)))
+        axis.set_minor_formatter(PlainLog(minor_thresholds=(1, 0.5)))
     figure.suptitle(study.cases[case].get("title", case), fontsize=10)
     figure.tight_layout()
     save(figure, path)
