@@ -44,7 +44,9 @@ def run_bench(args):
     command = [str(ROOT / "build/release/bench_bench"), "--reps", str(args.reps)]
     out = subprocess.run(command + ["--large"] * args.large, check=True, text=True,
                          capture_output=True).stdout
-    return out
+    ways = subprocess.run([str(ROOT / "build/release/bench_neighbours"), "--reps", str(args.reps)],
+                          check=True, text=True, capture_output=True).stdout
+    return out + ways
 
 
 def parse(text):
@@ -147,6 +149,19 @@ def table(header, rows):
     return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
 
 
+def neighbour_words(rows):
+    """Candidate tile against neighbour list (bench/neighbours.c)."""
+    found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
+             if key[0] == "neighbours"}
+    n = next(key[2] for key in rows if key[0] == "neighbours")
+    tile, swept, built = found["tile", "copy and sweep"], found["list", "sweep"], found["list", "build"]
+    return (f"Where the neighbours come from, the bare laws alone over {n} particles, one thread: a "
+            f"tile of candidates {tile:.1f} ns a particle with its copying; a neighbour list with the same "
+            f"skin {swept:.1f} ns, {built:.0f} ns each time that it is built and "
+            f"{4 * found['list', 'entries']:.0f} bytes a particle. "
+            + ("The list would be the faster one." if swept < tile else "The tile is the faster one."))
+
+
 def bench_tables(rows):
     text = []
     sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
@@ -163,6 +178,8 @@ def bench_tables(rows):
         ["form", "threads", "ns"],
         [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
          if key[0] == "solid"]))
+    if any(key[0] == "neighbours" for key in rows):
+        text.append(neighbour_words(rows))
     peak = value("machine", "fma", 0, 1, "float")
     rich = next((v for v in variants if v.startswith("dam_break (mixed")), None)
     if rich:
