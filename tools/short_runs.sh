@@ -34,7 +34,7 @@ short() {
     shift 2
     for value in "$@"; do set+=(--set "$value"); done
     set+=(--set "integrator=${integrators[runs % ${#integrators[@]}]}")
-    check "$name" "cases/$name.cfg" "${set[@]}" --until "$end" --out "$dir/$name"
+    check "$name" "cases/$name.cfg" "${set[@]}" --until "$end" --out "$dir/$name-$runs"
 }
 
 source <(sed -n '/^short /{:a; /\\$/{N; ba}; p}' tests/agree/test_restart_cases.sh)
