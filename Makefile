@@ -218,7 +218,8 @@ gate: $(PROGRAM)
 # CASE:TIME:FIELD
 GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:1.2:pressure \
            beam_on_beam:1.2:pressure two_posts:0.16:pressure \
-           rotating_patch:0.6:pressure accelerated_tank:1:pressure
+           rotating_patch:0.6:pressure accelerated_tank:1:pressure \
+           ringing_bar:0.01:pressure
 gallery: $(PROGRAM)
 	@set -e; for g in $(GALLERY); do \
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \

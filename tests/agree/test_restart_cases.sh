@@ -50,6 +50,7 @@ short wet_baffle 0.002 "dp=2 mm"
 short sluice_gate 0.005 "dp=4 mm"
 short two_posts 0.005 "dp=10 mm" "wall=30 mm" "held=20 mm"
 short beam_on_beam 0.02 "across=4" "press=10 ms"
+short ringing_bar 1e-3 ratio=4
 short rotating_patch 0.02 "dp=L/20"
 short accelerated_tank 0.02 "dp=20 mm"
 short still_water 0.01 "dp=20 mm" wall=60mm
