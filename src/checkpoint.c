@@ -10,7 +10,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 1, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
+enum { FORMAT = 2, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
 
 /* What a block belongs to: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
@@ -503,6 +503,16 @@ static bool take_rest(const struct image *m, struct particles *p, const struct f
     return true;
 }
 
+/* A structure whose run held the fluid's force over its sub-steps owes the fluid nothing. */
+static bool owes_nothing(const struct image *m, const struct field_info *info, void *data,
+                         int64_t n)
+{
+    struct block b;
+    if (find_block(m, info->name, KIND_SOLID, &b)) return false;
+    memset(data, 0, (size_t)n * info->size);
+    return true;
+}
+
 static enum err take_particles(const struct image *m, struct particles *p, enum kind kind,
                                int64_t n, bool fork, struct diag *d)
 {
@@ -515,8 +525,9 @@ static enum err take_particles(const struct image *m, struct particles *p, enum 
         const struct field_info *info = &field_table[f];
         void *data = field_array(p, info);
         if (!data || info->keep != KEEP_STATE) continue;
-        if (!(fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)))
-            TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
+        if (fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)) continue;
+        if (fork && (info->group & G_WETTED) && owes_nothing(m, info, data, n)) continue;
+        TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
     return ERR_OK;
 }

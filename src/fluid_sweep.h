@@ -342,7 +342,7 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
-    if (!p->wet_x) return;
+    if (!p->wet_x || !(f->effects & FX_IMPEDANCE)) return;
     if (!alone) wetted_surface(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->wet_x[i] = force[0];
     p->wet_y[i] = force[1];

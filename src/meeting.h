@@ -41,11 +41,14 @@ SPHFSI_INLINE void meet(struct meeting *m)
         __atomic_store_n(&m->turn, turn + 1, __ATOMIC_RELEASE);
         return;
     }
-    for (int spins = 0; __atomic_load_n(&m->turn, __ATOMIC_ACQUIRE) == turn; spins++) {
-        if (spins > SPINS)
-            sched_yield();
-        else
+    int spins = 0;
+    while (__atomic_load_n(&m->turn, __ATOMIC_ACQUIRE) == turn) {
+        if (spins < SPINS) {
+            spins++;
             relax();
+        } else {
+            sched_yield();
+        }
     }
 #else
     (void)m;

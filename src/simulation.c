@@ -99,6 +99,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
     if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)FX_IMPEDANCE;
+    s->fluid.effects = s->effects;
     if (s->effects & FX_IMPEDANCE) s->solid.impedance = s->scene->rho0 * s->scene->c0;
     return ERR_OK;
 }
@@ -146,6 +147,13 @@ static void book_crossings(struct simulation *s)
                             (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
 }
 
+static void forget(struct particles *p, int64_t i)
+{
+    p->p[i] = p->dens[i] = 0;
+    if (p->fx) p->fx[i] = p->fy[i] = 0;
+    if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
+}
+
 /* Particles of the structure that have lost touch with the fluid are not visited any more: before the
  * cells change, all that were visited forget it. */
 static void forget_touch(struct simulation *s, enum kind kind)
@@ -155,10 +163,7 @@ static void forget_touch(struct simulation *s, enum kind kind)
     for (int32_t k = 0; k < s->fluid.n_near_fluid[kind]; k++) {
         const int32_t cell = s->fluid.near_fluid[kind][k];
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
-            const int32_t i = list->order[j];
-            p->p[i] = p->dens[i] = 0;
-            if (p->fx) p->fx[i] = p->fy[i] = 0;
-            if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
+            forget(p, list->order[j]);
         }
     }
 }
@@ -166,17 +171,7 @@ static void forget_touch(struct simulation *s, enum kind kind)
 /* What a checkpoint brings along is of the last evaluation before it. */
 static void forget_all_touch(struct particles *p)
 {
-    const size_t bytes = (size_t)p->n * sizeof *p->p;
-    if (p->fx) {
-        memset(p->fx, 0, bytes);
-        memset(p->fy, 0, bytes);
-    }
-    if (p->wet_x) {
-        memset(p->wet_x, 0, bytes);
-        memset(p->wet_y, 0, bytes);
-    }
-    memset(p->p, 0, bytes);
-    memset(p->dens, 0, bytes);
+    for (int64_t i = 0; i < p->n; i++) forget(p, i);
 }
 
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */

@@ -104,6 +104,14 @@ static int64_t count_points(const struct simulation *s)
     return n;
 }
 
+/* The most points that any snapshot has: fluid only ever leaves. */
+static int64_t count_room(const struct simulation *s)
+{
+    int64_t n = 0;
+    for (int k = 0; k < KIND_COUNT; k++) n += s->kind[k].capacity;
+    return n;
+}
+
 static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, struct simulation *s)
 {
     int64_t rows[D_COUNT];
@@ -170,10 +178,10 @@ static bool claim_space(const struct snapshots *w, int64_t points)
  * appends one of `s`, unless that is NULL. */
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *s)
 {
-    const int64_t points = s ? count_points(s) : 0;
+    const int64_t points = s ? count_points(s) : 0, room = s ? count_room(s) : 0;
     struct stat info;
     if (lstat(w->spare, &info) == 0 && !S_ISREG(info.st_mode)) unlink(w->spare);
-    if (!claim_space(w, points)) return false;
+    if (!claim_space(w, room)) return false;
     const bool is_named = access(w->path, F_OK) == 0;
     const hid_t named = is_named ? H5Fopen(w->path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
     if (steps < 0) steps = named >= 0 ? snapshot_file_steps(named) : 0;

@@ -100,36 +100,45 @@ static int64_t rows_of_chunk(hid_t set)
     return ok ? (int64_t)size[0] : 0;
 }
 
-/* Rows of a chunk of the dataset in another file; 0: there is no such file. */
-static int64_t rows_of_chunk_in(hid_t file, const struct column *c)
+/* How a dataset of snapshots of about n points lies in its file. */
+static hid_t layout_of(const struct snapshot_layout *layout, const struct column *c, int64_t n)
+{
+    const hsize_t chunk[2] = {(hsize_t)chunk_rows(c, n), (hsize_t)c->width};
+    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
+    if (how >= 0) H5Pset_chunk(how, c->width > 1 ? 2 : 1, chunk);
+    if (how >= 0 && c->growth != BY_STEP && layout->deflate > 0) {
+        H5Pset_shuffle(how);
+        H5Pset_deflate(how, layout->deflate);
+    }
+    return how;
+}
+
+/* How the dataset lies in another file, down to its filters: what is packed there can then be taken over
+ * as it is. Negative: there is no such file. */
+static hid_t layout_in(hid_t file, const struct column *c)
 {
     char name[96];
     snprintf(name, sizeof name, "VTKHDF/%s", c->name);
     const hid_t set = file >= 0 ? H5Dopen2(file, name, H5P_DEFAULT) : -1;
-    const int64_t rows = set >= 0 ? rows_of_chunk(set) : 0;
+    const hid_t how = set >= 0 ? H5Dget_create_plist(set) : -1;
     if (set >= 0) H5Dclose(set);
-    return rows;
+    return how;
 }
 
+/* Takes over `how`. */
 static bool create_dataset(hid_t root, const struct snapshot_layout *layout, const struct column *c,
-                           int64_t chunk_rows)
+                           hid_t how)
 {
     const hsize_t width = (hsize_t)c->width;
     const hsize_t size[2] = {0, width}, most[2] = {H5S_UNLIMITED, width};
-    const hsize_t chunk[2] = {(hsize_t)chunk_rows, width};
-    const int rank = c->width > 1 ? 2 : 1;
-    const hid_t space = H5Screate_simple(rank, size, most);
-    const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
-    bool ok = space >= 0 && how >= 0 && H5Pset_chunk(how, rank, chunk) >= 0;
-    if (ok && c->growth != BY_STEP && layout->deflate > 0)
-        ok = H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, layout->deflate) >= 0;
-    const hid_t set = ok ? H5Dcreate2(root, c->name, file_type(c->item, layout->doubles), space,
-                                      H5P_DEFAULT, how, H5P_DEFAULT)
-                         : -1;
-    ok = set >= 0 && H5Dclose(set) >= 0;
-    H5Pclose(how);
+    const hid_t space = H5Screate_simple(c->width > 1 ? 2 : 1, size, most);
+    const hid_t set = space >= 0 && how >= 0
+                          ? H5Dcreate2(root, c->name, file_type(c->item, layout->doubles), space,
+                                       H5P_DEFAULT, how, H5P_DEFAULT)
+                          : -1;
+    if (how >= 0) H5Pclose(how);
     H5Sclose(space);
-    return ok;
+    return set >= 0 && H5Dclose(set) >= 0;
 }
 
 static int64_t count_rows(hid_t set)
@@ -231,8 +240,9 @@ bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *pr
     const struct snapshot_layout layout = snapshot_file_layout(scene);
     for (int k = 0; ok && k < D_COUNT; k++) {
         if (!layout.has[k]) continue;
-        const int64_t rows = rows_of_chunk_in(like, &columns[k]);
-        ok = create_dataset(root, &layout, &columns[k], rows ? rows : chunk_rows(&columns[k], n));
+        const hid_t how = layout_in(like, &columns[k]);
+        ok = create_dataset(root, &layout, &columns[k],
+                            how >= 0 ? how : layout_of(&layout, &columns[k], n));
     }
     /* All arrays of points are read from the same place: their offsets are one dataset. */
     for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++) {

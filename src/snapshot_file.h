@@ -39,7 +39,7 @@ struct snapshot_layout {
 };
 struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
-/* Makes the groups and empty datasets of a new file for snapshots of about n points, in chunks like those
+/* Makes the groups and empty datasets of a new file for snapshots of about n points, packed like those
  * of another file, whose rows can then be taken over; negative: there is none. */
 bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n,
                            hid_t like);

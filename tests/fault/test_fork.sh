@@ -22,9 +22,9 @@ patched() {
     cp "$ckpt" "$dir/patched.ckpt"
     printf "$2" | dd of="$dir/patched.ckpt" bs=1 seek="$1" conv=notrunc status=none
 }
-patched 8 '\x02\0\0\0'
-expect 1 'has format 2, this program reads format 1' --inspect "$dir/patched.ckpt"
-expect 1 'has format 2' "$case" --out "$run" --restart "$dir/patched.ckpt"
+patched 8 '\x03\0\0\0'
+expect 1 'has format 3, this program reads format 2' --inspect "$dir/patched.ckpt"
+expect 1 "has format 3" "$case" --out "$run" --restart "$dir/patched.ckpt"
 patched 8 '\0\0\0\0'
 expect 1 'has format 0' --inspect "$dir/patched.ckpt"
 patched 8 '\0\0\0\x01\x01\x02\x03\x04'
@@ -55,6 +55,10 @@ expect 0 'simulated' "$case" --fork "$ckpt" --out "$dir/cut" --threads 1 --until
     --set gate.young=4e6
 expect 0 'restart from' "$case" --out "$dir/cut" --restart "${go[@]}" --set gate.young=4e6
 [ "$(hash "$dir/cut")" = "$(hash "$dir/stiff")" ] || fail "a restart in a fork changes bits"
+
+# --- fork: the structure answers within its sub-steps from here on, and owes nothing yet ---
+expect 0 'fork from' "$case" --fork "$ckpt" --out "$dir/answers" "${go[@]}" \
+    --set numerics.interface=impedance
 
 # --- fork: a wall that begins to move; one that would jump ---
 cp "$case" "$dir/moving.cfg"

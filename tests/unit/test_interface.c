@@ -124,6 +124,32 @@ static void test_momentum_closes(void)
     assert_near(1e-11 * size, start, end, "momentum");
 }
 
+/* Water that leaves a light wall takes nothing of what is owed along: once a particle is dry, its force is
+ * what it is given back, which fades. */
+static void test_dry_particles_owe_less_and_less(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\nprecision = double\n"
+             "[fluid water]\nshape = box 0, 0, 0.1, 0.2\nsound_speed = 20\nvelocity = -1, 0\n"
+             "[solid wall]\nshape = box 0.1, 0, 0.13, 0.2\nclamp = box 0.1, 0, 0.13, 0.03\n"
+             "density = 100\nyoung = 1e6\npoisson = 0.3\nvelocity = -0.5, 0\n"
+             "[domain]\nlower = -1, -0.2\nupper = 0.5, 0.5\n",
+             NULL);
+    solid = &rig.sim.kind[KIND_SOLID];
+    rig_run(&rig, 0.02);
+    double owed = 0;
+    for (int64_t i = 0; i < solid->n; i++) owed = fmax(owed, fabs(solid->owed_x[i]));
+    rig_run(&rig, 0.2);
+    TEST_ASSERT_TRUE(owed > 0);
+    const double kept = owed * pow(0.98, 100);
+    for (int64_t i = 0; i < solid->n; i++) {
+        TEST_ASSERT_TRUE(solid->wet_x[i] == 0);
+        assert_at_most(kept, fabs(solid->owed_x[i]), "owed");
+        assert_at_most(0.02 * kept / rig.sim.state.dt, fabs(solid->fx[i]),
+                       "force of what is given back");
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -131,5 +157,6 @@ int main(void)
     RUN_TEST(test_surface_of_a_straight_side);
     RUN_TEST(test_answer_and_return_by_hand);
     RUN_TEST(test_momentum_closes);
+    RUN_TEST(test_dry_particles_owe_less_and_less);
     return UNITY_END();
 }

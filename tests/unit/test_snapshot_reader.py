@@ -92,6 +92,19 @@ def check_restart(folder, whole):
             assert np.array_equal(a["VTKHDF/Points"][i:i + n], b["VTKHDF/Points"][j:j + n]), t
 
 
+def check_repacked(folder, whole):
+    """A restart with another compression keeps that of the file, and the snapshots in it readable."""
+    for first, then in ((2, 0), (0, 2)):
+        place = folder / str(first)
+        run(place, "--until", "0.012", "--set", f"output.snapshot_compression={first}")
+        run(place, "--restart", "--set", f"output.snapshot_compression={then}")
+        with h5py.File(place / "fields.vtkhdf") as a, h5py.File(whole) as b:
+            n = b["VTKHDF/NumberOfPoints"][0]
+            for name in ("Points", "PointData/pressure", "Connectivity"):
+                assert np.array_equal(a["VTKHDF"][name][:n], b["VTKHDF"][name][:n]), (first, name)
+                assert len(a["VTKHDF"][name][:]) > n
+
+
 def check_dropped(folder):
     """A restart from an earlier checkpoint drops the snapshots behind it and makes them anew."""
     options = ["--set", "output.checkpoint_interval=0.009"]
@@ -164,6 +177,7 @@ def main():
             assert np.allclose(times, [0, 0.005, 0.01, 0.015, 0.02], rtol=0, atol=1e-15), times
             check_numbers(path)
             check_restart(folder / "cut", path)
+            check_repacked(folder / "packed", path)
             check_dropped(folder / "dropped")
             check_killed(folder / "killed")
         if vtk is not None:
