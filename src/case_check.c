@@ -142,19 +142,45 @@ static enum err check_motion_keys(struct reader *r, const struct scene_motion *m
     return ERR_OK;
 }
 
-/* Finite with its derivatives at the start and at a thousand times until the end. */
+enum { MOTION_TIMES = 1000 };
+
+/* A jump would move a body without a velocity. */
+static enum err check_motion_jumps(struct reader *r, const struct scene_motion *m, const char *key,
+                                   const struct expr *e, double length)
+{
+    const struct scene_given *const given =
+        scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), key);
+    const int line = given ? given->line : m->common.line;
+    if (expr_steps(e))
+        return bad_line(r, line,
+                        "[motion %s] %s = %.200s jumps where it rounds what depends on t, and a "
+                        "motion needs a velocity",
+                        m->common.name, key, expr_source(e));
+    double size = 0, at;
+    for (int n = 0; n <= MOTION_TIMES; n++)
+        size = max2(size, 1e-6 * fabs(expr_jet_at(e, length * n / MOTION_TIMES).value));
+    for (int n = 0; n < MOTION_TIMES; n++)
+        if (expr_jumps(e, length * n / MOTION_TIMES, length * (n + 1) / MOTION_TIMES, size, &at))
+            return bad_line(r, line,
+                            "[motion %s] %s = %.200s jumps or is not finite at t = %g s since "
+                            "start, and a motion needs a velocity",
+                            m->common.name, key, expr_source(e), at);
+    return ERR_OK;
+}
+
+/* Finite with its derivatives at the start and at a thousand times until the end, without jumps between. */
 static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
 {
-    enum { TIMES = 1000 };
     const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
+    static const char *const keys[] = {"x", "y", "turn"};
     if (!m->x.e[0] && !m->y.e[0] && !m->turn.e[0])
         return bad_line(r, m->common.line,
                         "[motion %s] kind = expression needs `x`, `y` or `turn`, expressions in t",
                         m->common.name);
-    const double length = fmin(r->scene->top.end_time, m->stop) - m->start;
+    const double length = fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
     for (size_t k = 0; k < COUNT_OF(each); k++) {
-        for (int n = 0; each[k]->e[0] && n <= TIMES; n++) {
-            const double t = fmax(length, 0) * n / TIMES;
+        for (int n = 0; each[k]->e[0] && n <= MOTION_TIMES; n++) {
+            const double t = length * n / MOTION_TIMES;
             const struct expr_jet at = expr_jet_at(each[k]->e[0], t);
             if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
                 return bad_line(
@@ -163,6 +189,7 @@ static enum err check_motion_expressions(struct reader *r, const struct scene_mo
                     "not, at t = %g s since start",
                     m->common.name, expr_source(each[k]->e[0]), t);
         }
+        if (each[k]->e[0]) TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], length));
     }
     return ERR_OK;
 }
@@ -350,6 +377,17 @@ static enum err check_references(struct reader *r)
     return ERR_OK;
 }
 
+/* Named for nothing; without fluid or solid rules.def refuses it. */
+static void check_interface(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    const struct scene_given *const given = scene_given(s, SECTION_numerics, 0, "interface");
+    if (s->numerics.multirate == MULTIRATE_OFF && given && s->numerics.interface != INTERFACE_AUTO)
+        warn(r, given->line,
+             "`interface` does nothing with multirate = off: it is the fluid's force within the "
+             "solid's sub-steps, and there are none");
+}
+
 /* The largest steps that keep the accuracy of each integrator; the paper's is 0.2. */
 static void choose_cfl(struct scene *s)
 {
@@ -372,5 +410,6 @@ enum err case_check(struct reader *r)
     TRY(check_contacts(r));
     TRY(check_loads(r));
     TRY(check_references(r));
+    check_interface(r);
     return effects_check(s, r->diag);
 }

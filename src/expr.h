@@ -72,6 +72,14 @@ struct expr_jet {
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
 
+/* Whether it rounds what depends on t. */
+bool expr_steps(const struct expr *e);
+
+/* Whether its value changes by more than `size` in no time between two times, `at` being where, or has no
+ * value there. The interval is halved as long as the slopes do not explain the change: what is smooth is
+ * never taken for a jump, however steep; where much else goes on in the interval, it may be missed. */
+bool expr_jumps(const struct expr *e, double from, double to, double size, double *at);
+
 /* The text it was compiled from. */
 const char *expr_source(const struct expr *e);
 

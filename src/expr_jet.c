@@ -6,10 +6,13 @@
 #include "expr_ops.h"
 #include "scene.h"
 
-/* f(a) from f and its derivatives at a. */
+/* f(a) from f and its derivatives at a. Where a rests, as in (t^2)^1.5 at 0, an infinite second derivative
+ * does not count: with a finite first one its product with a'^2 goes to zero there. An infinite first one
+ * does. */
 static struct expr_jet chain(const struct expr_jet *a, double f, double first, double second)
 {
-    return (struct expr_jet){f, first * a->d1, second * a->d1 * a->d1 + first * a->d2};
+    const double bend = a->d1 != 0 ? second * a->d1 * a->d1 : 0;
+    return (struct expr_jet){f, first * a->d1, bend + first * a->d2};
 }
 
 static struct expr_jet unary(enum op_code code, struct expr_jet a)
@@ -84,4 +87,69 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
         }
     }
     return stack[0];
+}
+
+bool expr_steps(const struct expr *e)
+{
+    bool varies[MAX_STACK] = {false}; /* with t, of each operand */
+    int top = -1;
+    for (int k = 0; k < e->n; k++) {
+        const enum op_code code = e->op[k].code;
+        if (code == OP_NUMBER || code == OP_X || code == OP_Y) {
+            varies[++top] = code == OP_X;
+        } else if (is_binary(code)) {
+            top--;
+            varies[top] |= varies[top + 1];
+        } else if (code == OP_ROUND && varies[top]) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* By how much a change differs from what the slopes at both ends make of the time between. */
+static double unexplained(double from, double to, double slope_from, double slope_to, double dt)
+{
+    return fabs(to - from - 0.5 * (slope_from + slope_to) * dt);
+}
+
+static bool follows(double from, double to, double slope_from, double slope_to, double dt)
+{
+    const double slopes = fabs(slope_from) + fabs(slope_to);
+    return unexplained(from, to, slope_from, slope_to, dt) <=
+           0.1 * slopes * dt + 1e-12 * (fabs(from) + fabs(to));
+}
+
+static bool smooth(const struct expr_jet *a, const struct expr_jet *b, double dt)
+{
+    return follows(a->value, b->value, a->d1, b->d1, dt) && follows(a->d1, b->d1, a->d2, b->d2, dt);
+}
+
+/* Of the value, with that of the velocity: a pole of even order has the same value and no net velocity on its
+ * two sides. */
+static double mismatch(const struct expr_jet *a, const struct expr_jet *b, double dt)
+{
+    return unexplained(a->value, b->value, a->d1, b->d1, dt) +
+           dt * unexplained(a->d1, b->d1, a->d2, b->d2, dt);
+}
+
+bool expr_jumps(const struct expr *e, double from, double to, double size, double *at)
+{
+    enum { HALVINGS = 30 };
+    struct expr_jet a = expr_jet_at(e, from), b = expr_jet_at(e, to);
+    for (int k = 0; k < HALVINGS; k++) {
+        if (smooth(&a, &b, to - from)) return false;
+        const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+        const struct expr_jet m = expr_jet_at(e, middle);
+        *at = middle;
+        if (!isfinite(m.value)) return true;
+        if (mismatch(&a, &m, half) >= mismatch(&m, &b, half)) {
+            to = middle;
+            b = m;
+        } else {
+            from = middle;
+            a = m;
+        }
+    }
+    return fabs(b.value - a.value) > size;
 }

@@ -201,12 +201,13 @@ static void test_derivatives_of_every_function(void)
                                        "tanh(t - 0.2)",
                                        "exp(-t)*t",
                                        "log(1 + t)",
-                                       "round(t/3)",
+                                       "round(2.6)*t",
                                        "abs(t - 2)",
                                        "abs(t)",
                                        "min(t, t^3)",
                                        "max(t, t^3)",
                                        "-t^2",
+                                       "(t^2)^1.5",
                                        "t^3",
                                        "(1 + t)^-1.5",
                                        "(1 + t)^t",
@@ -255,12 +256,53 @@ static void test_bad_expressions(void)
         "kind = expression\nx = 0.1*sin(2*pi*x)\n",
         "motion.cfg:11: x = 0.1*sin(2*pi*x): `x` has a value only where a key takes an expression "
         "in x and y");
+    refuses(
+        "kind = expression\nx = sqrt(t^2)\n",
+        "motion.cfg:9: [motion move] sqrt(t^2) is not finite, or its velocity or acceleration is "
+        "not, at t = 0 s since start");
     refuses("velocity = 1, 0\nx = t\n",
             "motion.cfg:11: [motion move] `x` is of kind = expression, and "
             "this one is of kind = velocity");
     refuses("kind = sine\nperiod = 1\namplitude = 1, 0\nangle = 1\n",
             "motion.cfg:13: [motion move] `angle` is of kind = rotation, and this one is of kind = "
             "sine");
+}
+
+/* A body is nowhere moved without a velocity; what is steep, quick or has a kink is not a jump. */
+static void test_jumps_and_poles(void)
+{
+    refuses(
+        "kind = expression\nx = 0.1*round(t)\n",
+        "motion.cfg:11: [motion move] x = 0.1*round(t) jumps where it rounds what depends on t, "
+        "and a motion needs a velocity");
+    refuses(
+        "kind = expression\nx = t\nturn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337)\n",
+        "motion.cfg:12: [motion move] turn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337) jumps or is "
+        "not finite at t = 0.33337 s since start, and a motion needs a velocity");
+    static const char *const bad[] = {"1e-6/(t - 0.33337)", "1e-9/(t - 0.33337)^2",
+                                      "1e-6*tan(20*t)", "log(abs(t - 0.4443))",
+                                      "1e-9/(t - 0.3335)^2"};
+    for (size_t k = 0; k < COUNT_OF(bad); k++) {
+        char text[128];
+        snprintf(text, sizeof text, "kind = expression\ny = %s\n", bad[k]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, read(text), bad[k]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "jumps or is not finite at t = "),
+                                     diag.text);
+    }
+    static const char *const good[] = {"0.1*tanh(1e6*(t - 0.33337))",
+                                       "0.1*cos(1000*pi*t)",
+                                       "0.1*sin(12345*t)",
+                                       "abs(t - 0.33337)",
+                                       "1000 + max(t, 0.33337)",
+                                       "round(3*0.7)*t",
+                                       "exp(-1e6*(t - 0.5)^2)",
+                                       "0.1*sin(2*pi*t)^3"};
+    for (size_t k = 0; k < COUNT_OF(good); k++) {
+        char text[128];
+        snprintf(text, sizeof text, "kind = expression\ny = %s\n", good[k]);
+        must_read(text);
+        scene_free(&scene);
+    }
 }
 
 static void bad_table(const char *table, const char *message)
@@ -307,6 +349,7 @@ int main(void)
     RUN_TEST(test_expression_as_rotation_and_polynomial);
     RUN_TEST(test_derivatives_of_every_function);
     RUN_TEST(test_bad_expressions);
+    RUN_TEST(test_jumps_and_poles);
     RUN_TEST(test_bad_tables);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
