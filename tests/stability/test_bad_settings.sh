@@ -29,6 +29,8 @@ says 0 'numerics.cfl = 0.5 is beyond 0.4' column.cfg integrator=symplectic numer
 says 0 'numerics.cfl = 0.7 is beyond 0.6' column.cfg integrator=leapfrog numerics.cfl=0.7
 says 0 'is clamped nowhere, and a .load. acts on it' free.cfg
 says 0 'is clamped nowhere, and gravity acts on it' wedge.cfg
+says 0 '`interface` does nothing with multirate = off' plate.cfg \
+    numerics.interface=impedance numerics.multirate=off
 says 0 'growing modes' beam.cfg beam.hourglass_form=printed beam.gradient=linear
 "$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1
 if grep -q 'warning' "$dir/output"; then
