@@ -44,7 +44,7 @@ def scene_row(row):
     if not as_said:
         verdict += " (not as the table says)"
     elif not holds:
-        verdict += ", as it is known to"
+        verdict += ", as it is known to" + (" in this form" if scene["fails"] == form else "")
     measured = f"gain {found['gain']:.1e}, density {found['dens']:.1e}"
     if not found["finished"]:
         by = "a guard" if found["guarded"] else "the limit of minutes"
