@@ -36,6 +36,11 @@ struct convergence converge(const double value[3], double ratio)
     const double widest = max2(max2(fabs(fine), fabs(coarse)), fabs(value[2] - value[0]));
     struct convergence c = {.extrapolated = value[0], .band = 3 * widest, .order = NAN};
     c.why = widest > 0 ? "not monotone" : "no difference";
+    if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
+        c.why = "not finite";
+        c.band = NAN;
+        return c;
+    }
     if (!(fine / coarse > 0)) return c;
     c.order = log(coarse / fine) / log(ratio);
     c.ordered = c.order >= 0.5;

@@ -55,6 +55,18 @@ static void test_three_equal_values_have_no_band(void)
     TEST_ASSERT_EQUAL_DOUBLE(0, c.band);
 }
 
+static void test_values_that_are_not_finite(void)
+{
+    for (int k = 0; k < 3; k++) {
+        double value[3] = {5, 5.1, 5.3};
+        value[k] = k == 1 ? INFINITY : NAN;
+        const struct convergence c = converge(value, 2);
+        TEST_ASSERT_FALSE(c.ordered);
+        TEST_ASSERT_EQUAL_STRING("not finite", c.why);
+        TEST_ASSERT_TRUE(isnan(c.band));
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -63,5 +75,6 @@ int main(void)
     RUN_TEST(test_no_order_where_values_go_to_and_fro);
     RUN_TEST(test_no_order_where_differences_hardly_shrink);
     RUN_TEST(test_three_equal_values_have_no_band);
+    RUN_TEST(test_values_that_are_not_finite);
     return UNITY_END();
 }
