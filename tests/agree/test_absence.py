@@ -106,13 +106,14 @@ def row(name, cells):
     return "| " + " | ".join([name, *cells]) + " |"
 
 
-def report(whole, effects, costs, far):
+def report(whole, effects, costs, far, version):
     lines = [
         "# What an absent effect costs", "",
         f"Written by `make absence`: {len(effects) + 1} programs, one with everything and one without each "
         f"effect in turn. Four small scenes (`tests/agree/test_absence.py`), {STEPS} steps, one thread, "
         "x86-64-v3; instructions within `simulation_step` by valgrind, which are the same in every run, and "
-        "bytes of the run's arena. The state's hash was the same in all of them.", "",
+        f"bytes of the run's arena. The state's hash was the same in all of them. The program: "
+        f"{version}.", "",
         row("program with everything", SCENES), row("---", ["---:"] * len(SCENES)),
         row("instructions a step", [f"{whole[s][0]:.0f}" for s in SCENES]),
         row("bytes", [str(whole[s][1]) for s in SCENES]), "",
@@ -129,7 +130,7 @@ def report(whole, effects, costs, far):
     REPORT.write_text("\n".join(lines))
 
 
-def each(effects, whole, far):
+def each(effects, whole, far, version):
     costs, failures = {}, 0
     for effect in effects:
         scenes = [name for name in SCENES if effect not in whole[name][3]]
@@ -141,7 +142,7 @@ def each(effects, whole, far):
         for scene in scenes:
             costs[effect, scene], good = compare([effect], program, scene, whole)
             failures += not good
-    report(whole, effects, costs, far)
+    report(whole, effects, costs, far, version)
     return failures
 
 
@@ -172,7 +173,9 @@ def main():
     whole = {name: measure(reference, text) for name, text in SCENES.items()
              if long or name in ("dam break", "gate")}
     far = far_wall_is_free(reference)
-    return (each(effects, whole, far) if long else together(effects, whole)) + (not far[2]) > 0
+    version = subprocess.run([reference, "--version"], capture_output=True, text=True,
+                             check=True).stdout.strip()
+    return (each(effects, whole, far, version) if long else together(effects, whole)) + (not far[2]) > 0
 
 
 if __name__ == "__main__":

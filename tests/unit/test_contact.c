@@ -258,14 +258,6 @@ static void test_with_fluid(void)
     TEST_ASSERT_TRUE(vb > 0.1);
 }
 
-static void refused(const char *text, const char *why)
-{
-    struct scene scene;
-    struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_parse(&scene, text, "t.cfg", 0, NULL, &d));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
-}
-
 /* Contact's share of the step is told apart from the solid's: by hand, with n springs on a particle (T-34),
  * and without contact the solid's bound alone. So is its time. */
 static void test_bound_and_phase_of_its_own(void)
@@ -298,14 +290,14 @@ static void test_bad_input(void)
 #define TWO                                                                               \
     BLOCKS "shape = box 0.05, 0, 0.09, 0.04\n[wall w]\nshape = box 0, -0.1, 0.1, -0.05\n" \
            "[wall v]\nshape = box 0.2, -0.1, 0.3, -0.05\n[contact c]\n"
-    refused(TWO "between = a\n", "two names");
-    refused(TWO "between = a, bb\n", "between = bb: no [solid] of that name");
-    refused(TWO "between = w, v\n", "one of the two must be a solid");
-    refused(TWO "between = b, b\n", "does not touch itself");
-    refused(TWO "stiffness = 0\n", "stiffness");
-    refused("dp = 1 cm\nend_time = 1\n[fluid f]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 10\n"
-            "[contact c]\n",
-            "needs a [solid]");
+    rig_refuses(TWO "between = a\n", "two names");
+    rig_refuses(TWO "between = a, bb\n", "between = bb: no [solid] of that name");
+    rig_refuses(TWO "between = w, v\n", "one of the two must be a solid");
+    rig_refuses(TWO "between = b, b\n", "does not touch itself");
+    rig_refuses(TWO "stiffness = 0\n", "stiffness");
+    rig_refuses("dp = 1 cm\nend_time = 1\n[fluid f]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 10\n"
+                "[contact c]\n",
+                "needs a [solid]");
 }
 
 /* Sections that name bodies hold for those only, and differ from one that names nobody. */

@@ -4,13 +4,11 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
+#include "tiny.h"
 #include "unity.h"
 
-static char folder[64];
 static struct scene scene;
 static struct arena arena;
 static struct references references;
@@ -23,26 +21,20 @@ static const char head[] =
 
 void setUp(void)
 {
-    strcpy(folder, "/tmp/sphfsi-reference-XXXXXX");
-    TEST_ASSERT_NOT_NULL(mkdtemp(folder));
     memset(&arena, 0, sizeof arena);
     diag = (struct diag){.code = ERR_OK};
 }
 
 void tearDown(void)
 {
-    char command[100];
-    snprintf(command, sizeof command, "rm -r %s", folder);
-    TEST_ASSERT_EQUAL(0, system(command));
+    remove(tiny_path("r.csv"));
     arena_free(&arena);
     scene_free(&scene);
 }
 
 static void put(const char *name, const char *text)
 {
-    char path[100];
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *file = fopen(path, "w");
+    FILE *file = fopen(tiny_path(name), "w");
     TEST_ASSERT_NOT_NULL(file);
     fputs(text, file);
     fclose(file);
@@ -50,21 +42,20 @@ static void put(const char *name, const char *text)
 
 static enum err open_with(const char *lines, const char *header)
 {
-    char text[1000], path[100];
+    char text[1000];
     snprintf(text, sizeof text, "%s%s", head, lines);
-    snprintf(path, sizeof path, "%s/a.cfg", folder);
-    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_parse(&scene, text, path, 0, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_parse(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
+                              diag.text);
     return references_open(&references, &scene, 1, &header, &arena, &diag);
 }
 
 static struct score score_of(const char *lines, const char *rows)
 {
     struct score score;
-    char path[100];
     TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, open_with(lines, "time_s,P_dx_m,P_dy_m"), diag.text);
     put("probes.csv", rows);
-    snprintf(path, sizeof path, "%s/probes.csv", folder);
-    TEST_ASSERT_EQUAL(ERR_OK, references_score(&references, 0, path, &score, &diag));
+    TEST_ASSERT_EQUAL(ERR_OK,
+                      references_score(&references, 0, tiny_path("probes.csv"), &score, &diag));
     return score;
 }
 
