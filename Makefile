@@ -232,7 +232,7 @@ accuracy: $(PROGRAM)
 	@$(MAKE) --no-print-directory all
 
 forecast: $(PROGRAM)
-	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/forecast.py $(ARGS)
+	$(Q)$(PROJECT_PYTHON) tools/forecast.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
 	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)

@@ -144,7 +144,7 @@ static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COU
     const struct cell_list *list = &c->kind[KIND_FLUID];
     struct particles *const p = &kinds[KIND_FLUID];
     real *const *const lane = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
-#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
+#pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
@@ -352,7 +352,7 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
                            const struct cells *c, enum kind kind)
 {
     const struct cell_list *list = &c->kind[kind];
-#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
+#pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
@@ -527,8 +527,8 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
         vset((real)ETA2),
     };
     double acceleration2 = 0, approach = 0;
-#pragma omp parallel for schedule(dynamic) num_threads(f->threads) \
-    reduction(max                                                  \
+#pragma omp parallel for schedule(static) num_threads(f->threads) \
+    reduction(max                                                 \
               : acceleration2, approach)
     for (int32_t m = 0; m < shares; m++) {
         const int32_t first = m * CELLS_AT_ONCE;

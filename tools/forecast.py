@@ -41,7 +41,7 @@ def arguments():
 
 def foreseen(case, threads, more, cache):
     """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does not."""
-    environment = dict(os.environ, XDG_CACHE_HOME=cache, OMP_WAIT_POLICY="passive")
+    environment = dict(os.environ, XDG_CACHE_HOME=cache)
     done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
                           capture_output=True, text=True, check=False, env=environment)
     steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)

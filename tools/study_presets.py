@@ -32,6 +32,9 @@ def candidates(study, scene):
             points = [p for case in cases for p in study.of(case, knob, value)]
             if not points:
                 continue
+            if value in entry.get("not_preset", {}):
+                found[knob, value] = entry["not_preset"][value]
+                continue
             bad = sorted({p["outcome"] for p in points if not finished(p)})
             ratios = [study.ratios(p, main_error(study.cases[p["case"]])) for p in points]
             ratios = [r for r in ratios if r]
