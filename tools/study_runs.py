@@ -31,7 +31,7 @@ def joules():
 def timed(command, threads, limit):
     """Runs it: exit status or None for too long, its timing (s, J), stderr. The limit is of CPU time, so
     that a busy machine, or one where each run waits for its turn, changes nothing."""
-    environment = dict(os.environ, OMP_NUM_THREADS=str(threads), OMP_WAIT_POLICY="passive")
+    environment = dict(os.environ, OMP_NUM_THREADS=str(threads))
     with tempfile.TemporaryFile("w+", errors="replace") as stderr:
         load, energy, start = os.getloadavg()[0], joules(), time.monotonic()
         process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=stderr,
