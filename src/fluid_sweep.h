@@ -352,7 +352,7 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
                            const struct cells *c, enum kind kind)
 {
     const struct cell_list *list = &c->kind[kind];
-#pragma omp parallel for schedule(static) num_threads(f->threads)
+#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
