@@ -64,15 +64,6 @@ static void print_machine(const struct bench *b)
     fprintf(b->out, "what,variant,particles,threads,part,unit,median,min,max\n");
 }
 
-static void set_threads(int n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#else
-    (void)n;
-#endif
-}
-
 /* --- the machine --- */
 
 /* Chains of fma, as many as hide its latency and still fit sixteen registers. */
@@ -256,7 +247,7 @@ static void bench_solid(struct bench *b, bool paper, int threads)
 
 static void bench_all(struct bench *b, int threads, double largest)
 {
-    set_threads(threads);
+    thread_use(threads);
     bench_fma(b, threads, "float", run_float, LANES_FLOAT);
     bench_fma(b, threads, "double", run_double, LANES_DOUBLE);
     bench_copy(b, threads);

@@ -118,6 +118,15 @@ int thread_count(void)
 #endif
 }
 
+void thread_use(int n)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(n);
+#else
+    (void)n;
+#endif
+}
+
 int thread_index(void)
 {
 #ifdef _OPENMP

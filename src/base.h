@@ -65,8 +65,9 @@ void arena_fail_after(long n);
 /* Seconds of the monotonic clock. */
 double wall_clock(void);
 
-/* Threads a parallel region will use; 1 without OpenMP. Index of the calling thread. */
+/* Threads a parallel region will use, 1 without OpenMP; asks for n of them. Index of the calling thread. */
 int thread_count(void);
+void thread_use(int n);
 int thread_index(void);
 
 SPHFSI_INLINE double min2(double a, double b) { return a < b ? a : b; }

@@ -11,9 +11,6 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #ifndef SPHFSI_VERSION
 #define SPHFSI_VERSION "(unversioned build)"
@@ -236,31 +233,22 @@ enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct d
     return calibrate(c, s, d);
 }
 
-static void set_threads(int n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#else
-    (void)n;
-#endif
-}
-
 enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *threads,
                        struct diag *d)
 {
     struct sphfsi_options one = *o;
-    if (o->threads > 0 && o->threads <= 4096) set_threads(o->threads);
+    if (o->threads > 0 && o->threads <= 4096) thread_use(o->threads);
     *threads = thread_count();
     if (o->threads >= 0 && o->threads <= 4096) one.threads = 1;
     const enum err e = session_open(x, &one, d);
-    if (e) set_threads(*threads);
+    if (e) thread_use(*threads);
     return e;
 }
 
 void forecast_close(struct session *x, int threads)
 {
     session_close(x);
-    set_threads(threads);
+    thread_use(threads);
 }
 
 /* --- the run --- */

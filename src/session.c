@@ -5,9 +5,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 static void forward_warning(void *context, const char *text)
 {
@@ -89,9 +86,7 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
 enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
     TRY(check_options(o, d));
-#ifdef _OPENMP
-    if (o->threads > 0) omp_set_num_threads(o->threads);
-#endif
+    if (o->threads > 0) thread_use(o->threads);
     if (o->case_text)
         TRY(scene_parse(&x->scene, o->case_text, o->case_path ? o->case_path : "case", o->n_sets,
                         o->sets, d));

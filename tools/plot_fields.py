@@ -165,7 +165,7 @@ def arrange(runs, panels, window):
     """Figure and axes of equal scale. Several runs are columns and their instants rows; the
     instants of one run lie in as many columns as suit a page."""
     aspect = (window[3] - window[2]) / (window[1] - window[0])
-    left, right, bottom, bars, gap, row_gap = 0.6, 0.2, 0.45, 0.62, 0.3, 0.14
+    left, right, bottom, bars, gap, row_gap = 0.72, 0.2, 0.45, 0.62, 0.3, 0.14
     top = 0.25 if runs > 1 else 0.1  # the names of the runs
 
     def width_with(columns):

@@ -85,13 +85,18 @@ def gates():
             changed("cfl0.2", ["numerics.cfl=0.2"], "C_CFL = 0.2")]
 
 
+def at_2mm(prefix, case, at, name, sets, words):
+    """What the assumptions of the cases without a laboratory's curve are worth."""
+    return Spec(f"{prefix}-2mm-{name}", case, [*at(2, "integrator=leapfrog"), *sets],
+                f"dp = 2 mm, leapfrog{words}")
+
+
 def baffles():
     def at(size, *sets):
         return [f"dp={size} mm", "output.snapshot_interval=25 ms", *sets]
 
     def changed(name, sets, words):
-        return Spec(f"baffle-2mm-{name}", "wet_baffle", [*at(2, "integrator=leapfrog"), *sets],
-                    f"dp = 2 mm, leapfrog{words}")
+        return at_2mm("baffle", "wet_baffle", at, name, sets, words)
     return [*all_integrators("baffle", "wet_baffle", at(1), "dp = 1 mm"),
             *all_integrators("baffle-2.5mm", "wet_baffle", at(2.5), "dp = 2.5 mm", True),
             changed("leapfrog", [], ""), changed("embedded", ["embedded=16 mm"], ", 64 mm free"),
@@ -104,8 +109,7 @@ def sluices():
         return [f"dp={size} mm", *sets]
 
     def changed(name, sets, words):
-        return Spec(f"sluice-2mm-{name}", "sluice_gate", [*at(2, "integrator=leapfrog"), *sets],
-                    f"dp = 2 mm, leapfrog{words}")
+        return at_2mm("sluice", "sluice_gate", at, name, sets, words)
     return [*all_integrators("sluice", "sluice_gate", at(1), "dp = 1 mm"),
             *all_integrators("sluice-2.5mm", "sluice_gate", at(2.5), "dp = 2.5 mm", True),
             changed("leapfrog", [], ""), changed("opening10", ["opening=10 mm"], ", opening 10 mm"),

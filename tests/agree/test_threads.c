@@ -5,9 +5,6 @@
 #include "unity.h"
 
 #include <stdio.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 static const char scene[] =
     "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nskin = 0.02\n"
@@ -24,24 +21,15 @@ static int threads_before;
 
 void setUp(void) { threads_before = thread_count(); }
 
-static void use_threads(int n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#else
-    (void)n;
-#endif
-}
-
 void tearDown(void)
 {
-    use_threads(threads_before);
+    thread_use(threads_before);
     rig_close(&rig);
 }
 
 static uint64_t run(int threads, const char *integrator, const char *precision, const char *rate)
 {
-    use_threads(threads);
+    thread_use(threads);
     rig_open(&rig, scene, integrator, precision, rate, NULL);
     rig_steps(&rig, 50, 1);
     return simulation_hash(&rig.sim);
@@ -100,7 +88,7 @@ static void test_lone_solid(void)
     for (int integrator = 0; integrator < 2; integrator++) {
         const int threads[] = {1, 2, 3, 8};
         for (int k = 0; k < 4; k++) {
-            use_threads(threads[k]);
+            thread_use(threads[k]);
             rig_open(&rig, lone, integrator ? "integrator=verlet" : "integrator=symplectic", NULL);
             rig_run(&rig, 0.02);
             const uint64_t hash = simulation_hash(&rig.sim);
@@ -127,7 +115,7 @@ static void test_periodic_sides(void)
     uint64_t expected = 0;
     const int threads[] = {1, 2, 3, 8};
     for (int k = 0; k < 4; k++) {
-        use_threads(threads[k]);
+        thread_use(threads[k]);
         rig_open(&rig, round, NULL);
         rig_steps(&rig, 150, 1);
         const uint64_t hash = simulation_hash(&rig.sim);

@@ -6,9 +6,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 enum { MAX_SETS = 16 };
 
@@ -62,10 +59,12 @@ void rig_refuses(const char *text, const char *why)
     struct scene scene;
     struct simulation sim;
     struct diag d = {0};
-    if (scene_parse(&scene, text, "t.cfg", 0, NULL, &d) == ERR_OK) {
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
+    enum err e = scene_parse(&scene, text, "t.cfg", 0, NULL, &d);
+    if (e == ERR_OK) {
+        e = simulation_create(&sim, &scene, &d);
         scene_free(&scene);
     }
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, e, d.text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, why), d.text);
 }
 
@@ -84,12 +83,7 @@ void rig_evaluate(struct rig *r)
     fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
 }
 
-void rig_one_thread(void)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(1);
-#endif
-}
+void rig_one_thread(void) { thread_use(1); }
 
 double noise(uint64_t *state)
 {

@@ -8,9 +8,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 enum { N = 1500 };
 static const double lower[2] = {-0.3, 0.1}, upper[2] = {1.15, 0.92};
@@ -22,15 +19,6 @@ static struct particles kinds[KIND_COUNT];
 static struct cells cells;
 static int threads_before;
 
-static void use_threads(int n)
-{
-#ifdef _OPENMP
-    omp_set_num_threads(n);
-#else
-    (void)n;
-#endif
-}
-
 void setUp(void)
 {
     diag = (struct diag){0};
@@ -40,7 +28,7 @@ void setUp(void)
 
 void tearDown(void)
 {
-    use_threads(threads_before);
+    thread_use(threads_before);
     arena_free(&arena);
 }
 
@@ -182,7 +170,7 @@ static void test_lost_particles_come_last(void)
 
 static uint64_t hash_after(int threads, uint64_t shuffle)
 {
-    use_threads(threads);
+    thread_use(threads);
     arena_free(&arena);
     scatter(true);
     struct particles *const p = &kinds[KIND_FLUID];

@@ -241,7 +241,7 @@ static void test_with_fluid(void)
 {
     RIG_OPEN_SOLID(
         BLOCKS "shape = box 0.041, 0, 0.081, 0.04\n"
-               "[fluid drop]\nshape = box -0.05, 0, 0, 0.04\nsound_speed = 20\nvelocity = 1, 0\n"
+               "[fluid drop]\nshape = box -0.05, 0, 0, 0.04\nsound_speed = 12\nvelocity = 1, 0\n"
                "[domain]\nlower = -0.2, -0.1\nupper = 0.3, 0.15\n",
         "numerics.multirate=on", "numerics.interface=held"); /* nothing owed between them */
     const struct sums before = sums();
@@ -250,7 +250,7 @@ static void test_with_fluid(void)
         rig_run(&rig, rig.sim.state.time + 1e-3);
         most = fmax(most, sums().contact);
     }
-    TEST_ASSERT_TRUE(most > 0 && rig.sim.state.solid_substeps >= 2 * rig.sim.state.steps);
+    TEST_ASSERT_TRUE(most > 0 && rig.sim.state.solid_substeps > 2 * rig.sim.state.steps);
     const struct sums after = sums();
     assert_at_most(1e-6 * before.mx, hypot(after.mx - before.mx, after.my - before.my), "momentum");
     double vb = 0;

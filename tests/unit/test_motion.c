@@ -28,6 +28,13 @@ static void must_read(const char *motion)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, read(motion), diag.text);
 }
 
+static void must_read_expression(const char *x)
+{
+    char text[128];
+    snprintf(text, sizeof text, "kind = expression\nx = %s\n", x);
+    must_read(text);
+}
+
 static void expect(double time, double dx, double vx, double ax)
 {
     const struct motion_state m = motion_at(&scene, 0, time);
@@ -216,9 +223,7 @@ static void test_derivatives_of_every_function(void)
                                        "(t + 1)^0 - 2*t",
                                        "min(t/0.1, 1)*sin(2*pi*t)"};
     for (size_t k = 0; k < COUNT_OF(each); k++) {
-        char text[128];
-        snprintf(text, sizeof text, "kind = expression\nx = %s\n", each[k]);
-        must_read(text);
+        must_read_expression(each[k]);
         for (double t = 0.15; t < 0.95; t += 0.2) {
             const double h = 1e-4;
             const struct motion_state before = motion_at(&scene, 0, t - h),
@@ -298,9 +303,7 @@ static void test_jumps_and_poles(void)
                                        "exp(-1e6*(t - 0.5)^2)",
                                        "0.1*sin(2*pi*t)^3"};
     for (size_t k = 0; k < COUNT_OF(good); k++) {
-        char text[128];
-        snprintf(text, sizeof text, "kind = expression\ny = %s\n", good[k]);
-        must_read(text);
+        must_read_expression(good[k]);
         scene_free(&scene);
     }
 }
