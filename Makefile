@@ -21,7 +21,9 @@
 #   make accuracy        run what is missing of the accuracy study, write docs/accuracy.md (ARGS=--list)
 #   make forecast        what --explain foresees against what the shipped cases take: docs/accuracy.md
 #   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
-#                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted
+#                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted;
+#                        KEEP=1 keeps the results of the longer runs in docs/validation/, where they count as
+#                        run from then on (ARGS=--again)
 #   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
 #   make docs            write the reference of keys in docs/cases.md
 #   make check | format  style, layers and exported symbols | clang-format in place
@@ -235,7 +237,8 @@ forecast: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/forecast.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
-	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) $(ARGS)
+	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) \
+	  $(if $(KEEP),--keep) $(ARGS)
 
 check: $(PROGRAM) $(LIB)
 	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)

@@ -4,8 +4,8 @@
 import metrics
 from plot_m1 import peak
 from runfiles import COLOURS, WIDTH, BadFile, Reference, np, plt, read_table
-from snapshots import Snapshots
-from validation_report import COST, Missing, cost, ledgers, series, specs, starting
+from validation_measures import Missing, bore, contact, front_speed
+from validation_report import COST, cost, ledgers, series, starting
 from validation_runs import BY_NAME, ROOT
 
 REFERENCES = ROOT / "cases" / "reference"
@@ -307,26 +307,6 @@ def interface(report, names):
     return [*lines, ""]
 
 
-def contact(run):
-    file, dp = Snapshots(run.folder / "fields.vtkhdf"), run.spacing()
-    closest, near, wetted, gaps = np.inf, [], 0, 0
-    for step in range(1, len(file.times)):
-        kind, x = file.load(step, "kind"), file.load(step, "Points")[:, :2]
-        solid, fluid = x[kind == 2], x[kind == 0]
-        start = solid - file.load(step, "displacement")[kind == 2][:, :2]
-        low, high = start.min(axis=0), start.max(axis=0)
-        skin = ((start - low < 0.6 * dp) | (high - start < 0.6 * dp)).any(axis=1)
-        away = metrics.nearest(solid[skin], fluid, 3 * dp) / dp
-        wet = away < 2.99
-        if wet.any():
-            closest = min(closest, away.min())
-            near.append(away[away < 1.5])
-            wetted, gaps = wetted + wet.sum(), gaps + (wet & (away > 1.5)).sum()
-    if not wetted:
-        raise Missing("no snapshot with water at the structure")
-    return closest, float(np.median(np.concatenate(near))), gaps / wetted
-
-
 def contact_time(run, least=2e-4):
     """First instant at which M1 has moved by more than `least` (m) from where it hangs at rest."""
     time, dx = series(run, "M1_dx_m")
@@ -336,28 +316,6 @@ def contact_time(run, least=2e-4):
     return float(time[moved[0]])
 
 
-def bore(run, start, low, high, rest):
-    """Depth and speed of the bore between the plate at `start` and the foundation, from the surface
-    in the snapshots: the front is where it stands halfway between rest and the bore's depth."""
-    file, dp = Snapshots(run.folder / "fields.vtkhdf"), run.spacing()
-    at = np.arange(start + 0.02, start + 0.29, 2 * dp)
-    front, depths = [], []
-    for step, time in enumerate(file.times):
-        x = file.load(step, "Points")[file.load(step, "kind") == 0][:, :2]
-        height = metrics.surface_height(x[x[:, 1] < 0.2], dp, at)
-        ahead = np.flatnonzero(height > 0.5 * (rest + low))
-        if len(ahead) and at[ahead[-1]] < at[-1] - 0.02 and ahead[-1] > 3:
-            front.append((time, at[ahead[-1]]))
-            behind = height[(at > at[ahead[-1]] - 0.12) & (at < at[ahead[-1]] - 0.03)]
-            if len(behind) > 4:
-                depths.append(float(np.median(behind)))
-    if len(front) < 3 or not depths:
-        raise Missing("too few snapshots of the bore")
-    time, way = np.array(front).T
-    return float(np.mean(depths)), float(np.polyfit(time, way, 1)[0]), float(
-        np.interp(start + 0.25, way, time, right=np.nan))
-
-
 def baffle(report):
     depth, speed = metrics.wet_bed_bore(0.15, 0.03)
 
@@ -365,7 +323,7 @@ def baffle(report):
         time, dx = series(run, "M1_dx_m")
         k = int(np.argmax(np.abs(dx)))
         late = time > 0.7
-        height, fast, _ = bore(run, 0.503, depth, 0.15, 0.03)
+        height, fast = bore(run)
         return [f"{1e3 * height:.1f} ({100 * (height / depth - 1):+.0f} %)",
                 f"{fast:.2f} ({100 * (fast / speed - 1):+.0f} %)", f"{contact_time(run):.3f}",
                 f"{1e3 * dx[k]:.1f}",
@@ -399,18 +357,6 @@ def baffle(report):
         *ledgers(report, ["baffle"])]
 
 
-def front_speed(run, start, end):
-    """Speed of the foremost water between two places."""
-    file = Snapshots(run.folder / "fields.vtkhdf")
-    front = [(time, file.load(step, "Points")[file.load(step, "kind") == 0][:, 0].max())
-             for step, time in enumerate(file.times)]
-    time, way = np.array(front).T
-    k = np.flatnonzero((way > start) & (way < end))
-    if len(k) < 2:
-        raise Missing("too few snapshots of the front")
-    return float((way[k[-1]] - way[k[0]]) / (time[k[-1]] - time[k[0]]))
-
-
 def sluice(report):
     ritter = 2 * np.sqrt(G * 0.2)
 
@@ -418,7 +364,7 @@ def sluice(report):
         time, dx = series(run, "M1_dx_m")
         k = int(np.argmax(np.abs(dx)))
         late = time > 1.0
-        fast = front_speed(run, 0.55, 1.45)
+        fast, = front_speed(run)
         return [f"{fast:.2f} ({100 * fast / ritter:.0f} %)", f"{contact_time(run):.3f}",
                 f"{1e3 * dx[k]:.1f}",
                 f"{time[k]:.3f}", f"{1e3 * dx[late].mean():.1f}", f"{1e3 * dx[late].std():.2f}",

@@ -6,46 +6,18 @@ import subprocess
 
 import metrics
 from runfiles import COLOURS, WIDTH, BadFile, np, plt, read_table
-from snapshots import Snapshots
-from validation_report import COST, Missing, cost, ledgers, series, starting
+from validation_measures import G, Missing, front_of, number, rest, turning
+from validation_report import COST, cost, ledgers, series, starting
 from validation_runs import BY_NAME, ROOT
 
 REFERENCES = ROOT / "cases" / "reference"
-G = 9.81
-
-
-def number(run, name):
-    """A constant of the effective case in SI units, or dp."""
-    for kind, _, keys in run.case():
-        if kind in ("constants", "top", "numerics") and name in keys:
-            return float(keys[name].split()[0])
-    raise BadFile(f"{run.folder / 'case.cfg'}: no constant {name}")
 
 
 def scheme(run):
     return next(keys for kind, _, keys in run.case() if kind == "fluid")
 
 
-def last_fluid(run):
-    """Positions, pressures and velocities of the water in the last snapshot."""
-    file = Snapshots(run.folder / "fields.vtkhdf")
-    step = len(file.times) - 1
-    here = file.load(step, "kind") == 0
-    return [file.load(step, name)[here].astype(float) for name in ("Points", "pressure", "velocity")]
-
-
 # --- water alone ---
-def rest(run):
-    """Still water at the end: L2 error of the pressure over that of rho g (H - y), kinetic over
-    potential energy, and the slope of a straight line through the pressures over rho g."""
-    height = number(run, "H")
-    x, p, v = last_fluid(run)
-    exact = 1000 * G * (height - x[:, 1])
-    slope = np.polyfit(height - x[:, 1], p, 1)[0] / (1000 * G)
-    energy = float((0.5 * (v ** 2).sum(axis=1)).sum() / (G * x[:, 1]).sum())
-    return float(np.sqrt(np.mean((p - exact) ** 2) / np.mean(exact ** 2))), energy, float(slope)
-
-
 def still(report):
     def cells(run):
         error, energy, slope = rest(run)
@@ -162,19 +134,6 @@ def vortices(report):
         "error falls with the spacing.", ""]
 
 
-def front_of(run):
-    """Time and place of the foremost water in the snapshots; drops of fewer than four do not count."""
-    file, dp = Snapshots(run.folder / "fields.vtkhdf"), run.spacing()
-    way = []
-    for step in range(len(file.times)):
-        x = file.load(step, "Points")[file.load(step, "kind") == 0][:, :2]
-        x = x[np.argsort(-x[:, 0])]
-        away = np.hypot(*(x[:60, None] - x[None, :200]).transpose(2, 0, 1))
-        company = (away < 2.1 * dp).sum(axis=1) > 3
-        way.append(x[int(np.argmax(company)), 0] + dp / 2)
-    return file.times, np.array(way)
-
-
 def front(report):
     table, _ = read_table(REFERENCES / "dam_break_martin_moyce_1952.csv")
     if set(table) != {"time_nd", "front_nd"}:
@@ -185,8 +144,7 @@ def front(report):
 
     def curve(run, scale):
         width = number(run, "a")
-        time, way = seen.setdefault(run.name, None) or front_of(run)
-        seen[run.name] = time, way
+        time, way = seen[run.name] = seen.get(run.name) or tuple(map(np.array, front_of(run)))
         return time * np.sqrt(scale * G / width), way / width
 
     def off(run, scale, shift=0.0):
@@ -360,17 +318,12 @@ def patch(report):
 
 def spin(run):
     """Relative change of the angular momentum, elastic over kinetic energy, error of the corner."""
-    file = Snapshots(run.folder / "fields.vtkhdf")
-
-    def momentum(step):
-        x, v = file.load(step, "Points"), file.load(step, "velocity").astype(float)
-        return float((x[:, 0] * v[:, 1] - x[:, 1] * v[:, 0]).sum())
     ledger = run.table("ledger.csv")
     side, omega = number(run, "L"), number(run, "omega")
     time, dx = series(run, "corner_dx_m")
     exact = side / 2 * (np.cos(omega * time) - np.sin(omega * time) - 1)
     strain = ledger["elastic_J_per_m"] + ledger["hourglass_J_per_m"]
-    return (momentum(len(file.times) - 1) / momentum(0) - 1,
+    return (turning(run)[0],
             float((strain / ledger["kinetic_J_per_m"]).max()),
             float(np.abs(dx - exact).max() / side))
 

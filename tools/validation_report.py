@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Writes docs/validation.md and its figures from the runs that there are.
 
-A section that meets a reference that is missing or malformed says so and the rest goes on; a run that
-failed, has not ended or was not run stands in its table with that word."""
+A run that is not there is taken from what is kept of it (validation_kept.py). A section that meets a
+reference that is missing or malformed says so and the rest goes on; a run that failed, has not ended or was
+not run stands in its table with that word."""
 
 import datetime
 import subprocess
@@ -10,36 +11,45 @@ import sys
 from pathlib import Path
 
 from runfiles import BadFile, Run, np
-from validation_runs import BY_NAME, ROOT, SPECS
+from validation_measures import Missing, NotRun, balance
+from validation_runs import BY_NAME, ENDED, ROOT, SPECS, physics
 
 TOOLS = Path(__file__).resolve().parent
-
-
-class Missing(Exception):
-    """There is no finished run to report on; the text says what there is."""
+ORIGIN = "Runs"  # entry of a picture that says of which runs and version it is
 
 
 class Report:
-    """What the sections share: the folder of figures, targets, runs that failed just now."""
+    """What the sections share: the folder of figures, targets, runs that failed just now, kept results."""
 
-    def __init__(self, docs, failed):
+    def __init__(self, docs, failed, kept):
         self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
-        self.targets, self.versions = [], set()
+        self.targets, self.kept = [], kept
 
-    def run(self, name, partly=False):
-        """A finished run; with `partly` also one that has got somewhere."""
-        spec = BY_NAME[name]
-        if name in self.failed and not partly:
+    def folder(self, spec):
+        """Where the result of a run is: its own folder if it has ended there and is of the case that is
+        meant now, or else what is kept of it, or else its own folder, such as it is."""
+        has_summary = (spec.folder / "summary.json").is_file()
+        case = spec.folder / "case.cfg"
+        if has_summary and Run(spec.folder).summary.get("exit_reason") in ENDED and case.is_file() and \
+                physics(case.read_text()) == self.kept.effective(spec):
+            return spec.folder
+        try:
+            return self.kept.find(spec)
+        except NotRun:
+            if has_summary:
+                return spec.folder
+            raise
+
+    def run(self, name):
+        """A finished run."""
+        if name in self.failed:
             raise Missing(f"failed: {self.failed[name]}")
-        if not (spec.folder / "summary.json").is_file():
-            raise Missing("not run")
-        run = Run(spec.folder)
-        if run.failure() and not partly:
+        run = Run(self.folder(BY_NAME[name]))
+        if run.failure():
             reason = run.summary.get("exit_reason", "")
             ended = run.summary.get("time", 0)
             raise Missing(f"failed at t = {ended:.3g} s: {run.summary.get('message', reason)}"
                           if reason == "guard" else f"unfinished, at t = {ended:.3g} s")
-        self.versions.add(run.summary.get("version", "?"))
         return run
 
     def has(self, *names):
@@ -92,36 +102,60 @@ class Report:
 
     # --- figures ---
     def draw(self, tool, names, image, caption, *options):
-        """A figure by one of the drawing tools, or the sentence why there is none."""
-        runs = [str(BY_NAME[name].folder) for name in self.has(*names)]
+        """A figure by one of the drawing tools, or the sentence why there is none. Where the snapshots
+        that it shows are not kept, the picture that there is stays, and the report says of what it is."""
+        runs = [self.run(name) for name in self.has(*names)]
         if not runs:
             return [f"*No figure: none of {', '.join(names)} has finished.*", ""]
         path = self.images / f"validation-{image}.png"
-        done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"), *runs, "--out", str(path),
-                               *map(str, options)], capture_output=True, text=True, check=False)
+        if tool == "plot_fields":
+            full = [run for run in runs if (run.folder / "fields.vtkhdf").is_file()]
+            if len(full) < len(runs) and path.is_file():
+                return self.standing(path, caption)
+            if not full:
+                return ["*No figure: the snapshots are not kept, and it has not been drawn before.*", ""]
+            runs = full
+        done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"), *(str(run.folder) for run in runs),
+                               "--out", str(path), *map(str, options)],
+                              capture_output=True, text=True, check=False)
         if done.returncode:
             last = (done.stderr.strip().splitlines() or ["no message"])[-1]
             return [f"*No figure: {last}*", ""]
-        return self.picture(path, caption)
+        versions = dict.fromkeys(run.summary.get("version", "?") for run in runs)
+        return self.picture(path, caption, f"{', '.join(run.name for run in runs)} by {', '.join(versions)}")
 
     def save(self, figure, image, caption):
         path = self.images / f"validation-{image}.png"
         figure.savefig(path)
         return self.picture(path, caption)
 
-    def picture(self, path, caption):
-        shrink(path)
+    def picture(self, path, caption, origin=""):
+        shrink(path, origin)
         return [f"![{caption}](img/{path.name})", "", f"*{caption}*", ""]
 
+    def standing(self, path, caption):
+        """A picture that was drawn when the snapshots were there."""
+        from PIL import Image
+        try:
+            with Image.open(path) as image:
+                origin = image.info.get(ORIGIN) or "runs and a version that it does not name"
+        except (OSError, ValueError) as problem:
+            return [f"*No figure: the snapshots are not kept, and {path.name} cannot be read "
+                    f"({problem}).*", ""]
+        return [f"![{caption}](img/{path.name})", "", f"*{caption}; drawn before, of {origin}*", ""]
 
-def shrink(path, width=1500, colours=256):
-    """Makes a picture small: at most `width` pixels wide, from a palette."""
-    from PIL import Image  # comes with matplotlib
+
+def shrink(path, origin="", width=1500, colours=256):
+    """Makes a picture small: at most `width` pixels wide, from a palette; it carries what it is of."""
+    from PIL import Image, PngImagePlugin  # comes with matplotlib
+    words = PngImagePlugin.PngInfo()
+    if origin:
+        words.add_text(ORIGIN, origin)
     with Image.open(path) as image:
         image = image.convert("RGB")
         if image.width > width:
             image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-        image.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
+        image.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True, pnginfo=words)
 
 
 def series(run, column, since=-1.0):
@@ -142,34 +176,22 @@ def cost(run):
 COST = ["fluid steps", "solid steps", "s (threads)"]
 
 
-def specs(*names):
-    return [BY_NAME[name] for name in names]
-
-
 def starting(prefix):
     return [spec for spec in SPECS if spec.name.startswith(prefix)]
 
 
 def ledgers(report, prefixes):
     """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
-    from plot_ledger import energy_shares, read_ledger
     lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, "
              "y at the end (N s/m) | mass | density |", "|---" * 7 + "|"]
     for spec in [s for p in prefixes for s in starting(p)]:
         try:
-            run = report.run(spec.name)
-            ledger = read_ledger(run)
+            play, lost, gain, along, up, mass, density = balance(report.run(spec.name))
         except (Missing, BadFile):
             continue
-        play = energy_shares(ledger)[1]
-        lost = ledger["dissipated"]
-        gain = np.max(np.maximum.accumulate(lost) - lost)
-        density = np.nanmax(ledger["dens_extreme"])
-        mass = ledger["mass"][-1] / ledger["mass"][0] - 1 if ledger["mass"][0] else 0.0
         lines.append(
-            f"| {spec.name} | {play:.4g} | {lost[-1]:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
-            f"| {ledger['momentum_x'][-1]:.3g}, {ledger['momentum_y'][-1]:.3g} | {mass:+.1g} | "
-            f"{100 * density:.2g} % |")
+            f"| {spec.name} | {play:.4g} | {lost:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
+            f"| {along:.3g}, {up:.3g} | {mass:+.1g} | {100 * density:.2g} % |")
     return [*lines, ""]
 
 
@@ -181,19 +203,29 @@ def machine():
     return "unknown processor"
 
 
-def what_was_run(report):
-    """The runs by how they stand."""
-    stand = {"finished": [], "unfinished or failed": [], "not run": []}
+def by_version(report, newest):
+    """Names of the finished runs by the version of the program, the newest first."""
+    found = {}
+    for name in report.has(*BY_NAME):
+        found.setdefault(report.run(name).summary.get("version", "?"), []).append(name)
+    return dict(sorted(found.items(), key=lambda item: (item[0] != newest, -len(item[1]))))
+
+
+def what_was_run(report, versions):
+    """The runs by how they stand; those of another version than the newest for themselves."""
+    stand, done = {"unfinished or failed": [], "not run": []}, {}
+    for k, (version, names) in enumerate(versions.items()):
+        done[f"finished, by {version}" if k else "finished"] = names
     for spec in SPECS:
         try:
             report.run(spec.name)
-            stand["finished"].append(spec.name)
-        except Missing as problem:
-            stand["not run" if str(problem) == "not run" else "unfinished or failed"].append(spec.name)
-        except BadFile:
+        except NotRun as nothing:
+            wrong = str(nothing).partition("; ")[2]
+            stand["not run"].append(f"{spec.name} ({wrong})" if wrong else spec.name)
+        except (Missing, BadFile):
             stand["unfinished or failed"].append(spec.name)
     return [f"* {words} ({len(names)}): {', '.join(names) or 'none'}"
-            for words, names in stand.items()] + [""]
+            for words, names in {**(done or {"finished": []}), **stand}.items()] + [""]
 
 
 def sections():
@@ -215,8 +247,9 @@ def sections():
             ("Ledgers of the verification runs", checks.all_ledgers)]
 
 
-def write_report(docs, failed):
-    report = Report(docs, failed)
+def write_report(docs, failed, kept, newest):
+    """`newest`: the version of the program as it is now."""
+    report = Report(docs, failed, kept)
     report.images.mkdir(parents=True, exist_ok=True)
     body = []
     for title, section in sections():
@@ -226,19 +259,23 @@ def write_report(docs, failed):
         except (Missing, BadFile) as problem:
             body += [f"**Not reported: {problem}.**", ""]
         print(f"section: {title}", flush=True)
-    runs = what_was_run(report)
+    versions = by_version(report, newest)
+    done = [name for names in versions.values() for name in names]
+    taken = sum(report.run(name).folder != BY_NAME[name].folder for name in done)
     head = [
         "# Validation", "",
         "Written by `make validate` (`tools/validate.py`); nothing here is typed by hand, and what "
-        "is judged is computed from the runs. Program " + ", ".join(sorted(report.versions)) +
-        f"; {machine()}; {datetime.date.today()}. Seconds are the clock's of a run's last process, "
+        "is judged is computed from the runs. Program " +
+        (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items()) or newest) +
+        f"; {taken} of the {len(done)} runs are kept results (`docs/validation/`). Report of "
+        f"{datetime.date.today()}, {machine()}. Seconds are the clock's of a run's last process, "
         f"on a machine that other work shared: they show ratios at best.", "",
         "## Targets", "", "| case | target | found | |", "|---|---|---|---|",
         *("| " + " | ".join(row) + " |" for row in report.targets), "",
         "Why a target is missed is said in the section of its case.", ""]
     tail = ["## What was run", "",
             "A run that is not listed as finished has no number in this report. Names are those of "
-            "`tools/validation_runs.py`; `--only NAME` runs one.", "", *runs]
+            "`tools/validation_runs.py`; `--only =NAME` runs one.", "", *what_was_run(report, versions)]
     path = report.docs / "validation.md"
     path.write_text("\n".join([*head, *body, *tail]).rstrip() + "\n")
     print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")

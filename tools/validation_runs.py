@@ -8,9 +8,11 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from runfiles import BadFile, Run
+from validation_measures import NotRun
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "runs" / "validation"
+ENDED = ("finished", "guard")  # exit reasons after which a run would end in the same way again
 PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
 
 
@@ -175,26 +177,37 @@ def physics(text):
             if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label "))]
 
 
-class Runner:
-    """Runs what is not up to date, several at a time with a thread each: a run gives the same bits
-    on any number of threads, and separate runs share no barrier."""
+class Program:
+    """The program under validation."""
 
-    def __init__(self, program, any_version=False):
-        self.program, self.any_version, self.lock = str(program), any_version, threading.Lock()
-        self.failed = {}
+    def __init__(self, path):
+        self.path, self.cases = str(path), {}
         try:
-            done = subprocess.run([self.program, "--version"], capture_output=True, text=True,
-                                  check=True)
+            done = subprocess.run([self.path, "--version"], capture_output=True, text=True, check=True)
         except (OSError, subprocess.CalledProcessError):
-            raise BadFile(f"cannot run {program}; build it with make") from None
+            raise BadFile(f"cannot run {path}; build it with make") from None
         self.version = done.stdout.split()[-1]
 
     def effective(self, spec):
-        done = subprocess.run([self.program, "--effective", str(spec.case), *spec.arguments()],
-                              capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise BadFile(f"{spec.name}: {done.stderr.strip().splitlines()[-1]}")
-        return physics(done.stdout)
+        """What the specification of a run means now, as physics() of the effective case."""
+        command = (self.path, "--effective", str(spec.case), *spec.arguments())
+        if command not in self.cases:
+            done = subprocess.run(command, capture_output=True, text=True, check=False)
+            if done.returncode:
+                raise BadFile(f"{spec.name}: {done.stderr.strip().splitlines()[-1]}")
+            self.cases[command] = physics(done.stdout)
+        return self.cases[command]
+
+
+class Runner:
+    """Runs what is not up to date, several at a time with a thread each: a run gives the same bits
+    on any number of threads, and separate runs share no barrier. `kept`: the kept results, which count
+    as run unless `again`; `keep`: those of the longer runs are kept as they end."""
+
+    def __init__(self, program, kept, any_version=False, again=False, keep=False):
+        self.program, self.kept, self.lock = program, kept, threading.Lock()
+        self.any_version, self.again, self.keep = any_version, again, keep
+        self.failed = {}
 
     def state(self, spec):
         """new, finished, ended (and would end again), interrupted, or other: of another case or
@@ -202,26 +215,37 @@ class Runner:
         if not (spec.folder / "case.cfg").is_file():
             return "new"
         run = Run(spec.folder)
-        same = physics((spec.folder / "case.cfg").read_text()) == self.effective(spec)
-        if not same or not (self.any_version or run.summary.get("version") == self.version):
+        same = physics((spec.folder / "case.cfg").read_text()) == self.program.effective(spec)
+        if not same or not (self.any_version or run.summary.get("version") == self.program.version):
             return "other"
         reason = run.summary.get("exit_reason")
-        if reason in ("finished", "guard"):
+        if reason in ENDED:
             return "finished" if reason == "finished" else "ended"
         return "interrupted" if list(spec.folder.glob("*.ckpt")) else "other"
+
+    def is_kept(self, spec):
+        try:
+            self.kept.find(spec)
+        except NotRun:
+            return False
+        return True
 
     def run(self, spec):
         try:
             state = self.state(spec)
+            if state not in ("finished", "ended"):
+                if not self.again and self.is_kept(spec):
+                    return
+                self.compute(spec, state)
+            self.store(spec)
         except BadFile as problem:
             self.say(str(problem))
-            self.failed[spec.name] = str(problem)
-            return
-        if state in ("finished", "ended"):
-            return
+            self.failed.setdefault(spec.name, str(problem))
+
+    def compute(self, spec, state):
         if state == "other":
             shutil.rmtree(spec.folder)
-        command = [self.program, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
+        command = [self.program.path, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
                    *spec.arguments(), *(["--restart"] if state == "interrupted" else [])]
         self.say(f"{'continues' if state == 'interrupted' else 'runs'} {spec.name}: {spec.words}")
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -229,6 +253,17 @@ class Runner:
             text = (done.stderr.strip().splitlines() or ["no message"])[-1]
             self.failed[spec.name] = text
             self.say(f"{spec.name} failed: {text}")
+
+    def store(self, spec):
+        """Keeps the result of a longer run that has ended, if that is wanted."""
+        if not self.keep or spec.quick or not (spec.folder / "case.cfg").is_file() or \
+                Run(spec.folder).summary.get("exit_reason") not in ENDED:
+            return
+        try:
+            path = self.kept.store(spec)
+            self.say(f"kept {spec.name}: {path.stat().st_size / 1000:.0f} kB")
+        except (BadFile, OSError) as problem:
+            self.say(f"{spec.name} is not kept: {problem}")
 
     def say(self, text):
         with self.lock:

@@ -19,6 +19,7 @@ try:
     import metrics
     import validation_cases
     import validation_checks
+    import validation_kept
     import validation_report
     import validation_runs
     from runfiles import BadFile
@@ -101,7 +102,9 @@ def test_runner(folder):
     """Finished runs of the same case stay; another setting runs anew; an interrupted one goes on."""
     spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
     spec.folder = folder / "tiny"
-    runner = validation_runs.Runner(PROGRAM)
+    program = validation_runs.Program(PROGRAM)
+    kept = validation_kept.Kept(folder / "kept", program.effective)
+    runner = validation_runs.Runner(program, kept)
     runner.say = lambda text: None
     runner.run(spec)
     assert not runner.failed, runner.failed
@@ -117,8 +120,8 @@ def test_runner(folder):
     runner.run(spec)
     assert summary.stat().st_mtime_ns == before
     assert state_after({"version": "0.0.0"}) == "other"
-    assert validation_runs.Runner(PROGRAM, any_version=True).state(spec) == "finished"
-    assert state_after({"version": runner.version, "exit_reason": "interrupted"}) == "interrupted"
+    assert validation_runs.Runner(program, kept, any_version=True).state(spec) == "finished"
+    assert state_after({"version": program.version, "exit_reason": "interrupted"}) == "interrupted"
     runner.run(spec)
     assert runner.state(spec) == "finished" and json.loads(summary.read_text())["restarted_from"]
     spec.sets[2] = "end_time=1 ms"
@@ -131,7 +134,9 @@ def test_runner(folder):
 
 
 def report_text(folder, failed):
-    validation_report.write_report(folder, failed)
+    program = validation_runs.Program(PROGRAM)
+    kept = validation_kept.Kept(folder / "kept", program.effective)
+    validation_report.write_report(folder, failed, kept, program.version)
     return (folder / "validation.md").read_text()
 
 
