@@ -43,10 +43,10 @@ def arguments():
 
 
 def chosen(only, quick):
-    """The runs to do, in order."""
+    """The runs to do, in order; the longest first where no order is asked for."""
     specs = [spec for spec in SPECS if spec.quick or not quick]
     if not only:
-        return specs
+        return sorted(specs, key=lambda spec: -spec.cost)
     found = {}
     for name in only.split(","):
         wanted = [spec for spec in specs

@@ -330,7 +330,8 @@ def baffle(report):
                 f"{time[k]:.3f}", f"{metrics.strongest(time[late], dx[late], 3.0):.1f}",
                 f"{1e3 * dx[late].mean():.1f}",
                 *cost(run)]
-    shown = report.shown("baffle", "baffle-2.5mm")
+    coarse = report.coarse("baffle-2.5mm", "baffle-4mm")
+    shown = report.shown("baffle", coarse)
     return [
         f"The laboratory's curve and parts of the geometry are not available: **no agreement with "
         f"the experiment is claimed**. What can be checked: Stoker's bore over a wet bed, depth "
@@ -343,8 +344,7 @@ def baffle(report):
                        "frequency after 0.7 s, above 3 Hz (Hz)", "mean after 0.7 s (mm)", *COST],
                        starting("baffle"), cells),
         *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-leapfrog", "baffle-2mm-leapfrog",
-                                 "baffle-2.5mm-verlet",
-                                 "baffle-2.5mm"],
+                                 *coarse],
                      "baffle-m1", "Horizontal displacement of the tip", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["baffle-2mm-leapfrog", "baffle-2mm-embedded", "baffle-2mm-slow",
                                  "baffle-2mm-fast"],
@@ -353,7 +353,8 @@ def baffle(report):
         *report.draw("plot_fields", shown, "baffle-fields", "Pressure and von Mises stress",
                      "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
         *interface(report, ["baffle", "baffle-verlet", "baffle-leapfrog", "baffle-2mm-leapfrog",
-                            "baffle-2.5mm", "baffle-2.5mm-verlet", "baffle-2.5mm-leapfrog"]),
+                            "baffle-2.5mm", "baffle-2.5mm-verlet", "baffle-2.5mm-leapfrog",
+                            "baffle-4mm", "baffle-4mm-verlet", "baffle-4mm-leapfrog"]),
         *ledgers(report, ["baffle"])]
 
 
@@ -369,7 +370,8 @@ def sluice(report):
                 f"{1e3 * dx[k]:.1f}",
                 f"{time[k]:.3f}", f"{1e3 * dx[late].mean():.1f}", f"{1e3 * dx[late].std():.2f}",
                 f"{metrics.strongest(time[late], dx[late]):.1f}", *cost(run)]
-    shown = report.shown("sluice", "sluice-2.5mm")
+    coarse = report.coarse("sluice-2.5mm", "sluice-5mm")
+    shown = report.shown("sluice", coarse)
     window = ("--window", 0.55, 1.15, -0.01, 0.24)
     return [
         f"The laboratory's curve, the opening under the gate and the removal of the plate are not "
@@ -382,8 +384,7 @@ def sluice(report):
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", *COST],
                        starting("sluice"), cells),
         *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-leapfrog", "sluice-2mm-leapfrog",
-                                 "sluice-2.5mm-verlet",
-                                 "sluice-2.5mm"],
+                                 *coarse],
                      "sluice-m1", "Horizontal displacement of the gate's lower end", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["sluice-2mm-leapfrog", "sluice-2mm-opening10", "sluice-2mm-opening40",
                                  "sluice-2mm-slow", "sluice-2mm-viscous"], "sluice-sensitivity",
@@ -395,6 +396,7 @@ def sluice(report):
                      1.3, 1.5, 1.7, "--field",
                      "vorticity", *window),
         *interface(report, ["sluice", "sluice-verlet", "sluice-leapfrog", "sluice-2mm-leapfrog",
-                            "sluice-2.5mm", "sluice-2.5mm-verlet", "sluice-2.5mm-leapfrog"]),
+                            "sluice-2.5mm", "sluice-2.5mm-verlet", "sluice-2.5mm-leapfrog",
+                            "sluice-5mm", "sluice-5mm-verlet", "sluice-5mm-leapfrog"]),
         *ledgers(report, ["sluice"])]
 

@@ -70,11 +70,16 @@ class Report:
             raise Missing("none of the runs " + ", ".join(names) + " has finished")
         return found[0]
 
+    def coarse(self, *families):
+        """By the paper's two integrators: the first family of which one has finished, or the last."""
+        pairs = [[f"{name}-verlet", name] for name in families]
+        return next((pair for pair in pairs if self.has(*pair)), pairs[-1])
+
     def shown(self, fine, coarse):
         """The runs that a figure puts side by side: the finer ones, if both of the paper's integrators
         or else leapfrog have got through."""
-        pair, quick = self.has(f"{fine}-verlet", fine), self.has(f"{coarse}-verlet", coarse)
-        return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or quick
+        pair = self.has(f"{fine}-verlet", fine)
+        return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or coarse
 
     def target(self, case, words, value, met):
         """A row of the table of targets; met: True, False, or None where there is no run."""

@@ -15,6 +15,12 @@ FOLDER = ROOT / "runs" / "validation"
 ENDED = ("finished", "guard")  # exit reasons after which a run would end in the same way again
 PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
 
+# Rough seconds of a run with ratio = 1 or dp = 1 mm by leapfrog, or by the integrator of its file, which go
+# with the cube of the resolution: enough to begin with the longest. Other cases take seconds.
+SECONDS = {"cantilever": 6e-3, "hydrostatic_plate": 8e4, "gate": 35, "wet_baffle": 1000, "sluice_gate": 1350,
+           "still_water": 7000, "verify/standing_wave": 4e-4, "verify/elastica": 4e-2}
+SLOWER = {"verlet": 1.6, "symplectic": 3.5}
+
 
 class Spec:
     """A run: a case, the settings over it, what is different about it in words, and whether it
@@ -23,6 +29,9 @@ class Spec:
     def __init__(self, name, case, sets=(), words="", quick=False):
         self.name, self.case, self.sets = name, ROOT / "cases" / f"{case}.cfg", list(sets)
         self.words, self.quick, self.folder = words, quick, FOLDER / name
+        keys = dict(item.split("=", 1) for item in self.sets)
+        across = float(keys["ratio"]) if "ratio" in keys else 1 / float(keys.get("dp", "10").split()[0])
+        self.cost = SECONDS.get(case, 0) * across ** 3 * SLOWER.get(keys.get("integrator"), 1)
 
     def arguments(self):
         return [part for item in self.sets for part in ("--set", item)]
@@ -61,7 +70,7 @@ def plates():
                  "dp = 3.125 mm, leapfrog"),
             Spec("plate-12.5mm-h1.5", "hydrostatic_plate",
                  [*at("12.5"), "integrator=leapfrog", "numerics.h_over_dp=1.5"],
-                 "dp = 12.5 mm, leapfrog, h/dp = 1.5", True),
+                 "dp = 12.5 mm, leapfrog, h/dp = 1.5"),
             Spec("plate-h1.5", "hydrostatic_plate",
                  [*at("6.25"), "integrator=leapfrog", "numerics.h_over_dp=1.5"],
                  "dp = 6.25 mm, leapfrog, h/dp = 1.5"),
@@ -100,7 +109,8 @@ def baffles():
     def changed(name, sets, words):
         return at_2mm("baffle", "wet_baffle", at, name, sets, words)
     return [*all_integrators("baffle", "wet_baffle", at(1), "dp = 1 mm"),
-            *all_integrators("baffle-2.5mm", "wet_baffle", at(2.5), "dp = 2.5 mm", True),
+            *all_integrators("baffle-2.5mm", "wet_baffle", at(2.5), "dp = 2.5 mm"),
+            *all_integrators("baffle-4mm", "wet_baffle", at(4), "dp = 4 mm", True),
             changed("leapfrog", [], ""), changed("embedded", ["embedded=16 mm"], ", 64 mm free"),
             changed("slow", ["lift_speed=0.75 m/s"], ", plate lifted at 0.75 m/s"),
             changed("fast", ["lift_speed=6 m/s"], ", plate lifted at 6 m/s")]
@@ -113,7 +123,8 @@ def sluices():
     def changed(name, sets, words):
         return at_2mm("sluice", "sluice_gate", at, name, sets, words)
     return [*all_integrators("sluice", "sluice_gate", at(1), "dp = 1 mm"),
-            *all_integrators("sluice-2.5mm", "sluice_gate", at(2.5), "dp = 2.5 mm", True),
+            *all_integrators("sluice-2.5mm", "sluice_gate", at(2.5), "dp = 2.5 mm"),
+            *all_integrators("sluice-5mm", "sluice_gate", at(5), "dp = 5 mm", True),
             changed("leapfrog", [], ""), changed("opening10", ["opening=10 mm"], ", opening 10 mm"),
             changed("opening40", ["opening=40 mm"], ", opening 40 mm"),
             changed("slow", ["lift_speed=1 m/s"], ", plate lifted at 1 m/s"),

@@ -252,7 +252,7 @@ def test_archive():
 
 
 def test_choice():
-    """--only: beginnings, or one run with `=`."""
+    """--only: beginnings, or one run with `=`; without it the longest runs come first."""
     def names(only, quick=False):
         return [spec.name for spec in validate.chosen(only, quick)]
     assert names("=gate") == ["gate"] and len(names("gate")) > 10
@@ -263,6 +263,13 @@ def test_choice():
             raise AssertionError(f"{only} names no run")
         except BadFile as problem:
             assert only in str(problem), problem
+    quick = names("", True)
+    assert quick.index("gate-1mm") < quick.index("sluice-5mm-leapfrog") < quick.index("bar-5")
+    for case in ("cantilever", "plate", "gate", "baffle", "sluice"):  # both integrators of the paper
+        texts = [" ".join(validation_runs.BY_NAME[name].sets) for name in quick if name.startswith(case)]
+        assert any("symplectic" in text for text in texts), case
+        plain = "integrator" if case == "cantilever" else "="  # its file says Verlet
+        assert any("verlet" in text or plain not in text for text in texts), case
 
 
 def main():
