@@ -72,6 +72,7 @@ static enum err check_fluids(struct reader *r)
             {"sound_speed", c0, s->c0},
             {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
             {"tensile_control", f->tensile_control, first->tensile_control},
+            {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
             {"shifting", f->shifting, first->shifting},
             {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
             {"density_diffusion", f->density_diffusion, first->density_diffusion},

@@ -25,7 +25,7 @@ static struct contact_law law_between(const struct scene_contact *from, const st
     const double k = from->stiffness * young, critical = 2 * sqrt(k * mass);
     return (struct contact_law){
         .on = true,
-        .reach = 0.5 * (a->dp + (b ? b->dp : wall_dp)),
+        .reach = 0.5 * (a->dp + (b ? b->dp : wall_dp)) + from->gap,
         .stiffness = k,
         .damping = from->damping * critical,
         .friction = from->friction,

@@ -21,6 +21,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .mass = s->rho0 * square(s->top.dp),
         .alpha = fluid->artificial_viscosity,
         .tensile = fluid->tensile_control,
+        .repulsion = fluid->wall_repulsion,
         .dp = s->top.dp,
         .shifting = fluid->shifting,
         .nu = fluid->laminar_viscosity,
@@ -34,6 +35,7 @@ static struct fluid_constants constants_of(const struct scene *s)
 static int lanes_wanted(enum kind kind, unsigned effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return LANE_SLOPE_FIELDS;
+    if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return LANE_ONE_SIDED_FIELDS;
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? LANE_NO_SLIP_FIELDS : LANE_FIELDS;
 }
 

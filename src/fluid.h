@@ -11,11 +11,12 @@ struct fluid_constants {
     double h, c0, rho0;
     double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double alpha; /* Eq. 7 */
-    double tensile;  /* epsilon of Monaghan 2000 */
-    double dp;       /* spacing that it is relative to */
-    double shifting; /* A of Lind et al. 2012 */
-    double nu;       /* laminar viscosity, m^2/s */
-    double delta;    /* Eq. 6 */
+    double tensile;   /* epsilon of Monaghan 2000 */
+    double repulsion; /* beta of fx_repulsion */
+    double dp;        /* spacing that it is relative to */
+    double shifting;  /* A of Lind et al. 2012 */
+    double nu;        /* laminar viscosity, m^2/s */
+    double delta;     /* Eq. 6 */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };
@@ -43,11 +44,15 @@ enum lane_field {
     LANE_MIRROR_V,
     LANE_STICKS,
     LANE_NO_SLIP_FIELDS,
+    /* Of walls and solids, where each fluid particle meets its own pressure there: rho0 h (g - a), Pa. */
+    LANE_LIFT_X = LANE_NO_SLIP_FIELDS,
+    LANE_LIFT_Y,
+    LANE_ONE_SIDED_FIELDS,
     /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times h. */
     LANE_SLOPE_X = LANE_FIELDS,
     LANE_SLOPE_Y,
     LANE_SLOPE_FIELDS,
-    LANE_MOST = LANE_NO_SLIP_FIELDS
+    LANE_MOST = LANE_ONE_SIDED_FIELDS
 };
 
 struct lanes {
@@ -84,7 +89,7 @@ struct fluid_sweeps {
 /* Pair effects that kernels are stamped for. */
 #define PAIR_EFFECTS                                                                      \
     (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING | \
-     FX_TENSILE | FX_ANTUONO)
+     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_ONE_SIDED)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 

@@ -34,11 +34,13 @@ struct sums {
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity;      /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
-    vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
-    vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
-    vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal eta2;           /* (eta/h)^2 = 0.01 */
+    vreal viscosity;       /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal laminar;         /* 2 nu rho0/h, kg/(m^2 s) */
+    vreal tensile, close;  /* epsilon, 1/W(dp) in the units of fx_tensile */
+    vreal repulsion, near; /* beta rho0 c0^2, Pa; (r0^2 + eta^2)/h^2 of fx_repulsion */
+    vreal lowest;          /* pressure of walls and structures, Pa */
+    vreal gx, gy;          /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;            /* (eta/h)^2 = 0.01 */
 };
 
 /* Geometry of the pairs, Eq. 5. */
@@ -96,6 +98,22 @@ SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
     const vreal f = k->close * (t * t) * (t * t) * vfma(vset(2), r, vset(1)), f2 = f * f;
     const vreal tension = vmin(a->p, vset(0)) + vmin(q->p, vset(0));
     return -(k->tensile * tension) * (f2 * f2);
+}
+
+/* As in Zhang, Rezavand and Hu 2021 a fluid particle meets its own pressure p in a wall or structure, and
+ * what gravity and acceleration add to it on the way: Eq. 19 with it as the only fluid. (x, y) is its place
+ * from the dummy's in units of h, `lift` rho0 h (g - a) of the dummy. */
+SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
+                                 const struct lane_constants *k)
+{
+    return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
+}
+
+/* In the place of the boundary force of Monaghan 1994, between fluid and the dummies nearer than r0: a
+ * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; inv = h^2/(r^2 + eta^2). */
+SPHFSI_INLINE vreal fx_repulsion(vreal inv, const struct lane_constants *k)
+{
+    return k->repulsion * vmax(vset(0), vfma(k->near, inv, vset(-1)));
 }
 
 /* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:

@@ -12,76 +12,27 @@
 #include "smoothing.h"
 
 #include "fluid_fx.h"
+#include "fluid_tile.h"
 
-/* Candidates of one kind of particles, padded at the end with particles far away and without volume.
- * A copy may write up to LANES beyond the last. */
-struct SWEEP(tile) {
-    int n; /* a multiple of LANES */
-    int fields;
-    real field[][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
-};
+#define ETA2 0.01           /* (eta/h)^2 */
+#define REPULSION_REACH 0.8 /* r0 of fx_repulsion, in units of dp */
 
-#define ETA2 0.01     /* (eta/h)^2 */
-#define TILE_FAR 1000 /* in units of h; the kernel ends at 2 */
-
-static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
+static struct lane_constants constants_of_sweep(const struct fluid *f)
 {
-    const size_t place = (size_t)(2 * thread_index() + which) * f->tile_size;
-    return (struct SWEEP(tile) *)(void *)((char *)f->tiles + place);
-}
-
-/* Appends the particles of one cell, whose centre lies (dx, dy) from the tile's, in units of h; with more
- * fields than the common ones, or not. */
-SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lanes *lanes,
-                              int32_t start, int32_t count, real dx, real dy, bool more)
-{
-    const vreal shift_x = vset(dx), shift_y = vset(dy);
-    for (int32_t k = 0; k < count; k += LANES) {
-        vstore(&tile->field[LANE_X][n + k],
-               vload((const real *)lanes->field[LANE_X] + start + k) + shift_x);
-        vstore(&tile->field[LANE_Y][n + k],
-               vload((const real *)lanes->field[LANE_Y] + start + k) + shift_y);
-        for (int m = LANE_U; m < LANE_FIELDS; m++)
-            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
-    }
-    for (int m = LANE_FIELDS; more && m < lanes->n; m++)
-        for (int32_t k = 0; k < count; k += LANES)
-            vstore(&tile->field[m][n + k], vload((const real *)lanes->field[m] + start + k));
-    return n + count;
-}
-
-/* Appends the nine cells around `cell` of one kind; returns the number of candidates so far. */
-static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
-                       const struct cells *c, enum kind kind, int32_t cell)
-{
-    const struct cell_list *list = &c->kind[kind];
-    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
-    const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
-    const bool more = f->lanes[kind].n > LANE_FIELDS;
-    const int column[3] = {cells_place(c, 0, cx - 1), cx, cells_place(c, 0, cx + 1)};
-    for (int dy = -1; dy <= 1; dy++) {
-        const int row = cells_place(c, 1, cy + dy);
-        if (row < 0) continue;
-        for (int dx = -1; dx <= 1; dx++) {
-            if (column[dx + 1] < 0) continue;
-            const int32_t other = row * c->nx + column[dx + 1];
-            if (list->count[other] == 0) continue;
-            n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
-                            (real)(dx * side_x), (real)(dy * side_y), more);
-        }
-    }
-    return n;
-}
-
-static void tile_close(struct SWEEP(tile) * tile, int n)
-{
-    const int padded = (n + LANES - 1) / LANES * LANES;
-    for (; n < padded; n++) {
-        for (int m = 0; m < LANE_FIELDS; m++) tile->field[m][n] = 0;
-        for (int m = LANE_FIELDS; m < tile->fields; m++) tile->field[m][n] = 0;
-        tile->field[LANE_X][n] = TILE_FAR;
-    }
-    tile->n = padded;
+    const struct fluid_constants *const fk = &f->k;
+    const double per_c2 = fk->h / square(fk->c0);
+    return (struct lane_constants){
+        .viscosity = vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+        .laminar = vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
+        .tensile = vset((real)fk->tensile),
+        .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
+        .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
+        .near = vset((real)(square(REPULSION_REACH * fk->dp / fk->h) + ETA2)),
+        .lowest = vset((real)fk->lowest_wall_pressure),
+        .gx = vset((real)(fk->gravity[0] * per_c2)),
+        .gy = vset((real)(fk->gravity[1] * per_c2)),
+        .eta2 = vset((real)ETA2),
+    };
 }
 
 static void lanes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
@@ -235,17 +186,26 @@ static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
 }
 
 /* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
- * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. */
+ * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. lift: of
+ * fx_one_sided. */
 static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
-                        const struct receiver *s, double volume, double force[2])
+                        const struct receiver *s, const vreal lift[2], double volume,
+                        double force[2])
 {
+    const struct lane_constants constants = constants_of_sweep(f), *const k = &constants;
     vreal sum_x = vset(0), sum_y = vset(0);
     for (int j = 0; j < tile->n; j += LANES) {
         struct pair q =
             pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
-        const vreal g = q.slope * fx_pressure(s, &q);
+        vreal stress = fx_pressure(s, &q);
+        if (f->effects & FX_ONE_SIDED)
+            stress = q.p + fx_one_sided(q.p, vload(&tile->field[LANE_DENS][j]), -q.x, -q.y, lift[0],
+                                        lift[1], k);
+        if (f->effects & FX_REPULSION)
+            stress = stress + fx_repulsion(vset(1) / (q.r2 + k->eta2), k);
+        const vreal g = q.slope * stress;
         sum_x = vfma(g, q.x, sum_x);
         sum_y = vfma(g, q.y, sum_y);
     }
@@ -269,33 +229,6 @@ static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * til
     const double scale = 2 * KERNEL_SLOPE * f->k.h * volume;
     surface[0] = scale * (double)vsum(sum_x);
     surface[1] = scale * (double)vsum(sum_y);
-}
-
-/* Corners of the candidates of a tile, in its coordinates. */
-struct SWEEP(box) {
-    real low[2], high[2];
-};
-
-static struct SWEEP(box) box_of_tile(const struct SWEEP(tile) * tile, int n)
-{
-    struct SWEEP(box) box = {{TILE_FAR, TILE_FAR}, {-TILE_FAR, -TILE_FAR}};
-    for (int k = 0; k < n; k++) {
-        const real place[2] = {tile->field[LANE_X][k], tile->field[LANE_Y][k]};
-        for (int axis = 0; axis < 2; axis++) {
-            box.low[axis] = place[axis] < box.low[axis] ? place[axis] : box.low[axis];
-            box.high[axis] = place[axis] > box.high[axis] ? place[axis] : box.high[axis];
-        }
-    }
-    return box;
-}
-
-/* Whether all candidates are further away than the kernel reaches, with a margin for rounding: every sum
- * over them is zero. */
-static bool out_of_reach(const struct SWEEP(box) * box, real x, real y)
-{
-    const double dx = max2(0, max2(box->low[0] - x, x - box->high[0]));
-    const double dy = max2(0, max2(box->low[1] - y, y - box->high[1]));
-    return dx * dx + dy * dy > square(1.001 * KERNEL_REACH);
 }
 
 /* One wall or solid particle i at place `place` of the cell order. */
@@ -336,9 +269,18 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
         s.u = vset((real)mirror_u);
         s.v = vset((real)mirror_v);
     }
+    vreal lift[2] = {vset(0), vset(0)};
+    if (f->effects & FX_ONE_SIDED) {
+        for (int axis = 0; axis < 2; axis++) {
+            const double a = p->ax ? (axis ? p->ay[i] : p->ax[i]) : 0;
+            const real rise = (real)(f->k.rho0 * f->k.h * (f->k.gravity[axis] - a));
+            out[LANE_LIFT_X + axis][place] = rise;
+            lift[axis] = vset(rise);
+        }
+    }
     if (!p->fx) return;
     double force[2] = {0, 0};
-    if (!alone) fluid_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    if (!alone) fluid_force(f, tile, &s, lift, (double)out[LANE_VOLUME][place], force);
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
@@ -422,7 +364,13 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
         }
         if (fx & FX_SHIFTING) fx_crowd(&q, s);
         fx_approach(&q, inv, s);
-        const vreal g = q.slope * fx_pressure(a, &q);
+        vreal stress = fx_pressure(a, &q);
+        if (fx & FX_ONE_SIDED)
+            stress =
+                a->p + fx_one_sided(a->p, a->dens, q.x, q.y, vload(&tile->field[LANE_LIFT_X][j]),
+                                    vload(&tile->field[LANE_LIFT_Y][j]), k);
+        if (fx & FX_REPULSION) stress = stress + fx_repulsion(inv, k);
+        const vreal g = q.slope * stress;
         s->ax = vfma(g, q.x, s->ax);
         s->ay = vfma(g, q.y, s->ay);
     }
@@ -515,17 +463,7 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
 {
     const int32_t n_active = c->kind[KIND_FLUID].n_active;
     const int32_t shares = (n_active + CELLS_AT_ONCE - 1) / CELLS_AT_ONCE;
-    const struct fluid_constants *const fk = &f->k;
-    const double per_c2 = fk->h / square(fk->c0);
-    const struct lane_constants k = {
-        vset((real)(fk->alpha * fk->c0 * fk->rho0)),
-        vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
-        vset((real)fk->tensile),
-        vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
-        vset((real)(fk->gravity[0] * per_c2)),
-        vset((real)(fk->gravity[1] * per_c2)),
-        vset((real)ETA2),
-    };
+    const struct lane_constants k = constants_of_sweep(f);
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(f->threads) \
     reduction(max                                                 \

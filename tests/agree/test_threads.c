@@ -103,12 +103,12 @@ static void test_lone_solid(void)
 static void test_periodic_sides(void)
 {
     static const char round[] =
-        "dp = 5 mm\nend_time = 1\ngravity = 3, -9.81\n[numerics]\nskin = 0.02\n"
+        "dp = 5 mm\nend_time = 1\ngravity = 3, -9.81\n[numerics]\nskin = 0.02\nsides = one\n"
         "[domain]\nlower = 0, -0.02\nupper = 0.2, 0.2\nperiodic = x\n"
         "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nminus = box 0.1, 0, 0.12, 0.05\n"
         "sound_speed = 20\nsurface = 0.1\nartificial_viscosity = 0.05\nvelocity = 1 + 8*y, 0\n"
         "laminar_viscosity = 1e-3\ndensity_diffusion = 0.1\ndiffusion_form = antuono\n"
-        "shifting = 2\ntensile_control = 0.2\n"
+        "shifting = 2\ntensile_control = 0.2\nwall_repulsion = 0.1\n"
         "[wall bed]\nshape = box 0, -0.02, 0.2, 0\nslip = none\n"
         "[wall sill]\nshape = box 0.1, 0, 0.12, 0.05\nmotion = drift\n"
         "[motion drift]\nvelocity = 1.5, 0\n";

@@ -170,6 +170,9 @@ static void agree_for_all_effects(const char *precision, double tolerance)
           tolerance);
     agree(channel, precision, "water.artificial_viscosity=0.05", "numerics.suction=on", tolerance);
     agree(scene, precision, "water.tensile_control=0.3", "water.density_diffusion=0", tolerance);
+    agree(scene, precision, "water.wall_repulsion=0.3", "numerics.suction=on", tolerance);
+    agree(scene, precision, "water.wall_repulsion=0.3", "numerics.sides=one", tolerance);
+    agree(channel, precision, "numerics.sides=one", "numerics.suction=on", tolerance);
     agree(scene, precision, "water.diffusion_form=antuono", "water.density_diffusion=0.5",
           tolerance);
     agree(channel, precision, "water.diffusion_form=antuono", "water.shifting=1", tolerance);

@@ -31,6 +31,12 @@ says 0 'is clamped nowhere, and a .load. acts on it' free.cfg
 says 0 'is clamped nowhere, and gravity acts on it' wedge.cfg
 says 0 '`interface` does nothing with multirate = off' plate.cfg \
     numerics.interface=impedance numerics.multirate=off
+says 0 'than the kernel.s reach .* numerics.sides = one would mend it' gate.cfg numerics.h_over_dp=2 \
+    'thickness=15 mm'
+says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp would mend it' \
+    gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
+says 0 'is 1.1 times as dense as the fluid and 2 particles thick.*interface = impedance would mend it' \
+    gate.cfg 'thickness=10 mm'
 says 0 'growing modes' beam.cfg beam.hourglass_form=printed beam.gradient=linear
 "$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1
 if grep -q 'warning' "$dir/output"; then

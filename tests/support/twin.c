@@ -46,6 +46,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .delta = f->density_diffusion,
                        .nu = f->laminar_viscosity,
                        .tensile = f->tensile_control,
+                       .repulsion = f->wall_repulsion,
+                       .one_sided = scene->numerics.sides == SIDES_ONE,
                        .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
@@ -140,6 +142,19 @@ static void laminar_pair(const struct twin *t, struct twin_point *a, const struc
     a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
 }
 
+/* P_s and P_f in the forces between a fluid particle and a wall or solid one, with what keeps them apart. */
+static double surface_pressure(const struct twin *t, const struct twin_point *f,
+                               const struct twin_point *s)
+{
+    const double dx = apart(t, 0, s->x, f->x), dy = apart(t, 1, s->y, f->y);
+    double own = f->p + f->rho * ((t->g[0] - s->ax) * dx + (t->g[1] - s->ay) * dy);
+    if (!t->suction && own < 0) own = 0;
+    const double near = 0.8 * t->dp, eta2 = 0.01 * t->h * t->h;
+    const double closer = (near * near + eta2) / (dx * dx + dy * dy + eta2) - 1;
+    return f->p + (t->one_sided ? own : s->p) +
+           t->repulsion * t->rho0 * t->c0 * t->c0 * fmax(closer, 0);
+}
+
 /* What a fluid particle a feels of b (Eqs. 4, 6, 7, 21a); b of a wall or solid slips freely. */
 static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_point *b, bool slip)
 {
@@ -160,7 +175,8 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
         step += 0.5 * ((a->sx + b->sx) * dx + (a->sy + b->sy) * dy);
         psi = 2 * step / (r * r + eta2);
     }
-    const double factor = -t->mass * ((a->p + b->p) / (a->rho * b->rho) + Pi);
+    const double pressure = slip ? surface_pressure(t, a, b) : a->p + b->p;
+    const double factor = -t->mass * (pressure / (a->rho * b->rho) + Pi);
     const double moved = a->rho * V * (du * gx + dv * gy);
     const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
     if (!slip && t->tensile > 0) {
@@ -178,8 +194,9 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     a->cy += V * gy;
     a->spread -= V * (dx * gx + dy * gy);
     a->drho += moved + diffused;
-    a->size_a +=
-        t->mass * ((fabs(a->p) + fabs(b->p)) / (a->rho * b->rho) + fabs(Pi)) * hypot(gx, gy);
+    a->size_a += t->mass *
+                 ((fabs(a->p) + fabs(b->p) + fabs(pressure)) / (a->rho * b->rho) + fabs(Pi)) *
+                 hypot(gx, gy);
     a->size_drho += a->rho * V * (fabs(du * gx) + fabs(dv * gy)) + fabs(diffused);
     t->top_approach = fmax(t->top_approach, fabs(t->h * vx / (r * r + eta2)));
 }
@@ -193,7 +210,8 @@ static void solid_force(const struct twin *t, struct twin_point *s)
         const double r = sqrt(dx * dx + dy * dy);
         if (r >= 2 * t->h) continue;
         const double slope = kernel_derivative(r, t->h) / r;
-        const double factor = -t->mass * t->mass * (s->p + f->p) / (s->rho * f->rho);
+        const double pressure = surface_pressure(t, f, s);
+        const double factor = -t->mass * t->mass * pressure / (s->rho * f->rho);
         s->fx += factor * slope * dx;
         s->fy += factor * slope * dy;
         if (s->sticks) {
@@ -203,8 +221,8 @@ static void solid_force(const struct twin *t, struct twin_point *s)
             s->fy += drag * (s->mv - f->v);
             s->size_f += fabs(drag) * (hypot(s->mu, s->mv) + hypot(f->u, f->v));
         }
-        s->size_f +=
-            fabs(t->mass * t->mass / (s->rho * f->rho) * slope * r) * (fabs(s->p) + fabs(f->p));
+        s->size_f += fabs(t->mass * t->mass / (s->rho * f->rho) * slope * r) *
+                     (fabs(s->p) + fabs(f->p) + fabs(pressure));
     }
 }
 

@@ -22,9 +22,10 @@ struct twin_point {
 };
 
 struct twin {
-    double h, mass, c0, rho0, alpha, delta, nu, tensile, dp, g[2];
+    double h, mass, c0, rho0, alpha, delta, nu, tensile, repulsion, dp, g[2];
     double period[2];  /* 0: none */
     bool suction;      /* walls and structures may pull */
+    bool one_sided;    /* each fluid particle meets its own pressure in them */
     bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
     bool hydrostatic;  /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];

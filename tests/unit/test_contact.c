@@ -88,6 +88,23 @@ static void test_a_pair_by_hand(void)
     TEST_ASSERT_TRUE(fabs(f[0]) < 1e-9 * push && fabs(f[1]) < 1e-9 * push);
 }
 
+/* With a gap the same pair pushes from a spacing and the gap on: 20 mm - r of overlap. */
+static void test_a_gap_by_hand(void)
+{
+    RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.05, 0.09, 0.09\n", "all.gap=dp");
+    const int64_t a = at(0.035, 0.035);
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i] == 1) {
+            p->ux[i] = 0.012 - 0.02;
+            p->uy[i] = 0.014 - 0.02;
+        }
+    const double r = hypot(0.012, 0.014), push = 1e6 * (0.02 - r);
+    double f[2];
+    contact_force(a, f);
+    assert_near(1e-9 * push, -push * 0.012 / r, f[0], "fx");
+    assert_near(1e-9 * push, -push * 0.014 / r, f[1], "fy");
+}
+
 struct sums {
     double mx, my, energy, kinetic, contact;
 };
@@ -320,6 +337,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_pair_by_hand);
+    RUN_TEST(test_a_gap_by_hand);
     RUN_TEST(test_collision);
     RUN_TEST(test_block_on_a_floor);
     RUN_TEST(test_work_of_a_moving_wall);

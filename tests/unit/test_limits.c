@@ -30,6 +30,7 @@ static const struct {
     {fluid, EFFECT_LAMINAR, "w.laminar_viscosity=1e-300", ""},
     {fluid, EFFECT_NO_SLIP, "w.laminar_viscosity=1e-300", "tank.slip=none"},
     {fluid, EFFECT_TENSILE, "w.tensile_control=1e-300", ""},
+    {fluid, EFFECT_REPULSION, "w.wall_repulsion=1e-300", ""},
     {fluid, EFFECT_SHIFTING, "w.shifting=1e-300", ""},
     {fluid, EFFECT_MOTION, "tank.motion=still", ""},
     {solid, EFFECT_HOURGLASS, "a.hourglass=1e-300", ""},

@@ -123,6 +123,85 @@ static void test_fluid_sticks_to_a_wall(void)
     assert_near(1e-9, -640 * 2.5 * 0.12083221653174106, fy[1] - fy[0], "force on the wall");
 }
 
+/* Repulsion of a fluid particle 0.4 m, half a spacing, above the wall's, beta = 0.1: |grad W| = 35/(4 pi) 0.4
+ * 0.8^3 = 0.57041 1/m^3, and 0.1 * 1e5 ((0.64^2 + 0.01)/(0.4^2 + 0.01) - 1) = 14682.35 Pa, the same on
+ * both. Nothing at 0.65 m. */
+static void test_a_wall_pushes_back(void)
+{
+    double ay[2], fy[2];
+    for (int far = 0; far < 2; far++) {
+        for (int k = 0; k < 2; k++) {
+            rig_open(&rig, pair, k ? "w.wall_repulsion=0.1" : "w.wall_repulsion=0", NULL);
+            fluid = &rig.sim.kind[KIND_FLUID];
+            wall = &rig.sim.kind[KIND_WALL];
+            fluid->x[0] = wall->x[0] = wall->y[0] = 0;
+            fluid->y[0] = far ? 0.65 : 0.4;
+            rig_sort(&rig);
+            rig_evaluate(&rig);
+            ay[k] = fluid->ay[0];
+            fy[k] = wall->fy[0];
+        }
+        const double slope = 35 / (4 * 3.14159265358979323846) * 0.4 * 0.8 * 0.8 * 0.8;
+        const double push = 1e4 * ((0.64 * 0.64 + 0.01) / (0.4 * 0.4 + 0.01) - 1);
+        const double force = far ? 0 : 0.64 * 0.64 / (1 + wall->dens[0]) * slope * push;
+        TEST_ASSERT_TRUE(far || force > 3e3);
+        assert_near(1e-12 * (1 + force), force / 640, ay[1] - ay[0], "ay");
+        assert_near(1e-12 * (1 + force), -force, fy[1] - fy[0], "force on the wall");
+    }
+}
+
+/* One particle of fluid is all that the wall sees: whose pressure it has makes no difference, not to one that
+ * pulls either. */
+static void test_one_particle_has_one_side(void)
+{
+    for (int k = 0; k < 2; k++) {
+        double ay[2], fy[2];
+        for (int one = 0; one < 2; one++) {
+            rig_open(&rig, pair, one ? "numerics.sides=one" : "numerics.sides=both",
+                     k ? "numerics.suction=on" : "numerics.suction=off", NULL);
+            fluid = &rig.sim.kind[KIND_FLUID];
+            wall = &rig.sim.kind[KIND_WALL];
+            fluid->x[0] = wall->x[0] = wall->y[0] = 0;
+            fluid->y[0] = 1;
+            fluid->dens[0] = k ? -0.03 : 0.01;
+            wall->ay[0] = 5;
+            rig_sort(&rig);
+            rig_evaluate(&rig);
+            ay[one] = fluid->ay[0];
+            fy[one] = wall->fy[0];
+        }
+        assert_near(1e-12, ay[0], ay[1], "ay");
+        assert_near(1e-9, fy[0], fy[1], "force on the wall");
+    }
+}
+
+/* Two particles of fluid, one on each side of a wall of one particle, P_f = 1030.505 Pa on one and 0 on the
+ * other, without gravity. With the mean of both on the wall the one without pressure is pushed away by 515
+ * Pa of it; with its own it is left alone, and the other is pushed with 2 P_f. */
+static void test_pressure_behind_a_wall_is_not_felt(void)
+{
+    double ay[2][2];
+    for (int one = 0; one < 2; one++) {
+        rig_open(&rig, pair, one ? "numerics.sides=one" : "numerics.sides=both", "gravity=0, 0",
+                 "w.shape=box 0, 0, 0.8, 1.6", NULL);
+        fluid = &rig.sim.kind[KIND_FLUID];
+        wall = &rig.sim.kind[KIND_WALL];
+        TEST_ASSERT_TRUE(fluid->n == 2 && wall->n == 1);
+        for (int i = 0; i < 2; i++) {
+            fluid->x[i] = 0;
+            fluid->y[i] = fluid->id[i] ? -1.1 : 1.1;
+            fluid->dens[i] = fluid->id[i] ? 0 : 0.01;
+        }
+        wall->x[0] = wall->y[0] = 0;
+        rig_sort(&rig);
+        rig_evaluate(&rig);
+        for (int i = 0; i < 2; i++) ay[one][fluid->id[i]] = fluid->ay[i];
+        assert_near(1e-9, -640 * (ay[one][0] + ay[one][1]), wall->fy[0], "force on the wall");
+    }
+    TEST_ASSERT_TRUE(ay[0][1] < -0.05 && ay[1][1] == 0);
+    assert_near(1e-12, 2 / 1.5, ay[1][0] / ay[0][0], "push on the other");
+}
+
 /* Where the first wall particle began. */
 static double wall_at(int axis)
 {
@@ -221,6 +300,9 @@ int main(void)
     RUN_TEST(test_velocity_of_the_wall);
     RUN_TEST(test_walls_slip_freely);
     RUN_TEST(test_fluid_sticks_to_a_wall);
+    RUN_TEST(test_a_wall_pushes_back);
+    RUN_TEST(test_one_particle_has_one_side);
+    RUN_TEST(test_pressure_behind_a_wall_is_not_felt);
     RUN_TEST(test_dry_walls_have_no_pressure);
     RUN_TEST(test_hydrostatic_pressure_continues_into_the_wall);
     RUN_TEST(test_moving_walls_follow_their_motion);
