@@ -82,7 +82,10 @@ MARCH := $(or $(shell $(CC) -march=$(ARCH) -E -x c /dev/null >/dev/null 2>&1 && 
 COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude $(HDF5_CFLAGS) \
            $(CPPFLAGS) $(CFLAGS)
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $^ $(HDF5_LIBS) -lm
-DESCRIBE := $(shell git describe --always --dirty --exclude='*' 2>/dev/null)
+# Dirty is what the program is made of, not a report that was written anew.
+DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
+                    { git diff --quiet HEAD -- src include Makefile CMakeLists.txt || echo -dirty; })
+DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---

@@ -185,33 +185,42 @@ static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
     force[1] -= scale * (double)vsum(sum_y);
 }
 
-/* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
- * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. lift: of
- * fx_one_sided. */
-static void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
-                        const struct receiver *s, const vreal lift[2], double volume,
-                        double force[2])
+/* Sums of fluid_force, downwards; fx is a constant where nothing is added to the pressures. */
+SPHFSI_INLINE void sum_force(const struct SWEEP(tile) * tile, const struct receiver *s,
+                             const vreal lift[2], const struct lane_constants *k, unsigned fx,
+                             vreal sum[2])
 {
-    const struct lane_constants constants = constants_of_sweep(f), *const k = &constants;
-    vreal sum_x = vset(0), sum_y = vset(0);
     for (int j = 0; j < tile->n; j += LANES) {
         struct pair q =
             pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
         q.p = vload(&tile->field[LANE_P][j]);
         vreal stress = fx_pressure(s, &q);
-        if (f->effects & FX_ONE_SIDED)
+        if (fx & FX_ONE_SIDED)
             stress = q.p + fx_one_sided(q.p, vload(&tile->field[LANE_DENS][j]), -q.x, -q.y, lift[0],
                                         lift[1], k);
-        if (f->effects & FX_REPULSION)
-            stress = stress + fx_repulsion(vset(1) / (q.r2 + k->eta2), k);
+        if (fx & FX_REPULSION) stress = stress + fx_repulsion(vset(1) / (q.r2 + k->eta2), k);
         const vreal g = q.slope * stress;
-        sum_x = vfma(g, q.x, sum_x);
-        sum_y = vfma(g, q.y, sum_y);
+        sum[0] = vfma(g, q.x, sum[0]);
+        sum[1] = vfma(g, q.y, sum[1]);
     }
+}
+
+/* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
+ * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. rise: rho0 h (g - a),
+ * where it is taken. */
+SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
+                               const struct receiver *s, const real rise[2], double volume,
+                               unsigned fx, double force[2])
+{
+    const struct lane_constants k =
+        fx & FX_REPULSION || fx & FX_ONE_SIDED ? constants_of_sweep(f) : (struct lane_constants){0};
+    const vreal lift[2] = {vset(rise[0]), vset(rise[1])};
+    vreal sum[2] = {vset(0), vset(0)};
+    sum_force(tile, s, lift, &k, fx, sum);
     const double scale = KERNEL_SLOPE * f->k.h * volume;
-    force[0] = scale * (double)vsum(sum_x);
-    force[1] = scale * (double)vsum(sum_y);
+    force[0] = scale * (double)vsum(sum[0]);
+    force[1] = scale * (double)vsum(sum[1]);
 }
 
 /* The surface per depth, m, on which a pressure of 1 Pa on both sides of the pair would press. */
@@ -231,12 +240,16 @@ static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * til
     surface[1] = scale * (double)vsum(sum_y);
 }
 
+/* Effects that walls and structures have code of their own for: without them it is stamped out. */
+#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION | FX_IMPEDANCE)
+
 /* One wall or solid particle i at place `place` of the cell order. */
-static void dummy_update(const struct fluid *f, struct particles *p, enum kind kind, int32_t place,
-                         int32_t i, const struct cells *c, int32_t cell,
-                         const struct SWEEP(tile) * tile, const struct SWEEP(box) * box)
+SPHFSI_INLINE void dummy_update(const struct fluid *f, struct particles *p, enum kind kind,
+                                int32_t place, int32_t i, const struct cells *c, int32_t cell,
+                                const struct SWEEP(tile) * tile, const struct SWEEP(box) * box,
+                                unsigned fx)
 {
-    const bool grips = f->effects & FX_NO_SLIP;
+    const bool grips = fx & FX_NO_SLIP;
     const double inv_h = 1 / f->k.h;
     const double from_centre_x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
     const double from_centre_y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
@@ -269,41 +282,49 @@ static void dummy_update(const struct fluid *f, struct particles *p, enum kind k
         s.u = vset((real)mirror_u);
         s.v = vset((real)mirror_v);
     }
-    vreal lift[2] = {vset(0), vset(0)};
-    if (f->effects & FX_ONE_SIDED) {
+    real rise[2] = {0, 0};
+    if (fx & FX_ONE_SIDED) {
+        const double a[2] = {p->ax ? p->ax[i] : 0, p->ay ? p->ay[i] : 0};
         for (int axis = 0; axis < 2; axis++) {
-            const double a = p->ax ? (axis ? p->ay[i] : p->ax[i]) : 0;
-            const real rise = (real)(f->k.rho0 * f->k.h * (f->k.gravity[axis] - a));
-            out[LANE_LIFT_X + axis][place] = rise;
-            lift[axis] = vset(rise);
+            rise[axis] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[axis] - a[axis]));
+            out[LANE_LIFT_X + axis][place] = rise[axis];
         }
     }
     if (!p->fx) return;
     double force[2] = {0, 0};
-    if (!alone) fluid_force(f, tile, &s, lift, (double)out[LANE_VOLUME][place], force);
+    if (!alone) fluid_force(f, tile, &s, rise, (double)out[LANE_VOLUME][place], fx, force);
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
-    if (!p->wet_x || !(f->effects & FX_IMPEDANCE)) return;
+    if (!p->wet_x || !(fx & FX_IMPEDANCE)) return;
     if (!alone) wetted_surface(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->wet_x[i] = force[0];
     p->wet_y[i] = force[1];
 }
 
+SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
+                                   const struct cells *c, int32_t cell, unsigned fx)
+{
+    const struct cell_list *list = &c->kind[kind];
+    struct SWEEP(tile) *const tile = thread_tile(f, 0);
+    tile->fields = f->lanes[KIND_FLUID].n;
+    const int n = tile_gather(tile, 0, f, c, KIND_FLUID, cell);
+    tile_close(tile, n);
+    const struct SWEEP(box) box = box_of_tile(tile, n);
+    for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
+        dummy_update(f, p, kind, j, list->order[j], c, cell, tile, &box, fx);
+}
+
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
-    const struct cell_list *list = &c->kind[kind];
 #pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
-        struct SWEEP(tile) *const tile = thread_tile(f, 0);
-        tile->fields = f->lanes[KIND_FLUID].n;
-        const int n = tile_gather(tile, 0, f, c, KIND_FLUID, cell);
-        tile_close(tile, n);
-        const struct SWEEP(box) box = box_of_tile(tile, n);
-        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
-            dummy_update(f, &kinds[kind], kind, j, list->order[j], c, cell, tile, &box);
+        if (f->effects & SURFACE_EFFECTS)
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects);
+        else
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, 0);
     }
 }
 
