@@ -10,6 +10,7 @@
 #include "material.h"
 #include "meeting.h"
 #include "smoothing.h"
+#include "solid_fx.h"
 #include "solid_stencil.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
@@ -130,12 +131,6 @@ SPHFSI_INLINE void store_lanes(double *to, vdouble value, int lanes)
     for (int l = 0; l < lanes; l++) to[l] = value[l];
 }
 
-SPHFSI_INLINE struct vtensor2 load_gradient(const struct particles *p, int64_t i)
-{
-    return (struct vtensor2){vload_double(&p->Uxx[i]), vload_double(&p->Uxy[i]),
-                             vload_double(&p->Uyx[i]), vload_double(&p->Uyy[i])};
-}
-
 /* Eq. 13b for any field (u, v), such as the displacement: U = F - I = sum of (u_b - u_a) G_ab^T. */
 SPHFSI_INLINE struct vtensor2 gradient_of(const struct solid *s, const struct solid_pack *pack,
                                           const double *u, const double *v)
@@ -192,121 +187,6 @@ static void damping_stress(const struct solid *s, const struct solid_pack *pack,
     store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + P.yy, pack->lanes);
 }
 
-/* Particles a of a pack, as the pair laws see them. */
-struct solid_receiver {
-    vdouble ux, uy, vx, vy;
-    struct vtensor2 U;
-};
-
-SPHFSI_INLINE struct solid_receiver receiver_of(const struct particles *p, int64_t i)
-{
-    return (struct solid_receiver){vload_double(&p->ux[i]), vload_double(&p->uy[i]),
-                                   vload_double(&p->vx[i]), vload_double(&p->vy[i]),
-                                   load_gradient(p, i)};
-}
-
-/* One slot's pairs: neighbours b and geometry. */
-struct solid_pair {
-    const struct solid_slot *slot;
-    int64_t j;
-    vdouble X, Y, x, y; /* x_ab = X_ab + u_ab */
-    vdouble ux, uy;     /* u_ab */
-    struct vtensor2 U_b;
-};
-
-SPHFSI_INLINE struct solid_pair pair_of(const struct solid_slot *slot, const struct particles *p,
-                                        int64_t i, const struct solid_receiver *a)
-{
-    struct solid_pair q = {.slot = slot, .j = i + slot->offset};
-    q.X = vload_double(slot->X);
-    q.Y = vload_double(slot->Y);
-    q.ux = a->ux - vload_double(&p->ux[q.j]);
-    q.uy = a->uy - vload_double(&p->uy[q.j]);
-    q.x = q.X + q.ux;
-    q.y = q.Y + q.uy;
-    return q;
-}
-
-/* What a pack sums over its slots. */
-struct solid_sums {
-    vdouble stress_x, stress_y; /* Pa/m */
-    vdouble viscous_x,
-        viscous_y;  /* sum of Pi_ab G_ab over rho0, still to be turned by J F^-T, m/s^2 */
-    vdouble ax, ay; /* m/s^2 */
-};
-
-/* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
-SPHFSI_INLINE void stress_force(const struct solid_slot *slot, const struct particles *p, int64_t j,
-                                struct solid_sums *s)
-{
-    const vdouble Hx = vload_double(slot->Hx), Hy = vload_double(slot->Hy);
-    s->stress_x = vfma_double(vload_double(&p->Pxx[j]), Hx, s->stress_x);
-    s->stress_x = vfma_double(vload_double(&p->Pxy[j]), Hy, s->stress_x);
-    s->stress_y = vfma_double(vload_double(&p->Pyx[j]), Hx, s->stress_y);
-    s->stress_y = vfma_double(vload_double(&p->Pyy[j]), Hy, s->stress_y);
-}
-
-/* Eq. 14b over rho0, for approaching pairs: alpha_s c_s h v.x/(x^2 + 0.01 h^2), m^2/s^2. */
-SPHFSI_INLINE vdouble viscous_pressure(const struct solid_pair *q, const struct particles *p,
-                                       const struct solid_receiver *a, vdouble viscosity,
-                                       vdouble eta2)
-{
-    const vdouble vx = a->vx - vload_double(&p->vx[q->j]), vy = a->vy - vload_double(&p->vy[q->j]);
-    const vdouble approach = vmin_double(vfma_double(vx, q->x, vy * q->y), vset_double(0));
-    return approach * viscosity / vfma_double(q->x, q->x, vfma_double(q->y, q->y, eta2));
-}
-
-/* Of joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that the
- * pair's Pi is one number. */
-SPHFSI_INLINE vdouble mean_viscosity(const struct solid_pair *q, const struct particles *p,
-                                     int64_t i, const struct solid_body *body)
-{
-    return (vload_double(&p->drag[i]) + vload_double(&p->drag[q->j])) * (0.5 / body->density);
-}
-
-/* Eqs. 14a and 13a as printed: Pi_ab (J F^-T)_a G_ab. In the symmetric form the mean of both particles'
- * tensors, each with its own gradient, makes it antisymmetric. */
-SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vdouble Pi, bool symmetric,
-                                 struct solid_sums *s)
-{
-    if (symmetric) {
-        const struct vtensor2 cof = vtensor2_cof(deformation(q->U_b));
-        const vdouble Hx = vload_double(q->slot->Hx), Hy = vload_double(q->slot->Hy);
-        Pi = Pi * 0.5;
-        s->ax = vfma_double(Pi, vfma_double(cof.xx, Hx, cof.xy * Hy), s->ax);
-        s->ay = vfma_double(Pi, vfma_double(cof.yx, Hx, cof.yy * Hy), s->ay);
-    }
-    s->viscous_x = vfma_double(Pi, vload_double(q->slot->Gx), s->viscous_x);
-    s->viscous_y = vfma_double(Pi, vload_double(q->slot->Gy), s->viscous_y);
-}
-
-/* Eqs. 15-16: e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
-SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct solid_receiver *a,
-                                   vdouble *ex, vdouble *ey)
-{
-    *ex = ((a->U.xx + q->U_b.xx) * q->X + (a->U.xy + q->U_b.xy) * q->Y) * 0.5 - q->ux;
-    *ey = ((a->U.yx + q->U_b.yx) * q->X + (a->U.yy + q->U_b.yy) * q->Y) * 0.5 - q->uy;
-}
-
-/* Over the mass of a: Eq. 17 as printed, a force along x_ab; or the direct part -dE/du_a of the
- * variational form, the sum of k_ab e_ab. */
-SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
-                                   bool variational, struct solid_sums *s)
-{
-    vdouble ex, ey;
-    hourglass_error(q, a, &ex, &ey);
-    const vdouble stiffness = vload_double(q->slot->hourglass);
-    if (variational) {
-        s->ax = vfma_double(stiffness, ex, s->ax);
-        s->ay = vfma_double(stiffness, ey, s->ay);
-        return;
-    }
-    const vdouble along =
-        stiffness * vfma_double(ex, q->x, ey * q->y) / vfma_double(q->x, q->x, q->y * q->y);
-    s->ax = vfma_double(along, q->x, s->ax);
-    s->ay = vfma_double(along, q->y, s->ay);
-}
-
 /* The rest of the variational form. With the energy E = sum over pairs of k_ab |e_ab|^2/2, where
  * k_ab = kappa E_ab V_a V_b W_0ab/X_ab^2 as in Eq. 17, e_ab also depends on F_a: dE/dF_a/V_a, the sum of
  * k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
@@ -314,14 +194,23 @@ static void hourglass_stress(const struct solid *s, const struct solid_pack *pac
                              struct particles *p)
 {
     const int64_t i = pack->i;
-    const struct solid_receiver a = receiver_of(p, i);
-    struct vtensor2 sum = {vset_double(0), vset_double(0), vset_double(0), vset_double(0)};
+    const struct vtensor2 U = load_gradient(p, i);
+    const vdouble xx = vload_double(&p->arm_xx[i]), xy = vload_double(&p->arm_xy[i]),
+                  yy = vload_double(&p->arm_yy[i]);
+    /* The term of F_a: its product with the sum of k_ab X_ab X_ab^T/2. */
+    struct vtensor2 sum = {U.xx * xx + U.xy * xy, U.xx * xy + U.xy * yy, U.yx * xx + U.yy * xy,
+                           U.yx * xy + U.yy * yy};
+    const vdouble ux = vload_double(&p->ux[i]), uy = vload_double(&p->uy[i]);
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
-        struct solid_pair q = pair_of(slot, p, i, &a);
+        struct solid_pair q = {.j = i + slot->offset};
+        q.X = vload_double(slot->X);
+        q.Y = vload_double(slot->Y);
+        q.ux = ux - vload_double(&p->ux[q.j]);
+        q.uy = uy - vload_double(&p->uy[q.j]);
         q.U_b = load_gradient(p, q.j);
         vdouble ex, ey;
-        hourglass_error(&q, &a, &ex, &ey);
+        stretch_error(&q, &q.U_b, &ex, &ey);
         const vdouble stiffness = vload_double(slot->hourglass);
         ex = ex * stiffness;
         ey = ey * stiffness;
@@ -345,8 +234,7 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
 {
     const struct solid_body *const body = &s->body[pack->body];
     const vdouble eta2 = vset_double(0.01 * body->h * body->h), zero = vset_double(0);
-    const vdouble own = vset_double(body->viscosity);
-    struct solid_sums sums = {zero, zero, zero, zero, zero, zero};
+    struct solid_sums sums = {zero, zero, zero, zero, zero, zero, zero, zero};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
         stress_force(slot, p, pack->i + slot->offset, &sums);
@@ -354,8 +242,9 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
         struct solid_pair q = pair_of(slot, p, pack->i, a);
         if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
         if (viscous) {
-            const vdouble viscosity = mixed ? mean_viscosity(&q, p, pack->i, body) : own;
-            viscous_force(&q, viscous_pressure(&q, p, a, viscosity, eta2), symmetric, &sums);
+            vdouble Pi = viscous_pressure(&q, p, a, eta2);
+            if (mixed) Pi = Pi * mean_viscosity(&q, p, pack->i, body);
+            viscous_force(&q, Pi, symmetric, &sums);
         }
         if (hourglass) hourglass_force(&q, a, variational, &sums);
     }
@@ -373,10 +262,11 @@ SPHFSI_INLINE void finish_sums(const struct solid_body *body, const struct parti
     const vdouble own_x = vfma_double(vload_double(&p->Pxx[i]), Gx, vload_double(&p->Pxy[i]) * Gy);
     const vdouble own_y = vfma_double(vload_double(&p->Pyx[i]), Gx, vload_double(&p->Pyy[i]) * Gy);
     const double inv_density = 1 / body->density;
+    const double viscosity = (body->mixed ? 1 : body->viscosity) * (body->symmetric ? 0.5 : 1);
     acc[0] = (s->stress_x + own_x) * inv_density + s->ax +
-             (cof.xx * s->viscous_x + cof.xy * s->viscous_y);
+             (cof.xx * s->viscous_x + cof.xy * s->viscous_y + s->turned_x) * viscosity;
     acc[1] = (s->stress_y + own_y) * inv_density + s->ay +
-             (cof.yx * s->viscous_x + cof.yy * s->viscous_y);
+             (cof.yx * s->viscous_x + cof.yy * s->viscous_y + s->turned_y) * viscosity;
 }
 
 static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
