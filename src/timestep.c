@@ -39,6 +39,14 @@ static double bound_artificial(const struct simulation *s, const struct fluid_ex
     return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
 }
 
+/* L-8: half of the stable 2/omega between two dummies where L-7 is steepest. */
+static double bound_repulsion(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    const struct fluid_constants *const k = &s->fluid.k;
+    return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
+}
+
 /* Morris et al. 1997, Eq. 21. */
 static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
 {

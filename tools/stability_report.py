@@ -48,6 +48,8 @@ def scene_row(row):
     elif not holds:
         verdict += ", as it is known to" + (" in this form" if scene["fails"] == form else "")
     measured = f"gain {found['gain']:.1e}, density {found['dens']:.1e}"
+    if found["crossed"]:
+        measured += "; single particles entered a body"
     if not found["finished"]:
         by = "a guard" if found["guarded"] else "the limit of minutes"
         measured = f"stopped by {by} at {found['time']:.3g} s; {measured}"

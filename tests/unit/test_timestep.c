@@ -120,6 +120,18 @@ static void test_decay_bounds_by_hand(void)
     assert_near(1e-12, 0.2 * 0.0135 / 20, timestep_fluid_limit(&rig.sim), "predictor-corrector");
 }
 
+/* L-8 with beta = 0.25: 1.35^2 * 0.0135/(8.1 * 0.5 * 20) = 3.0375e-4 s. */
+static void test_repulsion_bound_by_hand(void)
+{
+    bool hits;
+    rig_open(&rig, gate, NULL);
+    timestep_choose(&rig.sim, 10, &hits);
+    TEST_ASSERT_TRUE(isinf(rig.sim.dt_bound[BOUND_repulsion]));
+    rig_open(&rig, gate, "water.wall_repulsion=0.25", NULL);
+    timestep_choose(&rig.sim, 10, &hits);
+    assert_near(1e-15, 3.0375e-4, rig.sim.dt_bound[BOUND_repulsion], "1/omega");
+}
+
 /* Times to be hit are hit to the bit, no step is longer than its bound, and the books agree. */
 static void run_through_times(const char *integrator, const char *rate)
 {
@@ -284,6 +296,7 @@ int main(void)
     RUN_TEST(test_bounds_by_hand);
     RUN_TEST(test_viscous_bound_by_hand);
     RUN_TEST(test_decay_bounds_by_hand);
+    RUN_TEST(test_repulsion_bound_by_hand);
     RUN_TEST(test_steps_before_a_limit_are_equal);
     RUN_TEST(test_substeps_cover_the_step);
     RUN_TEST(test_multirate_auto);
