@@ -84,7 +84,8 @@ COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude $(
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $^ $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
 DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
-                    { git diff --quiet HEAD -- src include Makefile CMakeLists.txt || echo -dirty; })
+                    { test -z "$$(git status --porcelain -- src include Makefile CMakeLists.txt)" || \
+                      echo -dirty; })
 DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 

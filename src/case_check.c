@@ -293,6 +293,20 @@ static enum err check_joined(struct reader *r)
     return ERR_OK;
 }
 
+/* A surface particle has room for so many partners. */
+static enum err check_gap(struct reader *r, const struct scene_contact *c)
+{
+    const double most = 4;
+    double dp = r->scene->top.dp;
+    for (int k = 0; k < r->scene->n_solid; k++) dp = min2(dp, scene_solid_dp(r->scene, k));
+    if (c->gap <= most * dp * (1 + 1e-9)) return ERR_OK;
+    return bad_line(
+        r, c->common.line,
+        "[contact %s] gap = %g m is more than %g spacings of %g m: a layer of fluid needs "
+        "one of its own, and at most %g m are meant",
+        c->common.name, c->gap, most, dp, most * dp);
+}
+
 /* Two different bodies, one of them a solid. */
 static enum err check_contacts(struct reader *r)
 {
@@ -304,6 +318,7 @@ static enum err check_contacts(struct reader *r)
         if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
             return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
                             c->common.name);
+        TRY(check_gap(r, c));
         if (!*c->between) continue;
         if (!scene_pair(c->between, name))
             return bad_line(r, line, "between = %.100s: two names with a comma between them",

@@ -26,6 +26,7 @@ static struct contact_law law_between(const struct scene_contact *from, const st
     return (struct contact_law){
         .on = true,
         .reach = 0.5 * (a->dp + (b ? b->dp : wall_dp)) + from->gap,
+        .gap = from->gap,
         .stiffness = k,
         .damping = from->damping * critical,
         .friction = from->friction,
@@ -250,14 +251,23 @@ struct touch {
     double x, y, overlap, vx, vy;
 };
 
+/* Where a gap was narrower at the start, as beside a clamp or under a body that rests, that is its gap. */
+static double pair_reach(const struct contact *c, const struct contact_law *law, int64_t k,
+                         int32_t other)
+{
+    if (law->gap == 0) return law->reach;
+    const double began = hypot(c->X[k] - c->X[other], c->Y[k] - c->Y[other]);
+    return min2(law->reach, max2(law->reach - law->gap, began));
+}
+
 static bool touches(const struct contact *c, const struct contact_law *law, int64_t k,
                     int32_t other, struct touch *t)
 {
     const double dx = c->x[k] - c->x[other], dy = c->y[k] - c->y[other], r2 = dx * dx + dy * dy;
     if (r2 >= law->reach * law->reach || r2 == 0) return false;
-    const double r = sqrt(r2);
-    *t = (struct touch){.x = dx / r, .y = dy / r, .overlap = law->reach - r};
-    return true;
+    const double r = sqrt(r2), reach = pair_reach(c, law, k, other);
+    *t = (struct touch){.x = dx / r, .y = dy / r, .overlap = reach - r};
+    return r < reach;
 }
 
 /* Potential k/2 (r0 - r)^2 below r0 = the mean spacing: the linear spring of Cundall and Strack (1979)
@@ -358,8 +368,9 @@ static void warn_of_overlap(const struct contact *c, const struct particles *p, 
             const int32_t j = c->partner[k * CONTACT_PARTNERS + m];
             const struct contact_law *const law = law_of(c, c->body[k], c->body[j]);
             struct touch t;
-            if (!touches(c, law, k, j, &t) || t.overlap / law->reach <= most) continue;
-            most = t.overlap / law->reach;
+            const double spacing = law->reach - law->gap;
+            if (!touches(c, law, k, j, &t) || t.overlap / spacing <= most) continue;
+            most = t.overlap / spacing;
             at = k;
         }
     }
@@ -380,7 +391,7 @@ static enum err create_points(struct contact *c, struct arena *a, const struct s
     TRY(add_surface(c, a, s, solid, false, d));
     c->n_solid_points = c->n_points;
     if (c->wall->n) TRY(add_surface(c, a, s, c->wall, true, d));
-    double **const place[] = {&c->x, &c->y, &c->at_x, &c->at_y};
+    double **const place[] = {&c->X, &c->Y, &c->x, &c->y, &c->at_x, &c->at_y};
     for (size_t k = 0; k < COUNT_OF(place); k++) {
         *place[k] = arena_alloc(a, (size_t)c->n_points, sizeof(double), "contact", d);
         if (!*place[k]) return ERR_MEMORY;
@@ -389,9 +400,10 @@ static enum err create_points(struct contact *c, struct arena *a, const struct s
     c->partner = arena_alloc(a, n * CONTACT_PARTNERS, sizeof *c->partner, "contact", d);
     c->n_partners = arena_alloc(a, n, sizeof *c->n_partners, "contact", d);
     if (!c->partner || !c->n_partners) return ERR_MEMORY;
-    for (int64_t k = c->n_solid_points; k < c->n_points; k++) {
-        c->x[k] = c->wall->X[c->index[k]];
-        c->y[k] = c->wall->Y[c->index[k]];
+    for (int64_t k = 0; k < c->n_points; k++) {
+        const struct particles *const of = k < c->n_solid_points ? solid : c->wall;
+        c->X[k] = c->x[k] = of->X[c->index[k]];
+        c->Y[k] = c->y[k] = of->Y[c->index[k]];
     }
     if (moves) {
         const size_t walls = (size_t)(c->n_points - c->n_solid_points);

@@ -18,6 +18,7 @@ struct contact_grid {
 struct contact_law {
     bool on;
     double reach;     /* distance below which they push, m */
+    double gap;       /* part of it beyond the mean spacing, m */
     double stiffness; /* force per depth over the overlap, Pa */
     double damping;   /* force per depth over the speed of approach, Pa s */
     double friction;  /* Coulomb's coefficient */
@@ -35,6 +36,7 @@ struct contact {
     int64_t n_solid_points, n_points;
     int32_t *index,
         *body;     /* of the particle among those of its kind; of its body, walls behind solids */
+    double *X, *Y; /* where it began, m */
     double *x, *y; /* where it is now, m */
     double *at_x, *at_y; /* where it was when partners were last looked for */
     /* Points of other bodies within reach and skin of a solid's point, ascending. */

@@ -35,6 +35,7 @@ static struct fluid_constants constants_of(const struct scene *s)
 static int lanes_wanted(enum kind kind, unsigned effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return LANE_SLOPE_FIELDS;
+    if (kind != KIND_FLUID && effects & FX_REPULSION) return LANE_REPULSION_FIELDS;
     if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return LANE_ONE_SIDED_FIELDS;
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? LANE_NO_SLIP_FIELDS : LANE_FIELDS;
 }

@@ -48,11 +48,14 @@ enum lane_field {
     LANE_LIFT_X = LANE_NO_SLIP_FIELDS,
     LANE_LIFT_Y,
     LANE_ONE_SIDED_FIELDS,
+    /* Of walls and solids that push back: (r0^2 + eta^2)/h^2 of fx_repulsion. */
+    LANE_NEAR = LANE_ONE_SIDED_FIELDS,
+    LANE_REPULSION_FIELDS,
     /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times h. */
     LANE_SLOPE_X = LANE_FIELDS,
     LANE_SLOPE_Y,
     LANE_SLOPE_FIELDS,
-    LANE_MOST = LANE_ONE_SIDED_FIELDS
+    LANE_MOST = LANE_REPULSION_FIELDS
 };
 
 struct lanes {

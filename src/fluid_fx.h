@@ -34,13 +34,13 @@ struct sums {
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity;       /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
-    vreal laminar;         /* 2 nu rho0/h, kg/(m^2 s) */
-    vreal tensile, close;  /* epsilon, 1/W(dp) in the units of fx_tensile */
-    vreal repulsion, near; /* beta rho0 c0^2, Pa; (r0^2 + eta^2)/h^2 of fx_repulsion */
-    vreal lowest;          /* pressure of walls and structures, Pa */
-    vreal gx, gy;          /* g h/c0^2: slope of the hydrostatic density, 1 */
-    vreal eta2;            /* (eta/h)^2 = 0.01 */
+    vreal viscosity;      /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
+    vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
+    vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
+    vreal lowest;         /* pressure of walls and structures, Pa */
+    vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
 /* Geometry of the pairs, Eq. 5. */
@@ -110,10 +110,11 @@ SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal li
 }
 
 /* In the place of the boundary force of Monaghan 1994, between fluid and the dummies nearer than r0: a
- * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; inv = h^2/(r^2 + eta^2). */
-SPHFSI_INLINE vreal fx_repulsion(vreal inv, const struct lane_constants *k)
+ * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2, inv =
+ * h^2/(r^2 + eta^2). */
+SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct lane_constants *k)
 {
-    return k->repulsion * vmax(vset(0), vfma(k->near, inv, vset(-1)));
+    return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
 /* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:

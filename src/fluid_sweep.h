@@ -5,6 +5,7 @@
  * together so that full vectors can be loaded from it. Gather form: a particle sums its own neighbours
  * and writes only itself, so that the bits do not depend on the number of threads. */
 
+#include <math.h>
 #include <string.h>
 
 #include "eos.h"
@@ -15,7 +16,7 @@
 #include "fluid_tile.h"
 
 #define ETA2 0.01           /* (eta/h)^2 */
-#define REPULSION_REACH 0.8 /* r0 of fx_repulsion, in units of dp */
+#define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
 
 static struct lane_constants constants_of_sweep(const struct fluid *f)
 {
@@ -27,7 +28,6 @@ static struct lane_constants constants_of_sweep(const struct fluid *f)
         .tensile = vset((real)fk->tensile),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
         .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
-        .near = vset((real)(square(REPULSION_REACH * fk->dp / fk->h) + ETA2)),
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
@@ -185,11 +185,20 @@ static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
     force[1] -= scale * (double)vsum(sum_y);
 }
 
-/* Sums of fluid_force, downwards; fx is a constant where nothing is added to the pressures. */
-SPHFSI_INLINE void sum_force(const struct SWEEP(tile) * tile, const struct receiver *s,
-                             const vreal lift[2], const struct lane_constants *k, unsigned fx,
-                             vreal sum[2])
+/* What a dummy's forces take beyond its pressure, each where it is called for. */
+struct SWEEP(surface) {
+    real lift[2]; /* rho0 h (g - a), of fx_one_sided */
+    real near;    /* of fx_repulsion */
+};
+
+/* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
+ * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. */
+SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
+                               const struct receiver *s, const struct SWEEP(surface) * own,
+                               double volume, const struct lane_constants *k, unsigned fx,
+                               double force[2])
 {
+    vreal sum_x = vset(0), sum_y = vset(0);
     for (int j = 0; j < tile->n; j += LANES) {
         struct pair q =
             pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
@@ -197,30 +206,17 @@ SPHFSI_INLINE void sum_force(const struct SWEEP(tile) * tile, const struct recei
         q.p = vload(&tile->field[LANE_P][j]);
         vreal stress = fx_pressure(s, &q);
         if (fx & FX_ONE_SIDED)
-            stress = q.p + fx_one_sided(q.p, vload(&tile->field[LANE_DENS][j]), -q.x, -q.y, lift[0],
-                                        lift[1], k);
-        if (fx & FX_REPULSION) stress = stress + fx_repulsion(vset(1) / (q.r2 + k->eta2), k);
+            stress = q.p + fx_one_sided(q.p, vload(&tile->field[LANE_DENS][j]), -q.x, -q.y,
+                                        vset(own->lift[0]), vset(own->lift[1]), k);
+        if (fx & FX_REPULSION)
+            stress = stress + fx_repulsion(vset(own->near), vset(1) / (q.r2 + k->eta2), k);
         const vreal g = q.slope * stress;
-        sum[0] = vfma(g, q.x, sum[0]);
-        sum[1] = vfma(g, q.y, sum[1]);
+        sum_x = vfma(g, q.x, sum_x);
+        sum_y = vfma(g, q.y, sum_y);
     }
-}
-
-/* Eq. 21b: force of the fluid in the tile on a solid particle, V_s sum of V_f (P_s + P_f) grad W with
- * the sign reversed; N/m per depth. The mirror image of what the fluid particles sum. rise: rho0 h (g - a),
- * where it is taken. */
-SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct SWEEP(tile) * tile,
-                               const struct receiver *s, const real rise[2], double volume,
-                               unsigned fx, double force[2])
-{
-    const struct lane_constants k =
-        fx & FX_REPULSION || fx & FX_ONE_SIDED ? constants_of_sweep(f) : (struct lane_constants){0};
-    const vreal lift[2] = {vset(rise[0]), vset(rise[1])};
-    vreal sum[2] = {vset(0), vset(0)};
-    sum_force(tile, s, lift, &k, fx, sum);
     const double scale = KERNEL_SLOPE * f->k.h * volume;
-    force[0] = scale * (double)vsum(sum[0]);
-    force[1] = scale * (double)vsum(sum[1]);
+    force[0] = scale * (double)vsum(sum_x);
+    force[1] = scale * (double)vsum(sum_y);
 }
 
 /* The surface per depth, m, on which a pressure of 1 Pa on both sides of the pair would press. */
@@ -247,7 +243,7 @@ static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * til
 SPHFSI_INLINE void dummy_update(const struct fluid *f, struct particles *p, enum kind kind,
                                 int32_t place, int32_t i, const struct cells *c, int32_t cell,
                                 const struct SWEEP(tile) * tile, const struct SWEEP(box) * box,
-                                unsigned fx)
+                                const struct lane_constants *k, unsigned fx)
 {
     const bool grips = fx & FX_NO_SLIP;
     const double inv_h = 1 / f->k.h;
@@ -282,17 +278,22 @@ SPHFSI_INLINE void dummy_update(const struct fluid *f, struct particles *p, enum
         s.u = vset((real)mirror_u);
         s.v = vset((real)mirror_v);
     }
-    real rise[2] = {0, 0};
+    struct SWEEP(surface) own = {{0, 0}, 0};
     if (fx & FX_ONE_SIDED) {
         const double a[2] = {p->ax ? p->ax[i] : 0, p->ay ? p->ay[i] : 0};
         for (int axis = 0; axis < 2; axis++) {
-            rise[axis] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[axis] - a[axis]));
-            out[LANE_LIFT_X + axis][place] = rise[axis];
+            own.lift[axis] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[axis] - a[axis]));
+            out[LANE_LIFT_X + axis][place] = own.lift[axis];
         }
+    }
+    if (fx & FX_REPULSION) {
+        const double spacing = 0.5 * (1 + sqrt(f->volume[kind][p->body[i]])) * f->k.dp;
+        own.near = (real)(square(REPULSION_REACH * spacing * inv_h) + ETA2);
+        out[LANE_NEAR][place] = own.near;
     }
     if (!p->fx) return;
     double force[2] = {0, 0};
-    if (!alone) fluid_force(f, tile, &s, rise, (double)out[LANE_VOLUME][place], fx, force);
+    if (!alone) fluid_force(f, tile, &s, &own, (double)out[LANE_VOLUME][place], k, fx, force);
     if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
@@ -311,8 +312,10 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
     const int n = tile_gather(tile, 0, f, c, KIND_FLUID, cell);
     tile_close(tile, n);
     const struct SWEEP(box) box = box_of_tile(tile, n);
+    const struct lane_constants k =
+        fx & (FX_ONE_SIDED | FX_REPULSION) ? constants_of_sweep(f) : (struct lane_constants){0};
     for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
-        dummy_update(f, p, kind, j, list->order[j], c, cell, tile, &box, fx);
+        dummy_update(f, p, kind, j, list->order[j], c, cell, tile, &box, &k, fx);
 }
 
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
@@ -390,7 +393,8 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
             stress =
                 a->p + fx_one_sided(a->p, a->dens, q.x, q.y, vload(&tile->field[LANE_LIFT_X][j]),
                                     vload(&tile->field[LANE_LIFT_Y][j]), k);
-        if (fx & FX_REPULSION) stress = stress + fx_repulsion(inv, k);
+        if (fx & FX_REPULSION)
+            stress = stress + fx_repulsion(vload(&tile->field[LANE_NEAR][j]), inv, k);
         const vreal g = q.slope * stress;
         s->ax = vfma(g, q.x, s->ax);
         s->ay = vfma(g, q.y, s->ay);

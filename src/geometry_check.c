@@ -81,7 +81,7 @@ static double thinnest(const struct shape *shape)
     return HUGE_VAL;
 }
 
-/* Fluid feels what lies behind a body that is thinner than the kernel's reach: through the pressure of the
+/* Fluid feels fluid behind a body that is thinner than the kernel's reach: through the pressure of the
  * body's particles, unless each fluid particle meets its own in them; and directly, where the nearest fluid
  * on both sides, one spacing further apart than the body is thick, is within reach. */
 static void warn_see_through(struct sampler *g, const struct region *region, int line, double thick)
@@ -94,7 +94,7 @@ static void warn_see_through(struct sampler *g, const struct region *region, int
     scene_place(s, line, place);
     diag_warn(g->diag,
               "%s: [%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid "
-              "feels what lies behind it; %s would mend it",
+              "would feel other fluid behind it; %s would mend it",
               place, kind_names[region->kind], region->name, thick, 2 * s->h,
               directly ? "a finer dp" : "numerics.sides = one");
 }
@@ -119,6 +119,15 @@ static void warn_light_and_thin(struct sampler *g, const struct region *region, 
         place, region->name, ratio, across);
 }
 
+/* Whether a body is bonded to another: its thickness is not its own. */
+static bool is_bonded(const struct scene *s, int body)
+{
+    for (int k = 0; k < s->n_solid; k++)
+        if (s->solid[k].joined[0] && (k == body || scene_find_solid(s, s->solid[k].joined) == body))
+            return true;
+    return false;
+}
+
 static enum err check_solid(struct sampler *g, const struct region *region)
 {
     double across = HUGE_VAL;
@@ -139,6 +148,7 @@ static enum err check_solid(struct sampler *g, const struct region *region)
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
                   "will be inaccurate",
                   place, region->name, across, region->dp);
+    if (is_bonded(g->scene, region->body)) return ERR_OK;
     /* At the default h/dp this is said of two particles across only, which is one warning too many. */
     if (across > 2 || (across + 1) * region->dp < 2 * g->scene->h)
         warn_see_through(g, region, region->line, across * region->dp);

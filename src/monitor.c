@@ -182,11 +182,12 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "unstable (a smaller solid_safety may help), or far too soft for its load",
             d);
     if (s->contact.crowded)
-        return diag_fail(d, ERR_GUARD,
-                         "t = %.6g s, step %lld: more than %d particles push at one particle of a "
-                         "solid's surface: bodies have gone into each other; a larger stiffness in "
-                         "[contact] may help",
-                         s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s, step %lld: more than %d particles push at one particle of a "
+            "solid's surface: bodies have gone into each other; a larger stiffness or a "
+            "smaller gap in [contact] may help",
+            s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
     if (s->state.steps % LOOK_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);

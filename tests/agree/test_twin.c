@@ -186,12 +186,13 @@ static void test_mixed(void) { agree_for_all_effects("precision=mixed", 2e-6); }
 /* The twin differs if any law differs by one part in a million: viscosity, diffusion, gravity. */
 static void test_the_comparison_can_fail(void)
 {
-    rig_open(&rig, channel, "precision=double", NULL);
+    rig_open(&rig, channel, "precision=double", "water.wall_repulsion=0.3", NULL);
     disorder();
     rig_evaluate(&rig);
-    for (int what = 0; what < 5; what++) {
+    for (int what = 0; what < 6; what++) {
         twin_copy(&twin, &rig.sim);
-        double *const constant[] = {&twin.alpha, &twin.delta, &twin.g[1], &twin.h, &twin.nu};
+        double *const constant[] = {&twin.alpha, &twin.delta, &twin.g[1],
+                                    &twin.h,     &twin.nu,    &twin.repulsion};
         *constant[what] *= 1 + 1e-6;
         twin_evaluate(&twin);
         double a = 0, rho = 0, size_a = 0, size_rho = 0;

@@ -33,6 +33,13 @@ says 0 '`interface` does nothing with multirate = off' plate.cfg \
     numerics.interface=impedance numerics.multirate=off
 says 0 'than the kernel.s reach .* numerics.sides = one would mend it' gate.cfg numerics.h_over_dp=2 \
     'thickness=15 mm'
+"$sphfsi" tests/stability/gate.cfg --set numerics.h_over_dp=2 --set 'thickness=15 mm' \
+    --set numerics.sides=one --explain >"$dir/output" 2>&1
+if grep -q 'than the kernel.s reach' "$dir/output"; then
+    echo "FAILED: warned of what sides = one has mended"
+    failures=$((failures + 1))
+fi
+says 1 'gap = 0.05 m is more than 4 spacings of 0.01 m' settle.cfg bed.gap=5*dp
 says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp would mend it' \
     gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
 says 0 'is 1.1 times as dense as the fluid and 2 particles thick.*interface = impedance would mend it' \

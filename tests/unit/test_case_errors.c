@@ -204,6 +204,11 @@ static const struct {
     {TOP FLUID "[fluid v]\nlike = w\ndensity = 900\nshape = box 20 mm, 0, 30 mm, 20 mm\n", NULL,
      "bad.cfg:6: [fluid v] and [fluid w] differ in `density`: 900 and 1000; all fluid is of one "
      "kind"},
+    {TOP FLUID "[fluid v]\nlike = w\nwall_repulsion = 0.1\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
+     NULL,
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0; all fluid is of "
+     "one "
+     "kind"},
     {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; one is to go"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,

@@ -105,6 +105,24 @@ static void test_a_gap_by_hand(void)
     assert_near(1e-9 * push, -push * 0.014 / r, f[1], "fy");
 }
 
+/* What began nearer than the gap keeps the distance it began with: a post clamped in a floor that it may
+ * touch stays as it was to the bit. */
+static void test_a_gap_spares_what_began_within(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\n[contact all]\ngap = dp\n"
+                   "[wall floor]\nshape = box -0.1, -0.03, 0, 0\nshape = box 0.04, -0.03, 0.14, 0\n"
+                   "[solid a]\nshape = box 0, -0.03, 0.04, 0.1\nclamp = box 0, -0.03, 0.04, 0\n"
+                   "density = 1000\nyoung = 1e6\npoisson = 0.3\n",
+                   NULL);
+    const int64_t near = at(0.005, 0.005);
+    double f[2];
+    contact_force(near, f);
+    TEST_ASSERT_TRUE(f[0] == 0 && f[1] == 0);
+    p->uy[near] = -0.002;
+    contact_force(near, f);
+    TEST_ASSERT_TRUE(f[1] > 0);
+}
+
 struct sums {
     double mx, my, energy, kinetic, contact;
 };
@@ -338,6 +356,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_pair_by_hand);
     RUN_TEST(test_a_gap_by_hand);
+    RUN_TEST(test_a_gap_spares_what_began_within);
     RUN_TEST(test_collision);
     RUN_TEST(test_block_on_a_floor);
     RUN_TEST(test_work_of_a_moving_wall);

@@ -46,6 +46,28 @@ static void test_force_of_still_water(void)
     }
 }
 
+/* Fluid at rest stands half of both spacings away: nothing pushes it back, and no bit of a force changes. One
+ * that is nearer than 0.8 of that is pushed. */
+static void test_repulsion_begins_nearer(void)
+{
+    for (int k = 0; k < 3; k++) {
+        double force[2], near[2];
+        for (int on = 0; on < 2; on++) {
+            RIG_OPEN_SOLID(tank, spacings[k],
+                           on ? "water.wall_repulsion=1" : "water.wall_repulsion=0");
+            rig_evaluate(&rig);
+            force[on] = near[on] = 0;
+            for (int64_t i = 0; i < p->n; i++) force[on] += p->fy[i];
+            struct particles *const water = &rig.sim.kind[KIND_FLUID];
+            for (int64_t i = 0; i < water->n; i++) water->y[i] -= 0.0025 * (1 + 1.0 / (k + 1));
+            rig_evaluate(&rig);
+            for (int64_t i = 0; i < p->n; i++) near[on] += p->fy[i];
+        }
+        TEST_ASSERT_TRUE(force[0] == force[1]);
+        TEST_ASSERT_TRUE(near[1] < 2 * near[0]);
+    }
+}
+
 /* The same body at another spacing: mass, stable step in proportion, and weights of its own. */
 static void test_mass_and_step(void)
 {
@@ -66,14 +88,14 @@ static void test_mass_and_step(void)
 
 /* A drop hits a free plate of half the spacing: both together keep their momentum to the round-off of
  * pairs in double precision. */
-static void test_momentum(void)
+static void momentum_with(const char *set)
 {
     RIG_OPEN_SOLID("dp = 10 mm\nend_time = 1\nprecision = double\nintegrator = symplectic\n"
                    "[fluid drop]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nvelocity = 1, 0.1\n"
                    "[solid plate]\nshape = box 0.11, -0.05, 0.13, 0.15\ndp = 5 mm\n"
                    "density = 2000\nyoung = 1e6\npoisson = 0.3\nviscosity_form = symmetric\n"
                    "[domain]\nlower = -0.2, -0.2\nupper = 0.4, 0.3\n",
-                   "plate.gravity=off");
+                   "plate.gravity=off", set);
     const struct ledger before = simulation_ledger(&rig.sim);
     rig_run(&rig, 0.03);
     const struct ledger after = simulation_ledger(&rig.sim);
@@ -84,6 +106,13 @@ static void test_momentum(void)
                    hypot(after.momentum_x - before.momentum_x,
                          after.momentum_y - before.momentum_y),
                    "momentum");
+}
+
+static void test_momentum(void)
+{
+    momentum_with("drop.wall_repulsion=0");
+    momentum_with("drop.wall_repulsion=1");
+    momentum_with("numerics.sides=one");
 }
 
 static void test_bad_input(void)
@@ -101,6 +130,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_force_of_still_water);
+    RUN_TEST(test_repulsion_begins_nearer);
     RUN_TEST(test_mass_and_step);
     RUN_TEST(test_momentum);
     RUN_TEST(test_bad_input);
