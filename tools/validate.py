@@ -64,7 +64,7 @@ def main():
     for spec in SPECS:
         spec.folder = args.runs.resolve() / spec.name
     program = Program(args.program.resolve())
-    kept = Kept(KEPT, program.effective)
+    kept = Kept(KEPT, program.means)
     runner = Runner(program, kept, args.any_version, args.again, args.keep)
     if args.no_run:
         for spec in specs:

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from runfiles import BadFile, Run, read_table, read_text
 from validation_measures import FILE, NotRun, malformed, measure_all
-from validation_runs import ENDED, ROOT, physics
+from validation_runs import ENDED, ROOT
 
 FOLDER = ROOT / "docs" / "validation"
 TABLES = ("probes.csv", "ledger.csv")
@@ -69,10 +69,11 @@ def pack(name, files):
 
 
 class Kept:
-    """The kept results below a folder; effective(spec) gives the case that the specification means now."""
+    """The kept results below a folder; means(spec, text) says whether an effective case is what the
+    specification means now."""
 
-    def __init__(self, folder, effective):
-        self.folder, self.effective = Path(folder), effective
+    def __init__(self, folder, means):
+        self.folder, self.means = Path(folder), means
         self.room = tempfile.TemporaryDirectory(prefix="sphfsi-kept-")
         self.found = {}  # name: folder where it is unpacked, or why it is not used
 
@@ -115,7 +116,7 @@ class Kept:
             check(Run(place))
         except BadFile as problem:
             raise BadFile(f"{path}: {str(problem).replace(f'{place}{os.sep}', '')}") from None
-        if physics(texts["case.cfg"]) != self.effective(spec):
+        if not self.means(spec, texts["case.cfg"]):
             print(f"{path}: of another case than {spec.name} means now, so not used", flush=True)
             raise NotRun("is of another case")
         return place
@@ -127,7 +128,7 @@ class Kept:
             raise BadFile(f"{spec.folder}: has not ended, so it is not kept")
         files = {name: read_text(spec.folder / name) for name in ("summary.json", "case.cfg", *TABLES)
                  if name not in TABLES or (spec.folder / name).is_file()}
-        if physics(files["case.cfg"]) != self.effective(spec):
+        if not self.means(spec, files["case.cfg"]):
             raise BadFile(f"{spec.folder}: of another case than {spec.name} means now, so it is not kept")
         # Where it was run says nothing about the result.
         files["summary.json"] = re.sub(r'(?m)^(\s*"(?:case|restarted_from|forked_from)": ").*/', r"\1",

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from runfiles import BadFile, Run, np
 from validation_measures import Missing, NotRun, balance
-from validation_runs import BY_NAME, ENDED, ROOT, SPECS, physics
+from validation_runs import BY_NAME, ENDED, ROOT, SPECS
 
 TOOLS = Path(__file__).resolve().parent
 ORIGIN = "Runs"  # entry of a picture that says of which runs and version it is
@@ -31,7 +31,7 @@ class Report:
         has_summary = (spec.folder / "summary.json").is_file()
         case = spec.folder / "case.cfg"
         if has_summary and Run(spec.folder).summary.get("exit_reason") in ENDED and case.is_file() and \
-                physics(case.read_text()) == self.kept.effective(spec):
+                self.kept.means(spec, case.read_text()):
             return spec.folder
         try:
             return self.kept.find(spec)

@@ -3,6 +3,7 @@
 
 import shutil
 import subprocess
+import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -199,15 +200,35 @@ class Program:
             raise BadFile(f"cannot run {path}; build it with make") from None
         self.version = done.stdout.split()[-1]
 
-    def effective(self, spec):
-        """What the specification of a run means now, as physics() of the effective case."""
-        command = (self.path, "--effective", str(spec.case), *spec.arguments())
-        if command not in self.cases:
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
-            if done.returncode:
-                raise BadFile(f"{spec.name}: {done.stderr.strip().splitlines()[-1]}")
-            self.cases[command] = physics(done.stdout)
-        return self.cases[command]
+    def effective(self, case, *arguments):
+        """The effective case of a file and settings, as text."""
+        done = subprocess.run([self.path, "--effective", str(case), *arguments], capture_output=True,
+                              text=True, check=False)
+        if done.returncode:
+            raise BadFile(f"{case}: {done.stderr.strip().splitlines()[-1]}")
+        return done.stdout
+
+    def means(self, spec, text):
+        """Whether the effective case of a run, which another version may have written, is what the
+        specification means now: the present program gives keys that were not there their defaults."""
+        meant = (spec.case, *spec.arguments())
+        if meant not in self.cases:
+            try:
+                self.cases[meant] = self.effective(*meant)
+            except BadFile as problem:
+                raise BadFile(f"{spec.name}: {problem}") from None
+        now = self.cases[meant]
+        if physics(text) == physics(now):
+            return True
+        files = iter([line for line in now.splitlines() if line.startswith("file ")])
+        lines = [next(files, line) if line.startswith("file ") else line for line in text.splitlines()]
+        with tempfile.NamedTemporaryFile("w", suffix=".cfg", encoding="utf-8") as old:
+            old.write("\n".join([*lines, ""]))
+            old.flush()
+            try:
+                return physics(self.effective(old.name)) == physics(now)
+            except BadFile:
+                return False
 
 
 class Runner:
@@ -226,7 +247,7 @@ class Runner:
         if not (spec.folder / "case.cfg").is_file():
             return "new"
         run = Run(spec.folder)
-        same = physics((spec.folder / "case.cfg").read_text()) == self.program.effective(spec)
+        same = self.program.means(spec, (spec.folder / "case.cfg").read_text())
         if not same or not (self.any_version or run.summary.get("version") == self.program.version):
             return "other"
         reason = run.summary.get("exit_reason")

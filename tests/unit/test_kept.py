@@ -42,7 +42,7 @@ class Bench:
         self.archive = folder / "kept" / f"{NAME}.zip"
 
     def kept(self):
-        return validation_kept.Kept(self.folder / "kept", PROGRAM.effective)
+        return validation_kept.Kept(self.folder / "kept", PROGRAM.means)
 
     def run(self, **options):
         runner = validation_runs.Runner(PROGRAM, self.kept(), **options)
@@ -165,6 +165,23 @@ def test_stale(bench):
     bench.spec.sets = list(SHORT)
 
 
+def test_older(bench):
+    """A key that came later stands at its default in what is kept: the result is used. With another value it
+    is of another case."""
+    whole = bench.archive.read_bytes()
+    for value, used in ((None, True), ("suction = on", False)):
+        def edit(text):
+            assert "\nsuction = off" in text.replace("  ", " ")
+            lines = [line for line in text.splitlines() if not line.startswith("suction")]
+            if value:
+                lines.insert(lines.index("[numerics]") + 1, value)
+            return "\n".join([*lines, ""])
+        bench.rewrite("case.cfg", edit)
+        text, lines = bench.report()
+        assert (lines == []) == used and ("is of another case" in text) != used, (value, lines)
+        bench.archive.write_bytes(whole)
+
+
 def test_damage(bench):
     """Whatever is wrong with the archive: one line that names it, and the report goes on without."""
     whole = bench.archive.read_bytes()
@@ -275,7 +292,8 @@ def test_choice():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(Path(folder))
-        for test in (test_same_numbers, test_version, test_unfinished, test_stale, test_damage, test_picture):
+        for test in (test_same_numbers, test_version, test_unfinished, test_stale, test_older, test_damage,
+                     test_picture):
             test(bench)
     test_thinning()
     test_archive()

@@ -103,7 +103,7 @@ def test_runner(folder):
     spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
     spec.folder = folder / "tiny"
     program = validation_runs.Program(PROGRAM)
-    kept = validation_kept.Kept(folder / "kept", program.effective)
+    kept = validation_kept.Kept(folder / "kept", program.means)
     runner = validation_runs.Runner(program, kept)
     runner.say = lambda text: None
     runner.run(spec)
@@ -135,7 +135,7 @@ def test_runner(folder):
 
 def report_text(folder, failed):
     program = validation_runs.Program(PROGRAM)
-    kept = validation_kept.Kept(folder / "kept", program.effective)
+    kept = validation_kept.Kept(folder / "kept", program.means)
     validation_report.write_report(folder, failed, kept, program.version)
     return (folder / "validation.md").read_text()
 
