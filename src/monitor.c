@@ -105,8 +105,8 @@ static bool fluid_sound(struct simulation *s)
 /* Molteni's diffusion wears off by how much the density of a front's first particle is above the others',
  * until it lies in the bed that it runs over. */
 #define STRAY                                                                                     \
-    "fluid had entered a wall or solid before; diffusion_form = antuono, shifting or a finer dp " \
-    "may keep it out"
+    "fluid had entered a wall or solid before; wall_repulsion = 0.1 or diffusion_form = antuono " \
+    "keeps it out"
 
 static enum err check_fluid(struct simulation *s, struct diag *d)
 {
@@ -297,16 +297,16 @@ enum err monitor_crossing(struct simulation *s, struct diag *d)
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, "
             "among them %lld at (%.6g, %.6g) m with speed = %.4g m/s: it is too thin, or "
-            "the fluid hits it too hard; three particles across and a higher sound_speed "
-            "may help",
+            "the fluid hits it too hard; wall_repulsion = 0.1, three particles across or a "
+            "higher sound_speed help",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;
     s->guard.warned_crossing = true;
     diag_warn(
         d,
-        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the run "
-        "stops when more than 1 %% of the fluid has",
+        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; "
+        "wall_repulsion = 0.1 keeps it out; the run stops when more than 1 %% of the fluid has",
         s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
     return ERR_OK;
 }
