@@ -168,15 +168,15 @@ static void mirrored_velocity(const struct SWEEP(tile) * tile, real x, real y, d
 /* The mirror image of what sum_dummies adds to the fluid by laminar viscosity, as in fluid_force; s has
  * the mirrored velocity. */
 static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
-                       const struct receiver *s, double volume, double force[2])
+                       const struct receiver *s, double volume, const struct lane_constants *k,
+                       double force[2])
 {
     vreal sum_x = vset(0), sum_y = vset(0);
-    const struct lane_constants k = {.laminar = vset((real)(2 * f->k.nu * f->k.rho0 / f->k.h))};
     for (int j = 0; j < tile->n; j += LANES) {
         const struct pair q =
             pair_load(s, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
-        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + vset((real)ETA2)), &k);
+        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
         sum_x = vfma(weight, q.u, sum_x);
         sum_y = vfma(weight, q.v, sum_y);
     }
@@ -294,7 +294,7 @@ SPHFSI_INLINE void dummy_update(const struct fluid *f, struct particles *p, enum
     if (!p->fx) return;
     double force[2] = {0, 0};
     if (!alone) fluid_force(f, tile, &s, &own, (double)out[LANE_VOLUME][place], k, fx, force);
-    if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], force);
+    if (sticks) drag_force(f, tile, &s, (double)out[LANE_VOLUME][place], k, force);
     p->fx[i] = force[0];
     p->fy[i] = force[1];
     if (!p->wet_x || !(fx & FX_IMPEDANCE)) return;
@@ -313,7 +313,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
     tile_close(tile, n);
     const struct SWEEP(box) box = box_of_tile(tile, n);
     const struct lane_constants k =
-        fx & (FX_ONE_SIDED | FX_REPULSION) ? constants_of_sweep(f) : (struct lane_constants){0};
+        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct lane_constants){0};
     for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
         dummy_update(f, p, kind, j, list->order[j], c, cell, tile, &box, &k, fx);
 }
