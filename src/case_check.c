@@ -53,6 +53,16 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
     return ERR_OK;
 }
 
+static void warn_of_lift(struct reader *r, const struct scene_fluid *f)
+{
+    const double *const gravity = r->scene->top.gravity;
+    if (f->shifting_speed != SHIFTING_LARGEST || (gravity[0] == 0 && gravity[1] == 0)) return;
+    warn(r, f->common.line,
+         "[fluid %s] shifting_speed = largest is for fluid that fills its domain: under gravity it "
+         "lifts a free surface, which gains energy",
+         f->common.name);
+}
+
 static enum err check_fluids(struct reader *r)
 {
     struct scene *s = r->scene;
@@ -63,6 +73,7 @@ static enum err check_fluids(struct reader *r)
         if (k == 0) {
             s->c0 = c0;
             s->rho0 = f->density;
+            warn_of_lift(r, f);
         }
         const struct {
             const char *key;
@@ -74,6 +85,7 @@ static enum err check_fluids(struct reader *r)
             {"tensile_control", f->tensile_control, first->tensile_control},
             {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
             {"shifting", f->shifting, first->shifting},
+            {"shifting_speed", f->shifting_speed, first->shifting_speed},
             {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
             {"density_diffusion", f->density_diffusion, first->density_diffusion},
             {"diffusion_form", f->diffusion_form, first->diffusion_form},

@@ -24,6 +24,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .repulsion = fluid->wall_repulsion,
         .dp = s->top.dp,
         .shifting = fluid->shifting,
+        .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? s->c0 / 10 : 0,
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
@@ -98,8 +99,9 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
     return ERR_OK;
 }
 
-/* Skillen et al. 2013 for the size; at the free surface, where the divergence of the positions falls from 2
- * to below 1.5, the shift fades out as it does in Dominguez et al. 2022. */
+/* Skillen et al. 2013 for the size, or the Mach number of 0.1 that Eq. 3 allows for (Sun et al. 2017). At
+ * the free surface, where the divergence of the positions falls from 2 to below 1.5, the shift fades out as
+ * it does in Dominguez et al. 2022. */
 double fluid_shift(const struct fluid *f, struct particles *p, double dt)
 {
     const double full = 2, none = 1.5;
@@ -107,7 +109,9 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
 #pragma omp parallel for schedule(static) num_threads(f->threads) reduction(max : longest2)
     for (int64_t i = 0; i < p->n; i++) {
         const double fade = min2(1, max2(0, (p->spread[i] - none) / (full - none)));
-        const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+        const double speed = f->k.shifting_speed > 0
+                                 ? f->k.shifting_speed
+                                 : sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
         const double size = -f->k.shifting * f->k.h * speed * dt * fade;
         const double dx = size * p->crowd_x[i], dy = size * p->crowd_y[i];
         p->x[i] += dx;

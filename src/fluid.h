@@ -11,12 +11,13 @@ struct fluid_constants {
     double h, c0, rho0;
     double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
     double alpha; /* Eq. 7 */
-    double tensile;   /* epsilon of Monaghan 2000 */
-    double repulsion; /* beta of fx_repulsion */
-    double dp;        /* spacing that it is relative to */
-    double shifting;  /* A of Lind et al. 2012 */
-    double nu;        /* laminar viscosity, m^2/s */
-    double delta;     /* Eq. 6 */
+    double tensile;        /* epsilon of Monaghan 2000 */
+    double repulsion;      /* beta of fx_repulsion */
+    double dp;             /* spacing that it is relative to */
+    double shifting;       /* A of Lind et al. 2012 */
+    double shifting_speed; /* m/s, for all particles alike; 0: each its own */
+    double nu;             /* laminar viscosity, m^2/s */
+    double delta;          /* Eq. 6 */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };

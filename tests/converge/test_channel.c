@@ -132,6 +132,25 @@ static void test_shifting_keeps_vortices_alive(void)
     assert_at_most((exact - amplitude[0]) * 2 / 3, exact - amplitude[1], "missing amplitude");
 }
 
+/* As above with h/dp = 2 and the shift at c0/10 for all, which works at the stagnation points where the
+ * lattice is torn: kinetic energy 0.955 of the exact one at 0.4 s (0.43 without, 0.54 with each
+ * particle's own speed; by 100 particles 0.99). */
+static void test_shifting_at_one_speed_keeps_vortices_whole(void)
+{
+    rig_open(&rig,
+             "dp = 0.02\nend_time = 1\n[numerics]\nh_over_dp = 2\n"
+             "[domain]\nlower = 0, 0\nupper = 1, 1\nperiodic = xy\n"
+             "[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 10\nlaminar_viscosity = 0.01\n"
+             "density_diffusion = 0.1\nshifting = 10\nshifting_speed = largest\n"
+             "velocity = -cos(2*pi*x)*sin(2*pi*y), sin(2*pi*x)*cos(2*pi*y)\n"
+             "pressure = 1000 - 250*(cos(4*pi*x) + cos(4*pi*y))\n",
+             NULL);
+    const double start = simulation_ledger(&rig.sim).kinetic;
+    rig_run(&rig, 0.4);
+    const double share = simulation_ledger(&rig.sim).kinetic / start;
+    assert_near(0.06, 1, share / exp(-16 * M_PI * M_PI * 0.01 * 0.4), "energy over the exact one");
+}
+
 int main(void)
 {
     rig_one_thread();
@@ -140,5 +159,6 @@ int main(void)
     RUN_TEST(test_plates_without_friction);
     RUN_TEST(test_taylor_green);
     RUN_TEST(test_shifting_keeps_vortices_alive);
+    RUN_TEST(test_shifting_at_one_speed_keeps_vortices_whole);
     return UNITY_END();
 }

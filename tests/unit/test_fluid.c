@@ -350,12 +350,13 @@ static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
                             "[fluid w]\nshape = box 0, 0, 2, 2\nsound_speed = 10\nshifting = 2\n";
 
 /* Inside of a lattice all is even and nothing is shifted; a particle that is out of its place by
- * 0.01 = 0.1 dp goes back by A h |v| dt |grad C|; one at the surface stays. */
-static void test_shift_evens_out(void)
+ * 0.01 = 0.1 dp goes back by A h |v| dt |grad C|; one at the surface stays. |v| is `counts` where
+ * particles move at `moves`. */
+static void shift_evens_out(const char *whose, double moves, double counts)
 {
-    rig_open(&rig, block, NULL);
+    rig_open(&rig, block, whose, NULL);
     p = &rig.sim.kind[KIND_FLUID];
-    for (int64_t i = 0; i < p->n; i++) p->vx[i] = 1;
+    for (int64_t i = 0; i < p->n; i++) p->vx[i] = moves;
     rig_evaluate(&rig);
     for (int64_t i = 0; i < p->n; i++) {
         const double edge = fmin(fmin(p->x[i], 2 - p->x[i]), fmin(p->y[i], 2 - p->y[i]));
@@ -373,12 +374,18 @@ static void test_shift_evens_out(void)
     rig_evaluate(&rig);
     const double x = p->x[out], y = p->y[out], at = p->x[corner];
     const double fade = (p->spread[out] - 1.5) / 0.5;
-    const double expected = 2 * 0.135 * 0.02 * fade * p->crowd_x[out];
+    const double expected = 2 * 0.135 * counts * 0.02 * fade * p->crowd_x[out];
     TEST_ASSERT_TRUE(fade > 0.5 && p->crowd_x[out] > 0.1);
     fluid_shift(&rig.sim.fluid, p, 0.02);
     assert_near(1e-15, x - expected, p->x[out], "x");
     assert_near(1e-14, y, p->y[out], "y");
     TEST_ASSERT_TRUE(p->x[corner] == at);
+}
+
+static void test_shift_evens_out(void)
+{
+    shift_evens_out("w.shifting_speed=own", 3, 3);
+    shift_evens_out("w.shifting_speed=largest", 3, 1); /* c0/10 */
 }
 
 /* A shift that vanishes leaves the bits of a scene without. */
