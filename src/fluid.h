@@ -64,9 +64,13 @@ struct lanes {
     void *field[LANE_MOST];
 };
 
-/* Most candidates of one kind that a sweep takes from the nine cells around a particle. More than
- * this means particles have collapsed onto each other: a guard stops the run before. */
-enum { TILE_CAPACITY = 1152, CELL_CAPACITY = TILE_CAPACITY / 9 };
+/* Most particles of one kind in a cell. More than this means particles have collapsed onto each other: a
+ * guard stops the run before. And most candidates of one kind around a strip of cells side by side. */
+enum {
+    CELL_CAPACITY = 128,
+    STRIP_CELLS = 2,
+    TILE_CAPACITY = 3 * (STRIP_CELLS + 2) * CELL_CAPACITY
+};
 
 struct fluid;
 

@@ -14,6 +14,7 @@
 #define vmin vmin_double
 #define vmax vmax_double
 #define vsqrt vsqrt_double
+#define vabs vabs_double
 #define vsum vsum_double
 #define vtop vtop_double
 

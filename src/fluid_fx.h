@@ -2,16 +2,18 @@
  * One inline function for each law between two particles of the fluid, over a pack of pairs. The
  * text is compiled once for float and once for double lanes: the including file defines `real`,
  * `vreal` and the verbs. Lengths are in units of h, so that
- *   grad_a W_ab = -(KERNEL_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 1 - |xi|/2),
- * and every sum below is to be multiplied by -KERNEL_SLOPE/h. The clamp of t removes pairs beyond the
+ *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
+ * and every sum below is to be multiplied by -PAIR_SLOPE/h. The clamp of t removes pairs beyond the
  * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
  * b flips the sign of a force and nothing else. */
+
+#define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
 /* Particle a, spread over the lanes. */
 struct receiver {
     vreal x, y, u, v, p, dens;
     vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
-    vreal diffusion;        /* 2 delta c0/(1 + dens) of Eq. 6, m/s */
+    vreal viscous;          /* -(1 + dens) times the constant `viscosity` */
 };
 
 /* Pairs of a with a pack of candidates b. */
@@ -28,13 +30,14 @@ struct pair {
 struct sums {
     vreal ax, ay;                   /* Pa */
     vreal rate;                     /* m/s */
+    vreal mixing;                   /* 1: of Eq. 6, without its factor 2 delta c0/(1 + dens_a) */
     vreal crowd_x, crowd_y, spread; /* 1: sums of slope xi and of slope |xi|^2 */
     vreal approach;                 /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity;      /* alpha c0 rho0 of Eq. 7, kg/(m^2 s) */
+    vreal viscosity;      /* root of 2 alpha c0 rho0 of Eq. 7 */
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
     vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
@@ -51,7 +54,7 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, const real *x, con
     q.x = a->x - vload(x);
     q.y = a->y - vload(y);
     q.r2 = vfma(q.y, q.y, q.x * q.x);
-    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), vsqrt(q.r2), vset(1)));
+    const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
     q.slope = vload(volume) * (t * t * t);
     q.u = a->u - vload(u);
     q.v = a->v - vload(v);
@@ -72,21 +75,21 @@ SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
     return a->p + q->p;
 }
 
-/* 1/((|xi|^2 + eta^2)(1 + (dens_a + dens_b)/2)): the one division that viscosity and diffusion share;
- * `mean` is its second factor. */
+/* 1/((|xi|^2 + eta^2)(2 + dens_a + dens_b)): the one division that viscosity and diffusion share; `both`
+ * is its second factor. */
 SPHFSI_INLINE vreal pair_damping(const struct receiver *a, const struct pair *q,
-                                 const struct lane_constants *k, vreal *mean)
+                                 const struct lane_constants *k, vreal *both)
 {
-    *mean = vfma(vset((real)0.5), a->dens + q->dens, vset(1));
-    return vset(1) / ((q->r2 + k->eta2) * *mean);
+    *both = vset(2) + (a->dens + q->dens);
+    return vset(1) / ((q->r2 + k->eta2) * *both);
 }
 
-/* Eq. 7: rho_a rho_b Pi_ab, Pa; acts on approaching pairs only. */
+/* Eq. 7: rho_a rho_b Pi_ab, Pa, added to the pair's stress; acts on approaching pairs only. */
 SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q, vreal damping,
-                                 const struct lane_constants *k)
+                                 const struct lane_constants *k, vreal stress)
 {
-    const vreal both = (vset(1) + a->dens) * (vset(1) + q->dens);
-    return -(k->viscosity * vmin(q->vx, vset(0))) * (both * damping);
+    const vreal both = a->viscous * vfma(k->viscosity, q->dens, k->viscosity);
+    return vfma(vmin(q->vx, vset(0)), both * damping, stress);
 }
 
 /* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
@@ -137,7 +140,7 @@ SPHFSI_INLINE void fx_diffusion(const struct receiver *a, const struct pair *q, 
     if (fx & FX_ANTUONO)
         step = step - vset((real)0.5) *
                           vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
-    s->rate = vfma(a->diffusion * step, q->slope * (q->r2 * inv), s->rate);
+    s->mixing = vfma(step, q->slope * (q->r2 * inv), s->mixing);
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
@@ -152,6 +155,5 @@ SPHFSI_INLINE void fx_crowd(const struct pair *q, struct sums *s)
 /* Eq. 28b: the pair's rate of approach or parting. */
 SPHFSI_INLINE void fx_approach(const struct pair *q, vreal inv, struct sums *s)
 {
-    const vreal m = q->vx * inv;
-    s->approach = vmax(s->approach, vmax(m, -m));
+    s->approach = vmax(s->approach, vabs(q->vx * inv));
 }

@@ -14,6 +14,7 @@
 #define vmin vmin_float
 #define vmax vmax_float
 #define vsqrt vsqrt_float
+#define vabs vabs_float
 #define vsum vsum_float
 #define vtop vtop_float
 

@@ -23,7 +23,7 @@ static struct lane_constants constants_of_sweep(const struct fluid *f)
     const struct fluid_constants *const fk = &f->k;
     const double per_c2 = fk->h / square(fk->c0);
     return (struct lane_constants){
-        .viscosity = vset((real)(fk->alpha * fk->c0 * fk->rho0)),
+        .viscosity = vset((real)sqrt(2 * fk->alpha * fk->c0 * fk->rho0)),
         .laminar = vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
         .tensile = vset((real)fk->tensile),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
@@ -100,7 +100,7 @@ static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COU
         const int32_t cell = list->active[k];
         struct SWEEP(tile) *const tile = thread_tile(f, 0);
         tile->fields = LANE_FIELDS;
-        tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
+        tile_around(tile, f, c, KIND_FLUID, cell);
         for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
             double slope[2];
             slope_of(tile, lane[LANE_X][i], lane[LANE_Y][i], lane[LANE_DENS][i], slope);
@@ -180,7 +180,7 @@ static void drag_force(const struct fluid *f, const struct SWEEP(tile) * tile,
         sum_x = vfma(weight, q.u, sum_x);
         sum_y = vfma(weight, q.v, sum_y);
     }
-    const double scale = KERNEL_SLOPE * f->k.h * volume;
+    const double scale = PAIR_SLOPE * f->k.h * volume;
     force[0] -= scale * (double)vsum(sum_x);
     force[1] -= scale * (double)vsum(sum_y);
 }
@@ -214,7 +214,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct SWEEP(tile) *
         sum_x = vfma(g, q.x, sum_x);
         sum_y = vfma(g, q.y, sum_y);
     }
-    const double scale = KERNEL_SLOPE * f->k.h * volume;
+    const double scale = PAIR_SLOPE * f->k.h * volume;
     force[0] = scale * (double)vsum(sum_x);
     force[1] = scale * (double)vsum(sum_y);
 }
@@ -231,7 +231,7 @@ static void wetted_surface(const struct fluid *f, const struct SWEEP(tile) * til
         sum_x = vfma(q.slope, q.x, sum_x);
         sum_y = vfma(q.slope, q.y, sum_y);
     }
-    const double scale = 2 * KERNEL_SLOPE * f->k.h * volume;
+    const double scale = 2 * PAIR_SLOPE * f->k.h * volume;
     surface[0] = scale * (double)vsum(sum_x);
     surface[1] = scale * (double)vsum(sum_y);
 }
@@ -309,9 +309,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
     const struct cell_list *list = &c->kind[kind];
     struct SWEEP(tile) *const tile = thread_tile(f, 0);
     tile->fields = f->lanes[KIND_FLUID].n;
-    const int n = tile_gather(tile, 0, f, c, KIND_FLUID, cell);
-    tile_close(tile, n);
-    const struct SWEEP(box) box = box_of_tile(tile, n);
+    const struct SWEEP(box) box = box_of_tile(tile, tile_around(tile, f, c, KIND_FLUID, cell));
     const struct lane_constants k =
         fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct lane_constants){0};
     for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
@@ -331,11 +329,12 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
     }
 }
 
-/* Sums over the fluid in the tile; fx is a constant where the kernel is stamped. */
-SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct receiver *a,
-                             const struct lane_constants *k, unsigned fx, struct sums *s)
+/* Sums over the fluid in a range of the tile; fx is a constant where the kernel is stamped. */
+SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct range *range,
+                             const struct receiver *a, const struct lane_constants *k, unsigned fx,
+                             struct sums *s)
 {
-    for (int j = 0; j < tile->n; j += LANES) {
+    for (int j = range->first; j < range->end; j += LANES) {
         struct pair q =
             pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
@@ -348,10 +347,10 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
                 q.slope_x = vload(&tile->field[LANE_SLOPE_X][j]);
                 q.slope_y = vload(&tile->field[LANE_SLOPE_Y][j]);
             }
-            vreal mean;
-            const vreal damping = pair_damping(a, &q, k, &mean);
-            inv = damping * mean;
-            if (fx & FX_VISCOSITY) stress = stress + fx_viscosity(a, &q, damping, k);
+            vreal both;
+            const vreal damping = pair_damping(a, &q, k, &both);
+            inv = damping * both;
+            if (fx & FX_VISCOSITY) stress = fx_viscosity(a, &q, damping, k, stress);
             if (fx & FX_DIFFUSION) fx_diffusion(a, &q, inv, k, fx, s);
         } else {
             inv = vset(1) / (q.r2 + k->eta2);
@@ -371,10 +370,11 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct recei
 }
 
 /* Sums over walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
-SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct receiver *a,
-                               const struct lane_constants *k, unsigned fx, struct sums *s)
+SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct range *range,
+                               const struct receiver *a, const struct lane_constants *k,
+                               unsigned fx, struct sums *s)
 {
-    for (int j = 0; j < tile->n; j += LANES) {
+    for (int j = range->first; j < range->end; j += LANES) {
         struct pair q =
             pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
@@ -405,7 +405,7 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct rec
 SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
                                const struct sums *s, struct fluid_extremes *top)
 {
-    const double dens = p->dens[i], slope = KERNEL_SLOPE / k->h;
+    const double dens = p->dens[i], slope = PAIR_SLOPE / k->h;
     const double ax = slope / (k->rho0 * (1 + dens)) * (double)vsum(s->ax) + k->gravity[0];
     const double ay = slope / (k->rho0 * (1 + dens)) * (double)vsum(s->ay) + k->gravity[1];
     p->ax[i] = ax;
@@ -417,48 +417,88 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
 SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles *p, int32_t i,
                                const struct sums *s)
 {
-    p->crowd_x[i] = -KERNEL_SLOPE / k->h * (double)vsum(s->crowd_x);
-    p->crowd_y[i] = -KERNEL_SLOPE / k->h * (double)vsum(s->crowd_y);
-    p->spread[i] = KERNEL_SLOPE * (double)vsum(s->spread);
+    p->crowd_x[i] = -PAIR_SLOPE / k->h * (double)vsum(s->crowd_x);
+    p->crowd_y[i] = -PAIR_SLOPE / k->h * (double)vsum(s->crowd_y);
+    p->spread[i] = PAIR_SLOPE * (double)vsum(s->spread);
 }
 
-SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
-                                 int32_t cell, const struct lane_constants *k, unsigned fx,
-                                 struct fluid_extremes *top)
-{
-    struct SWEEP(tile) *const tile = thread_tile(f, 0), *const dummies = thread_tile(f, 1);
-    tile->fields = f->lanes[KIND_FLUID].n;
-    dummies->fields = f->lanes[KIND_WALL].n;
-    tile_close(tile, tile_gather(tile, 0, f, c, KIND_FLUID, cell));
-    int n = 0;
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (f->n_near_fluid[kind]) n = tile_gather(dummies, n, f, c, (enum kind)kind, cell);
-    tile_close(dummies, n);
+/* What the particles of a cell have to sum over: ranges of tiles whose centre lies `left` of the cell's, in
+ * units of h. */
+struct SWEEP(near) {
+    const struct SWEEP(tile) * fluid, *dummies;
+    struct range in_fluid, in_dummies;
+    real left;
+};
 
-    const struct cell_list *list = &c->kind[KIND_FLUID];
+SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p,
+                                 const struct cell_list *list, int32_t cell,
+                                 const struct SWEEP(near) * near, const struct lane_constants *k,
+                                 unsigned fx, vreal *approach, struct fluid_extremes *top)
+{
     const real *const *const own = (const real *const *)(const void *)f->lanes[KIND_FLUID].field;
-    vreal approach = vset(0); /* over all receivers: the lanes are searched once a cell */
     for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-        struct receiver a = {.x = vset(own[LANE_X][i]),
+        struct receiver a = {.x = vset(own[LANE_X][i] + near->left),
                              .y = vset(own[LANE_Y][i]),
                              .u = vset(own[LANE_U][i]),
                              .v = vset(own[LANE_V][i]),
                              .p = vset(own[LANE_P][i]),
-                             .dens = vset(own[LANE_DENS][i]),
-                             .diffusion =
-                                 vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i])))};
+                             .dens = vset(own[LANE_DENS][i])};
+        if (fx & FX_VISCOSITY) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
         if (fx & FX_ANTUONO) {
             a.slope_x = vset(own[LANE_SLOPE_X][i]);
             a.slope_y = vset(own[LANE_SLOPE_Y][i]);
         }
-        struct sums s = {.approach = approach};
-        sum_fluid(tile, &a, k, fx, &s);
-        sum_dummies(dummies, &a, k, fx, &s);
-        approach = s.approach;
+        struct sums s = {.approach = *approach};
+        sum_fluid(near->fluid, &near->in_fluid, &a, k, fx, &s);
+        sum_dummies(near->dummies, &near->in_dummies, &a, k, fx, &s);
+        *approach = s.approach;
+        if (fx & FX_DIFFUSION)
+            s.rate =
+                vfma(vset((real)(2 * f->k.delta * f->k.c0 / (1 + p->dens[i]))), s.mixing, s.rate);
         rates_store(&f->k, p, i, &s, top);
         if (fx & FX_SHIFTING) crowd_store(&f->k, p, i, &s);
     }
-    top->approach = max2(top->approach, (double)vtop(approach));
+}
+
+/* Cells side by side share tiles: two of them take four columns instead of six, and each sums over three. */
+SPHFSI_INLINE void rates_of_strip(const struct fluid *f, struct particles *p, const struct cells *c,
+                                  int32_t cell, int n_cells, const struct lane_constants *k,
+                                  unsigned fx, vreal *approach, struct fluid_extremes *top)
+{
+    struct SWEEP(tile) *const tile = thread_tile(f, 0), *const dummies = thread_tile(f, 1);
+    const struct SWEEP(place) place = place_of(f, c, cell);
+    tile->fields = f->lanes[KIND_FLUID].n;
+    dummies->fields = f->lanes[KIND_WALL].n;
+    int from[STRIP_CELLS + 3] = {0}, dummies_from[STRIP_CELLS + 3] = {0};
+    for (int d = 0; d < n_cells + 2; d++) {
+        from[d + 1] = tile_column(tile, from[d], f, c, KIND_FLUID, &place, d - 1);
+        dummies_from[d + 1] = dummies_from[d];
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            if (f->n_near_fluid[kind])
+                dummies_from[d + 1] =
+                    tile_column(dummies, dummies_from[d + 1], f, c, (enum kind)kind, &place, d - 1);
+    }
+    tile_close(tile, from[n_cells + 2]);
+    tile_close(dummies, dummies_from[n_cells + 2]);
+    for (int m = 0; m < n_cells; m++) {
+        const struct SWEEP(near) near = {.fluid = tile,
+                                         .dummies = dummies,
+                                         .in_fluid = {from[m], from[m + 3]},
+                                         .in_dummies = {dummies_from[m], dummies_from[m + 3]},
+                                         .left = (real)m * place.side_x};
+        rates_of_cell(f, p, &c->kind[KIND_FLUID], cell + m, &near, k, fx, approach, top);
+    }
+}
+
+/* How many of the active cells from the m-th to before the end lie side by side. */
+static int strip_cells(const struct cells *c, int32_t m, int32_t end)
+{
+    const int32_t *const active = c->kind[KIND_FLUID].active;
+    int n = 1;
+    while (n < STRIP_CELLS && m + n < end && active[m + n] == active[m] + n &&
+           cell_x(c, active[m + n]) > 0)
+        n++;
+    return n;
 }
 
 /* Cells that a thread takes at once. */
@@ -476,8 +516,13 @@ typedef void SWEEP(share)(const struct fluid *f, struct particles *p, const stru
                                        const struct lane_constants *k, struct fluid_extremes *top) \
     {                                                                                              \
         const struct lane_constants constants = *k;                                                \
-        for (int32_t m = first; m < end; m++)                                                      \
-            rates_of_cell(f, p, c, c->kind[KIND_FLUID].active[m], &constants, (set), top);         \
+        vreal approach = vset(0); /* over all receivers: the lanes are searched once a share */    \
+        for (int32_t m = first, n; m < end; m += n) {                                              \
+            n = strip_cells(c, m, end);                                                            \
+            rates_of_strip(f, p, c, c->kind[KIND_FLUID].active[m], n, &constants, (set),           \
+                           &approach, top);                                                        \
+        }                                                                                          \
+        top->approach = max2(top->approach, (double)vtop(approach));                               \
     }
 #include "variants.def"
 VARIANT(any, f->effects &PAIR_EFFECTS)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Tiles: the candidates of the nine cells around a cell, copied together so that full vectors can be loaded
- * from them. A part of the sweeps' text (fluid_sweep.h), once for each precision. */
+ * Tiles: the candidates of the cells around a cell or a strip of cells, column by column, copied together so
+ * that full vectors can be loaded from them. A part of the sweeps' text (fluid_sweep.h), once for each
+ * precision. */
 
 #define TILE_FAR 1000 /* in units of h; the kernel ends at 2 */
 
@@ -10,6 +11,12 @@ struct SWEEP(tile) {
     int n; /* a multiple of LANES */
     int fields;
     real field[][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
+};
+
+/* Candidates of a tile, from the first to before the end; those that fill up the last LANES are out of
+ * reach. */
+struct range {
+    int first, end;
 };
 
 static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
@@ -38,38 +45,55 @@ SPHFSI_INLINE int tile_append(struct SWEEP(tile) * tile, int n, const struct lan
     return n + count;
 }
 
-/* Appends the nine cells around `cell` of one kind; returns the number of candidates so far. */
-static int tile_gather(struct SWEEP(tile) * tile, int n, const struct fluid *f,
-                       const struct cells *c, enum kind kind, int32_t cell)
+/* The cell whose centre is a tile's, and the sides of all cells in units of h. */
+struct SWEEP(place) {
+    int cx, cy;
+    real side_x, side_y;
+};
+
+static struct SWEEP(place) place_of(const struct fluid *f, const struct cells *c, int32_t cell)
+{
+    return (struct SWEEP(place)){cell_x(c, cell), cell_y(c, cell), (real)(c->side[0] / f->k.h),
+                                 (real)(c->side[1] / f->k.h)};
+}
+
+/* Appends the three cells of one kind dx columns beside a tile's; returns the number of candidates so far. */
+static int tile_column(struct SWEEP(tile) * tile, int n, const struct fluid *f,
+                       const struct cells *c, enum kind kind, const struct SWEEP(place) * place,
+                       int dx)
 {
     const struct cell_list *list = &c->kind[kind];
-    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
-    const double side_x = c->side[0] / f->k.h, side_y = c->side[1] / f->k.h;
-    const bool more = f->lanes[kind].n > LANE_FIELDS;
-    const int column[3] = {cells_place(c, 0, cx - 1), cx, cells_place(c, 0, cx + 1)};
+    const int column = cells_place(c, 0, place->cx + dx);
+    if (column < 0) return n;
     for (int dy = -1; dy <= 1; dy++) {
-        const int row = cells_place(c, 1, cy + dy);
+        const int row = cells_place(c, 1, place->cy + dy);
         if (row < 0) continue;
-        for (int dx = -1; dx <= 1; dx++) {
-            if (column[dx + 1] < 0) continue;
-            const int32_t other = row * c->nx + column[dx + 1];
-            if (list->count[other] == 0) continue;
-            n = tile_append(tile, n, &f->lanes[kind], list->start[other], list->count[other],
-                            (real)(dx * side_x), (real)(dy * side_y), more);
-        }
+        const int32_t cell = row * c->nx + column;
+        if (list->count[cell] > 0)
+            n = tile_append(tile, n, &f->lanes[kind], list->start[cell], list->count[cell],
+                            (real)dx * place->side_x, (real)dy * place->side_y,
+                            f->lanes[kind].n > LANE_FIELDS);
     }
     return n;
 }
 
+/* Ends a tile after n candidates with lanes that are far away and without volume. */
 static void tile_close(struct SWEEP(tile) * tile, int n)
 {
-    const int padded = (n + LANES - 1) / LANES * LANES;
-    for (; n < padded; n++) {
-        for (int m = 0; m < LANE_FIELDS; m++) tile->field[m][n] = 0;
-        for (int m = LANE_FIELDS; m < tile->fields; m++) tile->field[m][n] = 0;
-        tile->field[LANE_X][n] = TILE_FAR;
-    }
-    tile->n = padded;
+    for (int m = 0; m < tile->fields; m++) vstore(&tile->field[m][n], vset(0));
+    vstore(&tile->field[LANE_X][n], vset(TILE_FAR));
+    tile->n = (n + LANES - 1) / LANES * LANES;
+}
+
+/* Fills a tile with the nine cells around `cell` of one kind; returns the number of candidates. */
+static int tile_around(struct SWEEP(tile) * tile, const struct fluid *f, const struct cells *c,
+                       enum kind kind, int32_t cell)
+{
+    const struct SWEEP(place) place = place_of(f, c, cell);
+    int n = 0;
+    for (int dx = -1; dx <= 1; dx++) n = tile_column(tile, n, f, c, kind, &place, dx);
+    tile_close(tile, n);
+    return n;
 }
 
 /* Corners of the candidates of a tile, in its coordinates. */

@@ -81,6 +81,14 @@ SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
 {
     return (vdouble)X86(max_pd)((X86_DOUBLE)a, (X86_DOUBLE)b);
 }
+SPHFSI_INLINE vfloat vabs_float(vfloat a)
+{
+    return (vfloat)X86(andnot_ps)(X86(set1_ps)(-0.0f), (X86_FLOAT)a);
+}
+SPHFSI_INLINE vdouble vabs_double(vdouble a)
+{
+    return (vdouble)X86(andnot_pd)(X86(set1_pd)(-0.0), (X86_DOUBLE)a);
+}
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)X86(sqrt_ps)((X86_FLOAT)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)X86(sqrt_pd)((X86_DOUBLE)a); }
 #undef X86
@@ -115,6 +123,8 @@ SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
     return (vdouble)vbslq_f64(vcgtq_f64((float64x2_t)a, (float64x2_t)b), (float64x2_t)a,
                               (float64x2_t)b);
 }
+SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)vabsq_f32((float32x4_t)a); }
+SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)vabsq_f64((float64x2_t)a); }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #else
@@ -145,6 +155,14 @@ SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
 SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
 {
     SIMD_LANEWISE(vdouble, max, LANES_DOUBLE, a[l] > b[l] ? a[l] : b[l]);
+}
+SPHFSI_INLINE vfloat vabs_float(vfloat a)
+{
+    SIMD_LANEWISE(vfloat, abs, LANES_FLOAT, __builtin_fabsf(a[l]));
+}
+SPHFSI_INLINE vdouble vabs_double(vdouble a)
+{
+    SIMD_LANEWISE(vdouble, abs, LANES_DOUBLE, __builtin_fabs(a[l]));
 }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a)
 {

@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parent.parent
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
 # Arithmetic of a pack of candidates in the loop with viscosity and diffusion, counted in the source.
-OPERATIONS = 42
+OPERATIONS = 37
 
 
 def arguments():

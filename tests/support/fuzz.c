@@ -108,7 +108,8 @@ static struct scene small_scene;
 static void open_small(struct simulation *s)
 {
     struct diag d = {.code = ERR_OK};
-    if (!small_scene.top.dp && scene_parse(&small_scene, small_case, "x.cfg", 0, NULL, &d)) abort();
+    if (small_scene.top.dp == 0 && scene_parse(&small_scene, small_case, "x.cfg", 0, NULL, &d))
+        abort();
     if (simulation_create(s, &small_scene, &d)) abort();
 }
 

@@ -64,6 +64,7 @@ static void test_float_verbs(void)
         CHECK(vfma_float(A, B, C), fmaf(a[l], b[l], c[l]));
         CHECK(vmin_float(A, B), a[l] < b[l] ? a[l] : b[l]);
         CHECK(vmax_float(A, B), a[l] > b[l] ? a[l] : b[l]);
+        CHECK(vabs_float(A), fabsf(a[l]));
         CHECK(vsqrt_float(A), sqrtf(a[l]));
 #undef CHECK
     }
@@ -84,6 +85,7 @@ static void test_double_verbs(void)
         CHECK(vfma_double(A, B, C), fma(a[l], b[l], c[l]));
         CHECK(vmin_double(A, B), a[l] < b[l] ? a[l] : b[l]);
         CHECK(vmax_double(A, B), a[l] > b[l] ? a[l] : b[l]);
+        CHECK(vabs_double(A), fabs(a[l]));
         CHECK(vsqrt_double(A), sqrt(a[l]));
 #undef CHECK
     }
