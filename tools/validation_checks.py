@@ -175,10 +175,14 @@ def front(report):
     square = "the same table read as that of a square column, t sqrt(g/a)"
     report.try_target("dry dam break", square, lambda: target("front-40-square", 1))
 
-    def moved():
-        shift, left = aligned(report.run("front-40-square"), 1)
+    def moved(name):
+        shift, left = aligned(report.run(name), 1)
         return f"{100 * left:.1f} % (shift {shift:+.2f})", left <= 0.05
-    report.try_target("dry dam break", f"{square}, after a shift of the time's origin", moved)
+    report.try_target("dry dam break", f"{square}, after a shift of the time's origin",
+                      lambda: moved("front-40-square"))
+    report.try_target("dry dam break",
+                      "the same table read as t sqrt(g/a) of a column of height 2a, after a shift of the "
+                      "time's origin", lambda: moved(report.first("front-80", "front-40", "front-20")))
     return [
         "Deviation of the front from Martin and Moyce 1952 at the ten tabulated times, in %; and "
         "what the largest is after a shift of the time's origin that fits best (in brackets, "
@@ -189,10 +193,12 @@ def front(report):
                       starting("front"), cells),
         *front_figure(report, known_t, known_x, curve),
         "The table is handed down with the time t sqrt(2g/a), that of a column of height 2a. Read "
-        "so, the measured front is ever further ahead of ours. Read as a square column with t "
-        "sqrt(g/a), ours is ahead by an offset that is there from the first row on, as of a "
-        "membrane that takes time to go, and keeps the measured pace. The report gives both and "
-        "decides neither.", ""]
+        "so, the measured front is ever further ahead of ours. Its times do not fit other tabulations "
+        "of the experiment with such a column (examples/db_exp_data.py of PySPH, from Martin and Moyce "
+        "and from Koshizuka and Oka 1996), where the same places are reached 1.3 to 1.5 times as late, "
+        "as if the times were t sqrt(g/a). Read so, or as a square column with t sqrt(g/a), ours is ahead "
+        "by an offset that is there from the first row on, as of a membrane that takes time to go, and "
+        "keeps nearly the measured pace. The report gives all three and decides none.", ""]
 
 
 def front_figure(report, known_t, known_x, curve):
