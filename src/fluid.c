@@ -65,7 +65,8 @@ static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *
 }
 
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
-                      const struct particles kinds[KIND_COUNT], struct diag *d)
+                      const struct particles kinds[KIND_COUNT], const struct cells *c,
+                      struct diag *d)
 {
     memset(f, 0, sizeof *f);
     f->k = constants_of(s);
@@ -81,7 +82,9 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
     }
     f->tile_size = f->sweeps->tile_head + (size_t)most * f->sweeps->tile_row;
     f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->tile_size, "candidate tiles", d);
-    if (!f->tiles) return ERR_MEMORY;
+    f->near_dummies = arena_alloc(a, (size_t)c->nx * (size_t)c->ny, sizeof *f->near_dummies,
+                                  "cells near walls and structures", d);
+    if (!f->tiles || !f->near_dummies) return ERR_MEMORY;
     if (effects & FX_NO_SLIP) TRY(note_slip(f, a, s, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
@@ -121,25 +124,30 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
     return sqrt(longest2);
 }
 
-static bool fluid_around(const struct cells *c, int32_t cell)
+/* Marks the nine cells around one of walls or structures; returns whether there is fluid in any of them. */
+static bool mark_around(struct fluid *f, const struct cells *c, int32_t cell)
 {
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    bool fluid = false;
     for (int y = cy - 1; y <= cy + 1; y++) {
         for (int x = cx - 1; x <= cx + 1; x++) {
             const int32_t other = cell_at(c, x, y);
-            if (other >= 0 && c->kind[KIND_FLUID].count[other]) return true;
+            if (other < 0) continue;
+            f->near_dummies[other] = true;
+            fluid |= c->kind[KIND_FLUID].count[other] > 0;
         }
     }
-    return false;
+    return fluid;
 }
 
 void fluid_find_near(struct fluid *f, const struct cells *c)
 {
+    memset(f->near_dummies, 0, (size_t)c->nx * (size_t)c->ny * sizeof *f->near_dummies);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         const struct cell_list *list = &c->kind[kind];
         int32_t n = 0;
         for (int32_t k = 0; k < list->n_active; k++)
-            if (f->idle_is_work || fluid_around(c, list->active[k]))
+            if (mark_around(f, c, list->active[k]) || f->idle_is_work)
                 f->near_fluid[kind][n++] = list->active[k];
         f->n_near_fluid[kind] = n;
     }

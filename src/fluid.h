@@ -111,6 +111,7 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
+    bool *near_dummies; /* [cells]: whether walls or structures are in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     void *tiles;              /* [2 threads] of candidate tiles */
     size_t tile_size;
@@ -120,13 +121,14 @@ struct fluid {
 
 /* Chooses the kernel and makes room for lanes and tiles. */
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
-                      const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
+                      const struct particles kinds[KIND_COUNT], const struct cells *c,
+                      struct diag *d) SPHFSI_CHECKED;
 
 /* Moves particles by A h |v| dt down the gradient of their concentration, as of the last evaluation, but
  * for those at the free surface; returns the longest way, m. */
 double fluid_shift(const struct fluid *f, struct particles *p, double dt);
 
-/* After sorting: finds the cells of walls and solids that have fluid within reach. */
+/* After sorting: finds the cells of walls and solids that have fluid within reach, and the reverse. */
 void fluid_find_near(struct fluid *f, const struct cells *c);
 
 /* Most particles of any kind in one cell. */

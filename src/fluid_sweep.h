@@ -470,10 +470,12 @@ SPHFSI_INLINE void rates_of_strip(const struct fluid *f, struct particles *p, co
     tile->fields = f->lanes[KIND_FLUID].n;
     dummies->fields = f->lanes[KIND_WALL].n;
     int from[STRIP_CELLS + 3] = {0}, dummies_from[STRIP_CELLS + 3] = {0};
+    bool near_dummies = false;
+    for (int m = 0; m < n_cells; m++) near_dummies |= f->near_dummies[cell + m];
     for (int d = 0; d < n_cells + 2; d++) {
         from[d + 1] = tile_column(tile, from[d], f, c, KIND_FLUID, &place, d - 1);
         dummies_from[d + 1] = dummies_from[d];
-        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        for (int kind = KIND_WALL; near_dummies && kind < KIND_COUNT; kind++)
             if (f->n_near_fluid[kind])
                 dummies_from[d + 1] =
                     tile_column(dummies, dummies_from[d + 1], f, c, (enum kind)kind, &place, d - 1);

@@ -224,7 +224,7 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
                      d));
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, d));
-    TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, d));
+    TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, &s->cells, d));
     start_fluid(s);
     return ERR_OK;
 }
