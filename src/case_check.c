@@ -53,14 +53,39 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
     return ERR_OK;
 }
 
-static void warn_of_lift(struct reader *r, const struct scene_fluid *f)
+static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
 {
-    const double *const gravity = r->scene->top.gravity;
-    if (f->shifting_speed != SHIFTING_LARGEST || (gravity[0] == 0 && gravity[1] == 0)) return;
-    warn(r, f->common.line,
-         "[fluid %s] shifting_speed = largest is for fluid that fills its domain: under gravity it "
-         "lifts a free surface, which gains energy",
-         f->common.name);
+    const double *const gravity = r->scene->top.gravity, cfl = r->scene->numerics.cfl;
+    const int line = f->common.line;
+    if (f->shifting_speed != SHIFTING_LARGEST) return;
+    if (gravity[0] != 0 || gravity[1] != 0)
+        warn(r, line,
+             "[fluid %s] shifting_speed = largest under gravity lifts a free surface, which gains "
+             "energy, the more the larger `shifting` is; it is for fluid that fills its domain",
+             f->common.name);
+    if (f->shifting * cfl > 5 * (1 + 1e-9))
+        warn(r, line,
+             "[fluid %s] shifting = %g with numerics.cfl = %g: their product is beyond 5, up to "
+             "which shifting_speed = largest is a stable diffusion",
+             f->common.name, f->shifting, cfl);
+}
+
+/* All fluid is of one kind. */
+static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
+                       double its)
+{
+    const struct param *const p = param_find(SECTION_fluid, key);
+    char mine_text[SCENE_NAME], its_text[SCENE_NAME];
+    if (p->type == PARAM_CHOICE) {
+        param_choice_name(p, (int)mine, mine_text);
+        param_choice_name(p, (int)its, its_text);
+    } else {
+        snprintf(mine_text, sizeof mine_text, "%g", mine);
+        snprintf(its_text, sizeof its_text, "%g", its);
+    }
+    return bad_line(r, f->common.line,
+                    "[fluid %s] and [fluid %s] differ in `%s`: %s and %s; all fluid is of one kind",
+                    f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
 }
 
 static enum err check_fluids(struct reader *r)
@@ -73,7 +98,7 @@ static enum err check_fluids(struct reader *r)
         if (k == 0) {
             s->c0 = c0;
             s->rho0 = f->density;
-            warn_of_lift(r, f);
+            warn_of_shift(r, f);
         }
         const struct {
             const char *key;
@@ -92,11 +117,7 @@ static enum err check_fluids(struct reader *r)
         };
         for (size_t j = 0; j < COUNT_OF(same); j++)
             if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
-                return bad_line(r, f->common.line,
-                                "[fluid %s] and [fluid %s] differ in `%s`: %g and "
-                                "%g; all fluid is of one kind",
-                                f->common.name, first->common.name, same[j].key, same[j].mine,
-                                same[j].its);
+                return differ(r, f, same[j].key, same[j].mine, same[j].its);
     }
     return ERR_OK;
 }

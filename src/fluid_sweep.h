@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The sweeps of the fluid, one text for both precisions: fluid_mixed.c and fluid_double.c define
- *   real, vreal, LANES, SWEEP(name), the verbs vload vstore vset vfma vmin vmax vsqrt vsum vtop
- * and include it. Particles of a cell sweep a tile: the candidates of the nine cells around, copied
+ *   real, vreal, LANES, SWEEP(name), the verbs vload vstore vset vfma vmin vmax vabs vsqrt vsum vtop
+ * and include it. Particles of a cell or two sweep a tile: the candidates of the cells around, copied
  * together so that full vectors can be loaded from it. Gather form: a particle sums its own neighbours
  * and writes only itself, so that the bits do not depend on the number of threads. */
 
@@ -330,11 +330,13 @@ static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_CO
 }
 
 /* Sums over the fluid in a range of the tile; fx is a constant where the kernel is stamped. */
-SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct range *range,
+SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct SWEEP(range) * range,
                              const struct receiver *a, const struct lane_constants *k, unsigned fx,
                              struct sums *s)
 {
+    vreal before = s->approach;
     for (int j = range->first; j < range->end; j += LANES) {
+        before = s->approach;
         struct pair q =
             pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
@@ -367,14 +369,17 @@ SPHFSI_INLINE void sum_fluid(const struct SWEEP(tile) * tile, const struct range
         s->ax = vfma(g, q.x, s->ax);
         s->ay = vfma(g, q.y, s->ay);
     }
+    s->approach = vmax(s->approach * range->used, before);
 }
 
 /* Sums over walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
-SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct range *range,
+SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct SWEEP(range) * range,
                                const struct receiver *a, const struct lane_constants *k,
                                unsigned fx, struct sums *s)
 {
+    vreal before = s->approach;
     for (int j = range->first; j < range->end; j += LANES) {
+        before = s->approach;
         struct pair q =
             pair_load(a, &tile->field[LANE_X][j], &tile->field[LANE_Y][j], &tile->field[LANE_U][j],
                       &tile->field[LANE_V][j], &tile->field[LANE_VOLUME][j]);
@@ -399,6 +404,7 @@ SPHFSI_INLINE void sum_dummies(const struct SWEEP(tile) * tile, const struct ran
         s->ax = vfma(g, q.x, s->ax);
         s->ay = vfma(g, q.y, s->ay);
     }
+    s->approach = vmax(s->approach * range->used, before);
 }
 
 /* The factors that the sums lack. */
@@ -426,7 +432,7 @@ SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles
  * units of h. */
 struct SWEEP(near) {
     const struct SWEEP(tile) * fluid, *dummies;
-    struct range in_fluid, in_dummies;
+    struct SWEEP(range) in_fluid, in_dummies;
     real left;
 };
 
@@ -483,11 +489,12 @@ SPHFSI_INLINE void rates_of_strip(const struct fluid *f, struct particles *p, co
     tile_close(tile, from[n_cells + 2]);
     tile_close(dummies, dummies_from[n_cells + 2]);
     for (int m = 0; m < n_cells; m++) {
-        const struct SWEEP(near) near = {.fluid = tile,
-                                         .dummies = dummies,
-                                         .in_fluid = {from[m], from[m + 3]},
-                                         .in_dummies = {dummies_from[m], dummies_from[m + 3]},
-                                         .left = (real)m * place.side_x};
+        const struct SWEEP(near)
+            near = {.fluid = tile,
+                    .dummies = dummies,
+                    .in_fluid = range_of(from[m], from[m + 3]),
+                    .in_dummies = range_of(dummies_from[m], dummies_from[m + 3]),
+                    .left = (real)m * place.side_x};
         rates_of_cell(f, p, &c->kind[KIND_FLUID], cell + m, &near, k, fx, approach, top);
     }
 }

@@ -13,11 +13,20 @@ struct SWEEP(tile) {
     real field[][TILE_CAPACITY * 2 + 2 * LANES] __attribute__((aligned(64)));
 };
 
-/* Candidates of a tile, from the first to before the end; those that fill up the last LANES are out of
- * reach. */
-struct range {
+/* Candidates of a tile, from the first to before the end. What fills up the last pack is out of reach, or
+ * belongs to the next cell: `used` is 1 in the lanes that count, so that what is taken over all candidates
+ * (the bound of Eq. 28b) does not depend on how many lanes there are. */
+struct SWEEP(range) {
     int first, end;
+    vreal used;
 };
+
+static struct SWEEP(range) range_of(int first, int end)
+{
+    static const real used[2 * LANES] = {[0 ... LANES - 1] = 1};
+    const int last = end > first ? (end - first - 1) % LANES + 1 : 0;
+    return (struct SWEEP(range)){first, end, vload(&used[LANES - last])};
+}
 
 static struct SWEEP(tile) * thread_tile(const struct fluid *f, int which)
 {

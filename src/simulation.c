@@ -195,6 +195,12 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     s->state.sorts++;
     const int32_t crowd = fluid_crowding(&s->cells);
     s->crowded = crowd > CELL_CAPACITY;
+    if (s->crowded && s->state.steps == 0)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%d particles start in one cell of %.3g m, which has room for %d: a smaller "
+            "numerics.h_over_dp or a solid's dp nearer to the fluid's would mend it",
+            crowd, s->cells.side[0], CELL_CAPACITY);
     if (s->crowded)
         return diag_fail(
             d, ERR_GUARD,

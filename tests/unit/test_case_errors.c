@@ -209,6 +209,12 @@ static const struct {
      "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0; all fluid is of "
      "one "
      "kind"},
+    {TOP FLUID "shifting = 1\nshifting_speed = largest\n"
+               "[fluid v]\nlike = w\nshifting_speed = own\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
+     NULL,
+     "bad.cfg:8: [fluid v] and [fluid w] differ in `shifting_speed`: own and largest; all fluid is "
+     "of "
+     "one kind"},
     {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; one is to go"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
