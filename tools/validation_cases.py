@@ -381,7 +381,9 @@ def sluice(report):
         f"available: **no agreement with the experiment is claimed**. What can be checked: the "
         f"front is slower than Ritter's 2 sqrt(gH) = {ritter:.2f} m/s; the gate swings at 4.47 Hz "
         f"in air; the paper reports oscillations after t = 1 s from vortices at the gate, which "
-        f"depend on the numerical parameters.", "",
+        f"depend on the numerical parameters. Walls and gate push back fluid that comes nearer than 0.8 dp "
+        f"(`wall_repulsion`), which the paper's scheme does not: the rows without repulsion show what "
+        f"particles that are pressed into the bed come to.", "",
         *report.table(["front (m/s, of Ritter's)", "first contact (s)", "largest M1 (mm)", "at (s)",
                        "mean after 1 s (mm)",
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", *COST],

@@ -22,6 +22,8 @@ static const struct {
     {"bare", "0", "0", NULL, NULL, 0},
     {"viscous", "0.05", "0", NULL, NULL, FX_VISCOSITY},
     {"dam_break", "0.05", "0.1", NULL, NULL, FX_VISCOSITY | FX_DIFFUSION},
+    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL,
+     FX_VISCOSITY | FX_DIFFUSION | FX_REPULSION},
     {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL,
      FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS},
     {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none",
