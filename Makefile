@@ -75,7 +75,7 @@ endif
 # clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles.
 WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
-OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd,-fopenmp)
+OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopenmp)
 # Older clang on AArch64 knows -mcpu=native only.
 MARCH := $(or $(shell $(CC) -march=$(ARCH) -E -x c /dev/null >/dev/null 2>&1 && \
                       echo -march=$(ARCH)),-mcpu=$(ARCH))

@@ -13,7 +13,7 @@
 struct receiver {
     vreal x, y, u, v, p, dens;
     vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
-    vreal viscous;          /* -(1 + dens) times the constant `viscosity` */
+    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, of its unit */
 };
 
 /* Pairs of a with a pack of candidates b. */
@@ -37,7 +37,7 @@ struct sums {
 
 /* Constants of the sweep, spread over the lanes. */
 struct lane_constants {
-    vreal viscosity;      /* root of 2 alpha c0 rho0 of Eq. 7 */
+    vreal viscosity;      /* root of 2 alpha c0 rho0 of Eq. 7, (kg/(m^2 s))^(1/2) */
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
     vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
