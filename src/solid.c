@@ -345,7 +345,7 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
 
 static void kick_and_drift(const struct solid *s, struct particles *p, double kick, double drift)
 {
-#pragma omp for schedule(static) nowait
+#pragma omp for simd schedule(static) nowait
     for (int64_t i = 0; i < p->n; i++) {
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
