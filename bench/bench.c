@@ -39,17 +39,40 @@ static void print_row(const struct bench *b, const char *what, const char *varia
     fflush(b->out);
 }
 
+/* The value of a line of /proc/cpuinfo that begins with `key`; NULL: another line. */
+static const char *info_value(char *line, const char *key)
+{
+    const size_t n = strlen(key);
+    if (strncmp(line, key, n) != 0 || line[n] != '\t') return NULL;
+    line[strcspn(line, "\n")] = '\0';
+    const char *const colon = strchr(line, ':');
+    return colon && colon[1] == ' ' ? colon + 2 : NULL;
+}
+
+/* With family and model, since a cloud's "AMD EPYC" may be any of several generations. */
+static void find_processor(char name[256])
+{
+    static const char *const keys[] = {"model name", "cpu family", "model"};
+    static const char *const words[] = {"", " family ", " model "};
+    char line[256], found[COUNT_OF(keys)][64] = {{0}};
+    FILE *const info = fopen("/proc/cpuinfo", "r");
+    while (info && fgets(line, sizeof line, info))
+        for (size_t k = 0; k < COUNT_OF(keys); k++) {
+            const char *const value = info_value(line, keys[k]);
+            if (value && !found[k][0]) snprintf(found[k], sizeof found[k], "%s", value);
+        }
+    if (info) fclose(info);
+    snprintf(name, 256, "%s", found[0][0] ? found[0] : "unknown processor");
+    for (size_t k = 1; k < COUNT_OF(keys); k++) {
+        const size_t n = strlen(name);
+        if (found[k][0]) snprintf(name + n, 256 - n, "%s%s", words[k], found[k]);
+    }
+}
+
 static void print_machine(const struct bench *b)
 {
-    char line[256] = "", cpu[256] = "unknown processor";
-    FILE *const info = fopen("/proc/cpuinfo", "r");
-    while (info && fgets(line, sizeof line, info)) {
-        if (strncmp(line, "model name", 10) != 0 || !strchr(line, ':')) continue;
-        line[strcspn(line, "\n")] = '\0';
-        strcpy(cpu, strchr(line, ':') + 1);
-        break;
-    }
-    if (info) fclose(info);
+    char cpu[256];
+    find_processor(cpu);
 #ifdef __clang__
     const char *const compiler = "";
 #else
@@ -58,8 +81,8 @@ static void print_machine(const struct bench *b)
     double load[1] = {-1};
     if (getloadavg(load, 1) < 1) load[0] = -1;
     fprintf(b->out,
-            "# %s, %d threads, load %.1f before the start; vectors of %d float, %d double\n",
-            cpu + (cpu[0] == ' '), b->all_threads, load[0], LANES_FLOAT, LANES_DOUBLE);
+            "# %s, %d threads, load %.1f before the start; vectors of %d float, %d double\n", cpu,
+            b->all_threads, load[0], LANES_FLOAT, LANES_DOUBLE);
     fprintf(b->out, "# %s%s\n", compiler, __VERSION__);
     fprintf(b->out, "what,variant,particles,threads,part,unit,median,min,max\n");
 }
@@ -279,6 +302,7 @@ int main(int argc, char **argv)
             return 1;
         }
     }
+    thread_pin();
     print_machine(&b);
     bench_all(&b, 1, largest);
     if (b.all_threads > 1) bench_all(&b, b.all_threads, largest);
