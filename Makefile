@@ -91,7 +91,8 @@ FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---
 LIB     := $(B)/libsphfsi.a
-PROGRAM := $(if $(filter release,$(CONFIG)),sphfsi,$(B)/sphfsi)
+# One of a build folder of its own (B=...) must not take the place of ./sphfsi.
+PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
 LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
