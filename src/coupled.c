@@ -76,7 +76,7 @@ void evaluate_start(struct simulation *s)
 
 void place_solid(struct particles *p)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x[i] = p->X[i] + p->ux[i];
         p->y[i] = p->Y[i] + p->uy[i];
@@ -95,7 +95,7 @@ double acceleration_weight(const struct simulation *s, double dt)
 void advance_solid(struct simulation *s, double dt, int n, bool centred)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x0[i] = p->ux[i];
         p->y0[i] = p->uy[i];
@@ -109,7 +109,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     place_solid(p);
     const double per_dt = 1 / dt;
     const double newest = acceleration_weight(s, dt);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt;
         p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt;

@@ -2,6 +2,8 @@
  * Leapfrog with one evaluation a step (T-32a, T-32b): velocities live half a step behind the positions, the
  * density follows by the third-order Adams-Bashforth rule, and the evaluation sees the velocity carried
  * on by half a step. Stable to twice and more the step of Eqs. 22-26 for the same work. */
+#include <string.h>
+
 #include "integrators.h"
 #include "timestep.h"
 
@@ -19,8 +21,11 @@ static void update_fluid(struct particles *p, double dt, double dt_old, double d
 {
     const double kick = 0.5 * (dt_old + dt), half = 0.5 * dt;
     const double r = step_ratio(dt, dt_old), r_old = step_ratio(dt_old, dt_older);
-    const bool first = !(dt_old > 0);
-#pragma omp parallel for schedule(static)
+    if (!(dt_old > 0)) { /* the first step knows no others */
+        memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
+        memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
+    }
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->vx_half[i] += kick * p->ax[i];
         p->vy_half[i] += kick * p->ay[i];
@@ -29,7 +34,6 @@ static void update_fluid(struct particles *p, double dt, double dt_old, double d
         p->vx[i] = p->vx_half[i] + half * p->ax[i];
         p->vy[i] = p->vy_half[i] + half * p->ay[i];
         const double now = p->ddens[i];
-        if (first) p->ddens_old[i] = p->ddens_older[i] = now;
         p->dens[i] += dt * extrapolated_rate(now, p->ddens_old[i], p->ddens_older[i], r, r_old);
         p->ddens_older[i] = p->ddens_old[i];
         p->ddens_old[i] = now;
@@ -40,7 +44,7 @@ static void update_fluid(struct particles *p, double dt, double dt_old, double d
  * from half a step behind to half a step ahead. */
 static void weigh_force(struct particles *p, double share)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->fx[i] *= share;
         p->fy[i] *= share;
@@ -50,7 +54,7 @@ static void weigh_force(struct particles *p, double share)
 /* The structure's mean velocity belongs to the middle of the step; the next evaluation is half a step on. */
 static void carry_velocity(struct particles *p, double half)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->wx[i] += half * p->ax[i];
         p->wy[i] += half * p->ay[i];

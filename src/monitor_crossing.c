@@ -56,6 +56,7 @@ int64_t monitor_crossed(const struct simulation *s, int64_t *first)
 #pragma omp parallel for schedule(static) reduction(+ : count) reduction(min : lowest)
     for (int32_t k = 0; k < fluid->n_active; k++) {
         const int32_t cell = fluid->active[k];
+        if (!s->fluid.near_dummies[cell]) continue;
         int32_t near[9];
         int n = 0;
         for (int m = 0; m < 9; m++) {

@@ -7,7 +7,7 @@
 
 static void predict_fluid(struct particles *p, double half)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x0[i] = p->x[i];
         p->y0[i] = p->y[i];
@@ -24,7 +24,7 @@ static void predict_fluid(struct particles *p, double half)
 
 static void correct_fluid(struct particles *p, double dt)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->vx[i] = p->vx0[i] + dt * p->ax[i]; /* Eq. 23a */
         p->vy[i] = p->vy0[i] + dt * p->ay[i];
@@ -46,7 +46,7 @@ static void rates_of_solid(struct simulation *s)
 /* The solid takes the same two stages as the fluid. */
 static void predict_solid(struct particles *p, double half)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x0[i] = p->ux[i];
         p->y0[i] = p->uy[i];
@@ -61,7 +61,7 @@ static void predict_solid(struct particles *p, double half)
 
 static void correct_solid(struct particles *p, double dt)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
         p->vy[i] = p->vy0[i] + dt * p->sy[i];
@@ -74,7 +74,7 @@ static void correct_solid(struct particles *p, double dt)
 static void show_solid(struct particles *p, double newest)
 {
     place_solid(p);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->wx[i] = p->vx[i];
         p->wy[i] = p->vy[i];
@@ -86,7 +86,7 @@ static void show_solid(struct particles *p, double newest)
 /* Sub-steps: the structure as the fluid sees it half a step on. */
 static void carry_solid(struct particles *p, double half)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x[i] = p->X[i] + p->ux[i] + half * p->wx[i];
         p->y[i] = p->Y[i] + p->uy[i] + half * p->wy[i];

@@ -9,7 +9,7 @@
 static void update_fluid(struct particles *p, double dt, double dt_old, bool euler)
 {
     const double kick = euler ? dt : dt_old + dt;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
         p->x[i] += dt * vx + 0.5 * dt * dt * p->ax[i];
