@@ -302,7 +302,6 @@ int main(int argc, char **argv)
             return 1;
         }
     }
-    thread_pin();
     print_machine(&b);
     bench_all(&b, 1, largest);
     if (b.all_threads > 1) bench_all(&b, b.all_threads, largest);

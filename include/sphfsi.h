@@ -73,9 +73,7 @@ struct sphfsi_options {
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", in effect over the case */
     int n_sets;
-    int threads; /**< 0: as many as OpenMP offers */
-    int pin; /**< 1: each thread keeps a core of its own from now on, also after the call, if there
-                       are as many threads as cores and no OMP_PROC_BIND says otherwise */
+    int threads;  /**< 0: as many as OpenMP offers */
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 
     /* Of sphfsi_run only. */

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE /* sched_setaffinity */
 #include "base.h"
 
-#include <sched.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -128,41 +126,6 @@ void thread_use(int n)
     (void)n;
 #endif
 }
-
-#if defined _OPENMP && defined __linux__
-/* The k-th of the cores that are in the set. */
-static size_t nth_core(const cpu_set_t *set, int k)
-{
-    size_t core = 0;
-    while (!CPU_ISSET(core, set) || k-- > 0) core++;
-    return core;
-}
-
-static bool placed_by_user(void)
-{
-    static const char *const names[] = {"OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY",
-                                        "KMP_AFFINITY"};
-    for (size_t k = 0; k < COUNT_OF(names); k++)
-        if (getenv(names[k])) return true;
-    return false;
-}
-
-void thread_pin(void)
-{
-    cpu_set_t allowed;
-    if (placed_by_user() || sched_getaffinity(0, sizeof allowed, &allowed)) return;
-    if (CPU_COUNT(&allowed) != omp_get_max_threads()) return;
-#pragma omp parallel
-    {
-        cpu_set_t own;
-        CPU_ZERO(&own);
-        CPU_SET(nth_core(&allowed, omp_get_thread_num()), &own);
-        sched_setaffinity(0, sizeof own, &own);
-    }
-}
-#else
-void thread_pin(void) {}
-#endif
 
 int thread_index(void)
 {

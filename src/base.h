@@ -70,12 +70,6 @@ int thread_count(void);
 void thread_use(int n);
 int thread_index(void);
 
-/* Gives each thread of the parallel regions a core of its own, until the process ends: where they wander,
- * they lose their caches and wait for each other. Does nothing unless there are as many threads as cores
- * that the process may use (else runs side by side would share a core), nor where the environment has
- * said how OpenMP is to place its threads. */
-void thread_pin(void);
-
 SPHFSI_INLINE double min2(double a, double b) { return a < b ? a : b; }
 SPHFSI_INLINE double max2(double a, double b) { return a > b ? a : b; }
 SPHFSI_INLINE double square(double a) { return a * a; }

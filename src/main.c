@@ -341,7 +341,6 @@ static int execute(struct command *c)
     c->options.progress = c->quiet ? NULL : on_progress;
     c->options.context = c;
     c->options.requests = &requests;
-    c->options.pin = 1;
     const enum sphfsi_status status = carry_out(c);
     clear_line(c);
     if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());

@@ -87,7 +87,6 @@ enum err session_read(struct session *x, const struct sphfsi_options *o, struct 
 {
     TRY(check_options(o, d));
     if (o->threads > 0) thread_use(o->threads);
-    if (o->pin) thread_pin();
     if (o->case_text)
         TRY(scene_parse(&x->scene, o->case_text, o->case_path ? o->case_path : "case", o->n_sets,
                         o->sets, d));
