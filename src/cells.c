@@ -10,12 +10,10 @@
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
 
-enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 64 };
+enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 256 };
 
-static int sort_threads(void)
-{
-    return thread_count() < MAX_SORT_THREADS ? thread_count() : MAX_SORT_THREADS;
-}
+/* All or one: teams must not shrink (solid.c). */
+static int sort_threads(void) { return thread_count() <= MAX_SORT_THREADS ? thread_count() : 1; }
 
 static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
                             const struct particles *p, bool keep_order, struct diag *d)

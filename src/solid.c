@@ -61,12 +61,12 @@ static void join_bodies(struct solid *s, const struct scene *scene, struct parti
         p->drag[i] = s->body[p->body[i]].density * s->body[p->body[i]].viscosity;
 }
 
-/* Threads that pay: each needs enough packs between two barriers to outweigh them. */
+/* All threads where each has enough packs between two barriers to outweigh them, or one: a team that shrinks
+ * costs more than it saves, since libgomp ends the threads left over and starts others for the next. */
 static int useful_threads(const struct solid *s)
 {
     enum { PACKS_PER_THREAD = 24 };
-    const int64_t useful = s->n_packs / PACKS_PER_THREAD;
-    return useful < 1 ? 1 : useful < thread_count() ? (int)useful : thread_count();
+    return s->n_packs >= (int64_t)PACKS_PER_THREAD * thread_count() ? thread_count() : 1;
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some shapes have modes that grow at a rate

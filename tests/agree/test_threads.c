@@ -1,10 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * The same bits on any number of threads: fluid, walls that move, a structure, both integrators, both
  * precisions, with and without sub-steps. */
+#define _DEFAULT_SOURCE /* syscall */
 #include "rig.h"
 #include "unity.h"
 
 #include <stdio.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 static const char scene[] =
     "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\nskin = 0.02\n"
@@ -81,7 +85,7 @@ static void test_leapfrog_mixed_with_substeps(void)
 static void test_lone_solid(void)
 {
     static const char lone[] =
-        "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+        "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n"
         "[solid bar]\nshape = box 0, 0, 0.37, 0.06\nclamp = box 0, 0, 0.05, 0.06\n"
         "density = 1000\nyoung = 2e6\npoisson = 0.4\n";
     uint64_t expected = 0;
@@ -127,9 +131,46 @@ static void test_periodic_sides(void)
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
 }
 
+#if defined _OPENMP && defined __linux__
+
+enum { TEAM = 8 };
+
+static void find_threads(long id[TEAM])
+{
+    memset(id, 0, TEAM * sizeof *id);
+#pragma omp parallel num_threads(TEAM)
+    id[thread_index()] = syscall(SYS_gettid);
+}
+
+/* libgomp ends the threads that a smaller team leaves over, and the next large one waits for new ones. */
+static void test_threads_outlive_the_steps(void)
+{
+    static const char *const sizes[] = {"dp=5 mm", "dp=2.5 mm"};
+    for (size_t k = 0; k < COUNT_OF(sizes); k++) {
+        long before[TEAM], after[TEAM];
+        thread_use(TEAM);
+        rig_open(&rig, scene, "integrator=leapfrog", sizes[k], NULL);
+        find_threads(before);
+        rig_steps(&rig, 5, 1);
+        find_threads(after);
+        for (int t = 0; t < TEAM; t++) TEST_ASSERT_EQUAL_INT64(before[t], after[t]);
+        rig_close(&rig);
+    }
+}
+
+#else
+
+static void test_threads_outlive_the_steps(void)
+{
+    TEST_IGNORE_MESSAGE("no threads, or no way to tell them apart");
+}
+
+#endif
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_threads_outlive_the_steps);
     RUN_TEST(test_symplectic_mixed_with_substeps);
     RUN_TEST(test_symplectic_double_with_one_rate);
     RUN_TEST(test_verlet_mixed_with_one_rate);
