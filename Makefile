@@ -72,8 +72,9 @@ $(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug
 ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
-# clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles.
-WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion)
+# clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles, and loops of
+# `omp simd` that it leaves alone without optimisation.
+WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion -Wno-pass-failed)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
 OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopenmp)
 # Older clang on AArch64 knows -mcpu=native only.
@@ -81,7 +82,7 @@ MARCH := $(or $(shell $(CC) -march=$(ARCH) -E -x c /dev/null >/dev/null 2>&1 && 
                       echo -march=$(ARCH)),-mcpu=$(ARCH))
 COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude $(HDF5_CFLAGS) \
            $(CPPFLAGS) $(CFLAGS)
-LINK     = $(COMPILE) $(LDFLAGS) -o $@ $^ $(HDF5_LIBS) -lm
+LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
 DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
                     { test -z "$$(git status --porcelain -- src include Makefile CMakeLists.txt)" || \
@@ -91,8 +92,7 @@ FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---
 LIB     := $(B)/libsphfsi.a
-# One of a build folder of its own (B=...) must not take the place of ./sphfsi.
-PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
+PROGRAM := $(if $(filter release,$(CONFIG)),sphfsi,$(B)/sphfsi)
 LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
@@ -115,11 +115,13 @@ debug sanitize serial:
 	@$(MAKE) --no-print-directory CONFIG=$@ all
 
 # --- rules ---
-# Rebuild when compiler or flags change, and the files that name the version when that does.
+# Rebuild when compiler or flags change, the files that name the version when that does, and ./sphfsi when
+# it was linked from another build folder (B=...).
 STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/null)
 STAMP_TEXT-version := $(FULL_VERSION)
-$(B)/flags $(B)/version: FORCE
-	@mkdir -p $(B); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
+STAMP_TEXT-linked  := $(B)
+$(B)/flags $(B)/version build/linked: FORCE
+	@mkdir -p $(@D); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
 $(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*.c)): $(B)/version
 
 $(B)/%.o: %.c $(B)/flags
@@ -129,7 +131,7 @@ $(B)/%.o: %.c $(B)/flags
 $(LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(PROGRAM): $(B)/src/main.o $(LIB)
+$(PROGRAM): $(B)/src/main.o $(LIB) build/linked
 	$(Q)$(LINK)
 
 # Benches and tests may look inside the library.

@@ -21,9 +21,9 @@ SPHFSI_INLINE double eos_pressure(double dens, double rho0, double c0)
 }
 
 /* Eq. 20: dens of a given pressure. (1 + d)^7 - 1 = z, from the diagonal Pade approximant of (1 + z)^(1/7) of
- * second order, off by 8e-4 z^5, by Newton's method: a round leaves three times the square of the error, so
- * that in water one reaches the last digit, and five do for -0.9 < z < 10. Plain arithmetic: the bits do not
- * depend on a library's pow. */
+ * second order, off by 8e-4 z^5 where z is small, by Newton's method: a round leaves three times the square
+ * of the error, so that in water one reaches the last digit, and five do for -0.9 < z < 10. Plain
+ * arithmetic: the bits do not depend on a library's pow. */
 SPHFSI_INLINE double eos_dens(double pressure, double rho0, double c0)
 {
     const double z = max2(-0.9, pressure * EOS_GAMMA / (c0 * c0 * rho0));
