@@ -92,7 +92,8 @@ FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---
 LIB     := $(B)/libsphfsi.a
-PROGRAM := $(if $(filter release,$(CONFIG)),sphfsi,$(B)/sphfsi)
+# One of a build folder of its own (B=...) must not take the place of ./sphfsi.
+PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
 LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
@@ -115,12 +116,10 @@ debug sanitize serial:
 	@$(MAKE) --no-print-directory CONFIG=$@ all
 
 # --- rules ---
-# Rebuild when compiler or flags change, the files that name the version when that does, and ./sphfsi when
-# it was linked from another build folder (B=...).
+# Rebuild when compiler or flags change, and the files that name the version when that does.
 STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/null)
 STAMP_TEXT-version := $(FULL_VERSION)
-STAMP_TEXT-linked  := $(B)
-$(B)/flags $(B)/version build/linked: FORCE
+$(B)/flags $(B)/version: FORCE
 	@mkdir -p $(@D); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
 $(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*.c)): $(B)/version
 
@@ -131,7 +130,7 @@ $(B)/%.o: %.c $(B)/flags
 $(LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-$(PROGRAM): $(B)/src/main.o $(LIB) build/linked
+$(PROGRAM): $(B)/src/main.o $(LIB)
 	$(Q)$(LINK)
 
 # Benches and tests may look inside the library.
@@ -154,7 +153,7 @@ $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
 	$(Q)$(LINK)
 
 test: $(PROGRAM) $(TESTS)
-	@SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
+	@SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
 
 test-neon:
 	@bash tests/neon.sh $(UNITY_SRC)
@@ -182,7 +181,7 @@ analyze:
 	@tools/analyze.sh $(ARGS)
 
 faults: $(PROGRAM)
-	@set -e; export SPHFSI=./$(PROGRAM) PYTHON='$(PROJECT_PYTHON)'; \
+	@set -e; export SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)'; \
 	 export KILLS=50 FULL_STEPS=40 INJECT_STRIDE=1; \
 	 for t in fault/test_kill fault/test_full fault/test_inject fault/test_fork \
 	   agree/test_restart_cases; do bash tests/$$t.sh; done
@@ -194,10 +193,10 @@ fuzz:
 	@tools/fuzz.sh $(ARGS)
 
 stability: $(PROGRAM)
-	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
 
 reliability: $(PROGRAM) $(TESTS)
-	$(Q)SPHFSI=./$(PROGRAM) $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
 bench: $(PROGRAM) $(BENCHES)
 	$(Q)$(PROJECT_PYTHON) tools/performance.py --bench $(ARGS)
