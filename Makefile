@@ -199,10 +199,10 @@ reliability: $(PROGRAM) $(TESTS)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
 
 bench: $(PROGRAM) $(BENCHES)
-	$(Q)$(PROJECT_PYTHON) tools/performance.py --bench $(ARGS)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) tools/performance.py --bench $(ARGS)
 
 performance: $(PROGRAM) $(BENCHES)
-	$(Q)$(PROJECT_PYTHON) tools/performance.py $(ARGS)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) tools/performance.py $(ARGS)
 
 # What a program outside of the source tree would do, with the library where it was built.
 EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
@@ -243,8 +243,8 @@ forecast: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/forecast.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
-	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py $(if $(QUICK),--quick) \
-	  $(if $(KEEP),--keep) $(ARGS)
+	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py --program '$(PROGRAM)' \
+	  $(if $(QUICK),--quick) $(if $(KEEP),--keep) $(ARGS)
 
 check: $(PROGRAM) $(LIB)
 	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)

@@ -60,9 +60,19 @@ static int64_t whole_value(enum data what, const struct simulation *s, enum kind
     }
 }
 
-/* Fills the buffer, 8 bytes an item, with what the dataset gets; returns its rows. */
-static int64_t gather(enum data what, const struct simulation *s, void *buffer)
+/* What positions are rounded to beside fields in single precision, about 1e-6 dp, m: their last digits say
+ * nothing, and packing them takes as long as packing all else. A power of two, so that they end in zeros. */
+static double position_unit(const struct scene *scene)
 {
+    return ldexp(1, ilogb(scene->top.dp) - 20);
+}
+
+/* Fills the buffer, 8 bytes an item, with what the dataset gets; returns its rows. */
+static int64_t gather(const struct snapshot_layout *layout, enum data what,
+                      const struct simulation *s, void *buffer)
+{
+    const double unit = position_unit(s->scene);
+    const bool rounded = what == D_POINTS && !layout->doubles;
     const int width = snapshot_file_width(what);
     const bool real = snapshot_file_real(what);
     int64_t row = 0;
@@ -71,6 +81,7 @@ static int64_t gather(enum data what, const struct simulation *s, void *buffer)
             double v[SNAPSHOT_WIDTH];
             if (real) {
                 real_values(what, s, (enum kind)kind, i, v);
+                for (int k = 0; rounded && k < 2; k++) v[k] = nearbyint(v[k] / unit) * unit;
                 memcpy((double *)buffer + row * width, v, (size_t)width * sizeof *v);
             } else {
                 ((int64_t *)buffer)[row] = whole_value(what, s, (enum kind)kind, i, row);
@@ -123,7 +134,7 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, st
               append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]);
     for (int k = D_POINTS; ok && k < D_COUNT; k++) {
         if (!layout->has[k]) continue;
-        const int64_t count = gather((enum data)k, s, buffer);
+        const int64_t count = gather(layout, (enum data)k, s, buffer);
         ok = snapshot_file_append(root, (enum data)k, count, buffer);
     }
     H5Gclose(root);

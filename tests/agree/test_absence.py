@@ -164,7 +164,7 @@ def main():
     if not shutil.which("valgrind"):
         print("valgrind is not installed")
         return 77
-    if os.environ.get("SPHFSI", "./sphfsi") != "./sphfsi":
+    if Path(os.environ.get("SPHFSI", "./sphfsi")).resolve() != Path("sphfsi").resolve():
         print("builds programs of its own: once, beside the release program, is enough")
         return 77
     effects = re.findall(r"^EFFECT\((\w+)", (ROOT / "src/effects.def").read_text(), re.M)

@@ -4,7 +4,10 @@
 set -u
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-[ "${SPHFSI:-./sphfsi}" = ./sphfsi ] || { echo "installs the release build only"; exit 77; }
+if ! [ "${SPHFSI:-./sphfsi}" -ef ./sphfsi ]; then
+    echo "installs the release build only"
+    exit 77
+fi
 
 fail() {
     echo "FAILED: $1"

@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <hdf5.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -197,8 +198,8 @@ static void fields_and_precision_are_chosen(void)
     for (int k = 0; k < 3; k++) write_one(k);
     TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_resume(&writer, tiny_path("chosen"), &scene, "1.2.3", 1,
                                                    &last, &diag));
-    write_one(5);
-    times_are((double[]){0, 1, 5}, 3);
+    write_one(16.0 / 3);
+    times_are((double[]){0, 1, 16.0 / 3}, 3);
     TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/velocity"));
     TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/stress"));
     TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/PointData/id"));
@@ -208,6 +209,18 @@ static void fields_and_precision_are_chosen(void)
     TEST_ASSERT_TRUE(v[0] == 1.0 / 3);
     /* Positions 24, Connectivity 8, Offsets 8, Types 1, velocity 24, stress 48, kind 1, id 8, body 4 */
     TEST_ASSERT_EQUAL_INT(126, (int)snapshot_file_point(&writer.layout));
+}
+
+static void positions_are_rounded_beside_single_precision(void)
+{
+    static double points[3 * 1000];
+    const double x = 1.0 / 3;
+    begin(tiny_path("rounded"));
+    write_one(x);
+    read_all("VTKHDF/Points", points, COUNT_OF(points));
+    TEST_ASSERT_DOUBLE_WITHIN(ldexp(scene.top.dp, -21), x, points[0]);
+    const double units = ldexp(points[0], 20 - ilogb(scene.top.dp));
+    TEST_ASSERT_TRUE_MESSAGE(points[0] != x && units == nearbyint(units), "not rounded");
 }
 
 static void everything_in_single_precision_unless_chosen(void)
@@ -231,6 +244,7 @@ int main(void)
     RUN_TEST(what_cannot_be_written_is_named);
     RUN_TEST(fewer_particles_are_fewer_points);
     RUN_TEST(fields_and_precision_are_chosen);
+    RUN_TEST(positions_are_rounded_beside_single_precision);
     RUN_TEST(everything_in_single_precision_unless_chosen);
     return UNITY_END();
 }
