@@ -267,7 +267,9 @@ def gate_reading(report, numbers):
              "while the measured one stays out. What was changed, and what it moved at dp = 1 mm "
              "(leapfrog), in mm at the peak and at 0.36 s:", ""]
     base = numbers(report.run("gate-1mm-leapfrog"))
-    for name, words in (("gate-leapfrog", "half the spacing"), ("gate-1mm", "symplectic for leapfrog"),
+    for name, words in (("gate-leapfrog", "half the spacing"),
+                        ("gate-0.25mm-leapfrog", "a quarter of the spacing"),
+                        ("gate-1mm", "symplectic for leapfrog"),
                         ("gate-1mm-verlet", "Verlet for leapfrog"),
                         ("gate-1mm-cfl0.2", "C_CFL = 0.2 for the default"),
                         ("gate-1mm-h1.5", "h/dp = 1.5 for 1.35"),

@@ -88,6 +88,8 @@ def gates():
         return Spec(f"gate-1mm-{name}", "gate", [*coarse, *sets], f"dp = 1 mm, leapfrog, {words}", quick)
     return [*all_integrators("gate", "gate", ["dp=0.5 mm"], "dp = 0.5 mm"),
             *all_integrators("gate-1mm", "gate", ["dp=1 mm"], "dp = 1 mm", True),
+            Spec("gate-0.25mm-leapfrog", "gate", ["dp=0.25 mm", "integrator=leapfrog"],
+                 "dp = 0.25 mm, leapfrog"),
             changed("printed", printed, "Eqs. 13, 17 and 18 as printed"),
             changed("plane-stress", ["gate.plane=stress"], "plane stress", True),
             changed("neo-hookean", ["gate.law=neo_hookean"], "neo-Hookean"),
