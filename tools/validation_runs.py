@@ -99,6 +99,18 @@ def gates():
             changed("cfl0.2", ["numerics.cfl=0.2"], "C_CFL = 0.2")]
 
 
+def single_rates():
+    """Without sub-steps of the solid: gate whole, plate over its first swings."""
+    return [Spec(f"single-{name}{suffix}", case, [*sets, f"integrator={integrator.lower()}",
+                                                  "numerics.multirate=off"],
+                 f"{words}, {integrator}, single rate")
+            for name, case, sets, words in (
+                ("gate-1mm", "gate", ["dp=1 mm"], "gate, dp = 1 mm"),
+                ("plate-12.5mm", "hydrostatic_plate", ["dp=12.5 mm", "end_time=0.1 s"],
+                 "plate, dp = 12.5 mm"))
+            for suffix, integrator in (("", "symplectic"), ("-verlet", "Verlet"))]
+
+
 def at_2mm(prefix, case, at, name, sets, words):
     """What the assumptions of the cases without a laboratory's curve are worth."""
     return Spec(f"{prefix}-2mm-{name}", case, [*at(2, "integrator=leapfrog"), *sets],
@@ -192,7 +204,7 @@ def verifications():
     return specs
 
 
-SPECS = [*cantilevers(), *plates(), *gates(), *baffles(), *sluices(), *verifications()]
+SPECS = [*cantilevers(), *plates(), *gates(), *single_rates(), *baffles(), *sluices(), *verifications()]
 BY_NAME = {spec.name: spec for spec in SPECS}
 
 
