@@ -136,6 +136,64 @@ def nearest(points, others, reach):
     return result
 
 
+def close_pairs(points, others, reach):
+    """Indices (of points, of others) of all pairs nearer than reach."""
+    low = np.minimum(points.min(axis=0), others.min(axis=0)) - 2 * reach
+    cell, own = ((((x - low) / reach).astype(np.int64)) for x in (others, points))
+    rows = int(max(cell[:, 1].max(), own[:, 1].max())) + 3
+    key = cell[:, 0] * rows + cell[:, 1]
+    order = np.argsort(key, kind="stable")
+    key, found = key[order], []
+    for shift in (dx * rows + dy for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
+        wanted = own[:, 0] * rows + own[:, 1] + shift
+        first, count = np.searchsorted(key, wanted), np.searchsorted(key, wanted, "right")
+        count -= first
+        a = np.repeat(np.arange(len(points)), count)
+        place = np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)
+        b = order[np.repeat(first, count) + place]
+        near = np.hypot(*(points[a] - others[b]).T) < reach
+        found.append((a[near], b[near]))
+    return tuple(map(np.concatenate, zip(*found)))
+
+
+def surrounded(points, others, reach, sector):
+    """How many points have others nearer than reach on all sides: none of their directions leaves a free
+    sector (rad) as wide as that."""
+    if not len(points) or not len(others):
+        return 0
+    a, b = close_pairs(points, others, reach)
+    if not len(a):
+        return 0
+    angle = np.arctan2(*(others[b] - points[a]).T[::-1])
+    order = np.lexsort((angle, a))
+    a, angle = a[order], angle[order]
+    first = np.flatnonzero(np.r_[True, a[1:] != a[:-1]])
+    last = np.r_[first[1:], len(a)] - 1
+    gap = np.r_[0, np.diff(angle)]
+    gap[first] = 2 * math.pi - (angle[last] - angle[first])
+    return int((np.maximum.reduceat(gap, first) < sector).sum())
+
+
+def beam_frequency(young, poisson, density, thickness, length):
+    """First frequency (Hz) of a thin cantilever in plane strain, Euler and Bernoulli."""
+    stiffness = young / (1 - poisson ** 2) * thickness ** 3 / 12
+    return 1.875104 ** 2 / (2 * math.pi * length ** 2) * math.sqrt(stiffness / (density * thickness))
+
+
+def about_running_mean(time, value, width):
+    """Time and what is left of a curve when its mean over `width` (s) is taken out."""
+    half = max(1, round(0.5 * width / float(np.median(np.diff(time)))))
+    if len(time) < 4 * half:
+        raise BadFile(f"a curve of {time[-1] - time[0]:.3g} s is too short for a mean over {width:g} s")
+    return time[half:-half], value[half:-half] - running_mean(value, 2 * half + 1)
+
+
+def mean_frequency(time, value):
+    """From the first to the last change of sign; 0 with fewer than two."""
+    zeros = crossings(time, value)
+    return 0.5 * (len(zeros) - 1) / (zeros[-1] - zeros[0]) if len(zeros) > 1 else 0.0
+
+
 def surface_height(x, dp, at):
     """Height of the topmost particle's upper side in columns of two spacings at the places `at`."""
     column = np.round((x[:, 0] - at[0]) / (2 * dp)).astype(int)

@@ -133,6 +133,34 @@ def contact(run):
     return float(closest), float(np.median(np.concatenate(near))), float(gaps / wetted)
 
 
+@whole_run(["gate", "baffle", "sluice"], "bodies", "walls", "share")
+def pressed_in(run):
+    """Water among the particles of one body or wall, which leave no sector of 120 degrees free within 1.2
+    spacings (some 0.8 spacings below the surface), or that hangs below the tank's floor at y = 0.
+    The most at once in bodies, in walls; the share of the snapshots with any."""
+    file, dp, bodies, walls, any_in = snapshots(run), run.spacing(), 0, 0, 0
+    for step in range(len(file.times)):
+        kind, body, x = (file.load(step, name) for name in ("kind", "body", "Points"))
+        drops, found = x[kind == 0][:, :2], {1: 0, 2: 0}
+        for which in found:
+            for part in np.unique(body[kind == which]):
+                here = x[(kind == which) & (body == part)][:, :2]
+                found[which] += metrics.surrounded(drops, here, 1.2 * dp, 2 * np.pi / 3)
+        found[1] += below_floor(drops, x[(kind == 1) & (x[:, 1] < 0)][:, :2], dp)
+        bodies, walls = max(bodies, found[2]), max(walls, found[1])
+        any_in += any(found.values())
+    return bodies, walls, any_in / len(file.times)
+
+
+def below_floor(drops, floor, dp):
+    """How many hang below it, the nearest of its particles above them."""
+    a, b = metrics.close_pairs(drops, floor, 1.5 * dp)
+    away, up = np.hypot(*(floor[b] - drops[a]).T), floor[b, 1] - drops[a, 1]
+    order = np.lexsort((away, a))
+    first = np.flatnonzero(np.r_[True, np.diff(a[order]) > 0])[:len(a)]
+    return int((up[order][first] > 0.55 * dp).sum())
+
+
 @whole_run(["baffle"], "depth", "speed")
 def bore(run):
     """Depth and speed of the bore between the plate and the foundation, from the surface in the
