@@ -2,6 +2,7 @@
  * What a step costs: ns per fluid particle and force evaluation by phase, ns per solid particle and
  * step, and the machine's own rates to hold them against. Prints CSV, asserts nothing.
  *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
+#include "counter.h"
 #include "simd.h"
 #include "simulation.h"
 
@@ -17,8 +18,9 @@ enum { MAX_REPS = 99 };
 
 struct bench {
     FILE *out;
-    int reps, all_threads;
+    int reps, all_threads, counter;
     double sample[PHASE_COUNT + 1][MAX_REPS]; /* of the run at hand; the last row is their sum */
+    double instructions[MAX_REPS];            /* of the run at hand, if there is one thread */
 };
 
 /* --- output --- */
@@ -201,17 +203,19 @@ static bool time_steps(struct bench *b, struct sim *x, int rep, int steps)
     double before[PHASE_COUNT];
     memcpy(before, x->s.phase_seconds, sizeof before);
     const int64_t evaluations = x->s.state.evaluations;
+    const double instructions = counter_read(b->counter);
     for (int k = 0; k < steps; k++) {
         if (!simulation_step(&x->s, 1e6, &x->diag)) continue;
         fprintf(stderr, "%s\n", x->diag.text);
         return false;
     }
     if (rep < 0) return true;
-    const double per =
-        1e9 / (double)(x->s.state.evaluations - evaluations) / (double)x->s.kind[KIND_FLUID].n;
+    const double each =
+        1 / (double)(x->s.state.evaluations - evaluations) / (double)x->s.kind[KIND_FLUID].n;
+    b->instructions[rep] = each * (counter_read(b->counter) - instructions);
     b->sample[PHASE_COUNT][rep] = 0;
     for (int p = 0; p < PHASE_COUNT; p++) {
-        b->sample[p][rep] = per * (x->s.phase_seconds[p] - before[p]);
+        b->sample[p][rep] = 1e9 * each * (x->s.phase_seconds[p] - before[p]);
         b->sample[PHASE_COUNT][rep] += b->sample[p][rep];
     }
     return true;
@@ -236,6 +240,9 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     if (sound)
         print_row(b, "fluid", variant, count, threads, "all", "ns/particle/evaluation",
                   b->sample[PHASE_COUNT]);
+    if (sound && threads == 1 && b->counter >= 0)
+        print_row(b, "fluid", variant, count, threads, "instructions", "1/particle/evaluation",
+                  b->instructions);
     const double bytes = (double)x.s.arena.bytes / (double)count;
     for (int r = 0; r < b->reps; r++) b->sample[0][r] = bytes;
     print_row(b, "fluid", variant, count, threads, "memory", "bytes/particle", b->sample[0]);
@@ -265,6 +272,12 @@ static void bench_solid(struct bench *b, bool paper, int threads)
     }
     print_row(b, "solid", paper ? "paper" : "default", p->n, threads, "step", "ns/particle/step",
               b->sample[0]);
+    const struct solid *const s = &x.s.solid;
+    double slots = 0;
+    for (int64_t k = 0; k < s->n_packs; k++) slots += s->pack[k].n_slots * LANES_DOUBLE;
+    for (int r = 0; r < b->reps; r++) b->sample[0][r] = slots / (double)p->n;
+    print_row(b, "solid", paper ? "paper" : "default", p->n, threads, "slots", "1/particle",
+              b->sample[0]);
     sim_close(&x);
 }
 
@@ -286,7 +299,10 @@ static void bench_all(struct bench *b, int threads, double largest)
 
 int main(int argc, char **argv)
 {
-    struct bench b = {.out = stdout, .reps = 5, .all_threads = thread_count()};
+    struct bench b = {.out = stdout,
+                      .reps = 5,
+                      .all_threads = thread_count(),
+                      .counter = counter_open()};
     double largest = 1e5;
     for (int k = 1; k < argc; k++) {
         const bool more = k + 1 < argc;

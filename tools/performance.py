@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Measures what the program costs and writes bench/<processor>.csv and docs/performance.md.
 
-Three parts: the bench program (nanoseconds by phase, one thread and all), the longest step of each
-integrator that stays sound (a dam break against a wall), and whole runs.
+Four parts: the bench program (nanoseconds by phase, one thread and all; a million particles, too), the
+longest step of each integrator that stays sound (a dam break against a wall), whole runs, and all of that
+against the targets there are (performance_targets.py).
 Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the bench
 only, prints the change against the file there was, and writes it anew.
 
@@ -21,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
+from performance_targets import bench_rows, run_rows
 from runfiles import read_table, run_tool
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -31,6 +33,8 @@ STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
 # Arithmetic of a pack of candidates in the loop with viscosity and diffusion, counted in the source.
 OPERATIONS = 37
+# And of a solid's pair in the default form, gradient, stress and forces together.
+SOLID_OPERATIONS = 56
 
 
 def arguments():
@@ -38,14 +42,15 @@ def arguments():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bench", action="store_true", help="the bench only")
     parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median counts")
-    parser.add_argument("--large", action="store_true", help="a million particles as well")
+    parser.add_argument("--large", action="store_true",
+                        help="with --bench: a million particles as well, as there are without it")
     return parser.parse_args()
 
 
 def run_bench(args):
     """Comment lines, and rows by (what, variant, particles, threads, part)."""
     command = [str(BUILD / "bench_bench"), "--reps", str(args.reps)]
-    out = subprocess.run(command + ["--large"] * args.large, check=True, text=True,
+    out = subprocess.run(command + ["--large"] * (args.large or not args.bench), check=True, text=True,
                          capture_output=True).stdout
     ways = subprocess.run([str(BUILD / "bench_neighbours"), "--reps", str(args.reps)],
                           check=True, text=True, capture_output=True).stdout
@@ -129,7 +134,8 @@ WORK = [
 
 
 def work_runs(threads):
-    rows = []
+    """Rows of the table, and {words: numbers} of the runs on all threads."""
+    rows, numbers = [], {}
     for case, sets, words, alone in WORK:
         for n in sorted({1, threads} if alone else {threads}):
             summary, m1 = run_case(case, sets, threads=n)
@@ -137,6 +143,9 @@ def work_runs(threads):
                 rows.append((words, n, *"-------"))
                 continue
             seconds = summary["phase_seconds"]
+            numbers[words] = {"seconds": summary["wall_seconds"], "phases": seconds,
+                              "ms": 1e3 * summary["wall_seconds"] / summary["steps"],
+                              "rate": 1e-6 * summary["particle_steps_per_second"]}
             whole = sum(seconds.values()) or 1
             share = ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in seconds.items())
             tops = [np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and len(c)]
@@ -147,17 +156,17 @@ def work_runs(threads):
                          f"{1e-6 * summary['particle_steps_per_second']:.3g}",
                          f"{1e3 * peak:.4g}", share))
             print("  ", *rows[-1], flush=True)
-    return rows
+    return rows, numbers
 
 
 def shared_work(threads):
-    """How much faster all threads are on a gate in motion, in words."""
+    """How much faster all threads are on a gate in motion, in words; and the factors."""
     seconds = {1: [], threads: []}
     for _ in range(5):
         for n, found in seconds.items():
             summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], threads=n, until="0.02")
             if summary is None:
-                return "The gate with dp = 0.5 mm did not run."
+                return "The gate with dp = 0.5 mm did not run.", {}
             phases = summary["phase_seconds"]
             found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
     (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
@@ -165,7 +174,8 @@ def shared_work(threads):
     return (f"The first 0.02 s of the gate with dp = 0.5 mm, {particles} particles, take {one:.2f} s on one "
             f"thread and {many:.2f} s on {threads}, {one / many:.2f} times as fast with what they write; "
             f"the steps alone {steps_one:.2f} s and {steps_many:.2f} s, {steps_one / steps_many:.2f} times "
-            "as fast (medians of five runs in turn).")
+            "as fast (medians of five runs in turn).",
+            {"with output": one / many, "steps alone": steps_one / steps_many})
 
 
 def table(header, rows):
@@ -201,7 +211,12 @@ def bench_tables(rows):
     text.append("ns per solid particle and step:\n\n" + table(
         ["form", "threads", "ns"],
         [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
-         if key[0] == "solid"]))
+         if key[0] == "solid" and key[4] == "step"]))
+    counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
+               for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
+    text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
+                "this machine lets no program count them; [absence.md](absence.md) has counts by valgrind")
+                + ".")
     if any(key[0] == "neighbours" for key in rows):
         text.append(neighbour_words(rows))
     peak = value("machine", "fma", 0, 1, "float")
@@ -215,6 +230,21 @@ def bench_tables(rows):
             f"The pair loop ({rich}, {n} particles) does {rate:.0f}, {100 * rate / peak:.0f} % of that: "
             f"{met:.0f} candidates a particle with {OPERATIONS} operations each, a square root and a "
             "division among them.")
+    slots = next((float(row["median"]) for key, row in rows.items()
+                  if key[:2] == ("solid", "default") and key[4] == "slots"), None)
+    if slots:
+        ns = next(float(row["median"]) for key, row in rows.items()
+                  if key[:2] == ("solid", "default") and key[3:] == (1, "step"))
+        peak, rate = value("machine", "fma", 0, 1, "double"), slots * SOLID_OPERATIONS / ns
+        text.append(f"The solid's loops do {rate:.0f} thousand million in double precision, "
+                    f"{100 * rate / peak:.0f} % of {peak:.0f}: {slots:.0f} neighbours a particle, those that "
+                    f"fill up a pack among them, with {SOLID_OPERATIONS} operations each.")
+    if rich:
+        bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
+        copy = value("machine", "copy", 0, 1, "read + write")
+        text.append(f"All memory of a particle once an evaluation is {bytes_each / ns:.1f} GB/s, "
+                    f"{100 * bytes_each / ns / copy:.0f} % of what copying reaches ({copy:.0f} GB/s, one "
+                    "thread): the sweeps are bound by arithmetic.")
     if len(threads) > 1 and rich:
         one, many = threads[0], threads[-1]
         speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
@@ -223,6 +253,23 @@ def bench_tables(rows):
             f"{p} {s:.2f}" for p, s in speed.items()) +
             f" times as fast; by Amdahl's law as if {100 * serial:.1f} % were serial.")
     return "\n\n".join(text)
+
+
+def target_words(rows, numbers, speed):
+    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
+
+    def value(what, variant, particles, threads, part):
+        return next((float(row["median"]) for key, row in rows.items()
+                     if key[:2] + key[3:] == (what, variant, threads, part)
+                     and particles in (None, key[2])), float("nan"))
+    shares = {words: numbers[words]["phases"] for words in numbers if words.startswith("gate")
+              and words.endswith("leapfrog")}
+    return "\n\n".join([
+        "Seconds of other programs are of their own solvers on two threads of an AMD EPYC with AVX-512, "
+        "given and not measured again; the targets were set for the same machine. What is found is of "
+        "the processor above, on all threads unless one is named; how fast others are stands below.",
+        table(["work", "other programs", "target", "found", ""],
+              [*run_rows(numbers), *bench_rows(value, sizes, shares, speed)])])
 
 
 def other_processors(own):
@@ -254,8 +301,8 @@ def main():
     print("longest steps:", flush=True)
     steps = step_study()
     print("whole runs:", flush=True)
-    whole = work_runs(threads)
-    shared = shared_work(threads) if threads > 1 else ""
+    whole, numbers = work_runs(threads)
+    shared, speed = shared_work(threads) if threads > 1 else ("", {})
     load = os.getloadavg()[0]
     version = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True,
                              check=False).stdout.strip()
@@ -264,6 +311,10 @@ def main():
 Written by `tools/performance.py` (`make performance`) with {version}.
 {notes[0]}; {notes[1]}; load {load:.1f} at the end.
 Medians of {args.reps} repetitions; rows: [{path.name}](../bench/{path.name}).
+
+## Targets
+
+{target_words(rows, numbers, speed)}
 
 ## Sweeps
 

@@ -96,7 +96,12 @@ def gates():
             changed("kappa10", ["gate.hourglass=10"], "kappa = 10"),
             changed("h1.5", ["numerics.h_over_dp=1.5"], "h/dp = 1.5"),
             changed("alpha0.05", ["water.artificial_viscosity=0.05"], "alpha = 0.05"),
-            changed("cfl0.2", ["numerics.cfl=0.2"], "C_CFL = 0.2")]
+            changed("cfl0.2", ["numerics.cfl=0.2"], "C_CFL = 0.2"),
+            changed("cfl0.5", ["numerics.cfl=0.5"], "C_CFL = 0.5"),
+            *[Spec(f"gate-1mm-{integrator.lower()}-cfl{cfl}", "gate",
+                   ["dp=1 mm", f"integrator={integrator.lower()}", f"numerics.cfl={cfl}"],
+                   f"dp = 1 mm, {integrator}, C_CFL = {cfl}")
+              for integrator, cfl in (("symplectic", 0.4), ("Verlet", 0.1), ("Verlet", 0.3))]]
 
 
 def single_rates():

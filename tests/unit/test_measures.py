@@ -14,6 +14,7 @@ try:
     import h5py  # noqa: F401  the snapshots need it
     import numpy as np
     import metrics
+    import performance_targets
     import validation_cases
     import validation_measures
     import validation_rates
@@ -133,6 +134,26 @@ def test_apart():
     made = [types.SimpleNamespace(folder=Path("/nowhere"), table=lambda name, t=t: t) for t in (run, other)]
     off, top = validation_rates.apart(*made, "M1_dx_m")
     assert abs(off - 0.1) < 1e-12 and abs(top - 1.0) < 1e-12
+
+
+def test_performance_targets():
+    """Seconds and rates against their limits; a run and a number that are not there."""
+    rows = performance_targets.run_rows({"gate, dp = 1 mm, leapfrog": {"seconds": 11.9},
+                                         "cantilever, ts/dp = 20": {"seconds": 10.1, "rate": 31}})
+    found = {(row[0], row[2]): row[3:] for row in rows}
+    assert found["gate, dp = 1 mm, leapfrog", "at most 12 s"] == ("11.9", "met")
+    assert found["cantilever, ts/dp = 20", "at most 10 s"] == ("10.1", "**missed**")
+    assert found["cantilever, ts/dp = 20", "at least 30 million particle steps a second"] == ("31", "met")
+    assert found["hydrostatic plate, leapfrog", "at most 150 s"] == ("no result", "not run")
+
+    def value(what, variant, particles, threads, part):
+        if part == "all":
+            return 60 + particles / 1e4
+        return 240 if part == "memory" else float("nan")
+    rows = performance_targets.bench_rows(value, [10000, 100000], {"gate": {"sort": 1, "output": 4, "x": 95}},
+                                          {"steps alone": 1.9})
+    assert [row[4] for row in rows] == ["met", "met", "met", "**missed**", "met"]
+    assert rows[1][3] == "1.15"
 
 
 def main():

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ * Instructions of this thread in user space, where the machine counts them and lets a program ask. */
+#ifndef SPHFSI_BENCH_COUNTER_H
+#define SPHFSI_BENCH_COUNTER_H
+
+#include "base.h"
+
+#ifdef __linux__
+#include <linux/perf_event.h>
+#include <string.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+/* A descriptor to read from; -1: there is no such counter (many virtual machines have none). */
+static int counter_open(void)
+{
+    struct perf_event_attr what;
+    memset(&what, 0, sizeof what);
+    what.type = PERF_TYPE_HARDWARE;
+    what.size = sizeof what;
+    what.config = PERF_COUNT_HW_INSTRUCTIONS;
+    what.exclude_kernel = 1;
+    what.exclude_hv = 1;
+    return (int)syscall(SYS_perf_event_open, &what, 0, -1, -1, 0);
+}
+
+/* Instructions since it was opened; negative: it cannot be read. */
+static double counter_read(int counter)
+{
+    uint64_t count;
+    return counter >= 0 && read(counter, &count, sizeof count) == (ssize_t)sizeof count
+               ? (double)count
+               : -1;
+}
+#else
+static int counter_open(void) { return -1; }
+static double counter_read(int counter)
+{
+    (void)counter;
+    return -1;
+}
+#endif
+
+#endif
