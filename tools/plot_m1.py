@@ -229,7 +229,7 @@ def main():
     tables = [run.probes() for run in runs]
     refs = case_references(runs)
     columns = choose_columns(args, runs, tables, refs)
-    refs += [Reference(columns[0], path, Path(path).stem, label or Path(path).stem)
+    refs += [Reference(columns[0], path, Path(path).stem, label or Path(path).stem, sort=True)
              for path, label in itertools.zip_longest(args.reference, args.label)]
     curves = {}
     for column in columns:

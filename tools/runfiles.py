@@ -2,6 +2,7 @@
 """Reads the files of a run's folder and holds what all figures share: style, colours, saving."""
 
 import json
+import math
 import re
 import sys
 from pathlib import Path
@@ -53,9 +54,10 @@ def read_text(path):
         raise BadFile(f"cannot read {path}: {reason}") from None
 
 
-def read_table(path, torn=False):
+def read_table(path, torn=False, finite=True):
     """Columns of a CSV file as {name: array}, in order, and the text of its `#` comments. `torn`:
-    a last row without its newline is left out; it is one that a run has not finished."""
+    a last row without its newline is left out; it is one that a run has not finished. `finite`:
+    nan and inf are refused."""
     comments, names, rows = [], None, []
     text = read_text(path)
     if torn:
@@ -73,10 +75,22 @@ def read_table(path, torn=False):
             if len(row) != len(names):
                 raise BadFile(f"{path}, line {number}: {len(row)} values "
                               f"for {len(names)} columns")
+            wrong = next((k for k, value in enumerate(row) if finite and not math.isfinite(value)), None)
+            if wrong is not None:
+                raise BadFile(f"{path}, line {number}: {names[wrong]} is {row[wrong]}, not a finite number")
             rows.append(row)
     if not rows:
         raise BadFile(f"{path}: no rows of data")
     return dict(zip(names, np.array(rows).T)), "\n".join(comments)
+
+
+def check_increasing(path, name, values):
+    """Complains of a column of a table that does not increase from row to row."""
+    back = np.flatnonzero(np.diff(values) <= 0)
+    if len(back):
+        before, after = values[back[0]], values[back[0] + 1]
+        raise BadFile(f"{path}, row {back[0] + 2} of the data: {name} is {after:g} after {before:g}; it must "
+                      "increase from row to row")
 
 
 def read_case(path):
@@ -123,8 +137,14 @@ class Run:
         reason = self.failure()
         return self.name if reason is None else f"{self.name} ({reason})"
 
+    def stopped(self):
+        return self.summary.get("exit_reason", "running") not in ("finished", "running")
+
     def table(self, name):
-        columns, _ = read_table(self.folder / name, torn=True)
+        """Columns of a table. The last rows of a run that was stopped may hold nan: they show why; a
+        ledger may hold inf: the least det F of no solid at all."""
+        finite = name != "ledger.csv" and not self.stopped()
+        columns, _ = read_table(self.folder / name, torn=True, finite=finite)
         if "time_s" not in columns:
             raise BadFile(f"{self.folder / name}: no column time_s")
         return columns
@@ -165,15 +185,19 @@ def make_runs(folders):
 
 
 class Reference:
-    """A curve to compare with: CSV with time in s and a value in SI units."""
+    """A curve to compare with: CSV with time in s and a value in SI units. `sort`: its points may go
+    back and forth in time, as digitised ones do and as the program takes them. Otherwise the times must
+    increase, which those of a file with swapped columns hardly do."""
 
-    def __init__(self, probe, path, name, label):
+    def __init__(self, probe, path, name, label, sort=False):
         self.probe, self.path, self.name, self.label = probe, Path(path), name, label
         columns, comments = read_table(path)
         if len(columns) != 2:
             raise BadFile(f"{path}: {len(columns)} columns instead of time_s,value")
         time, value = columns.values()
-        order = np.argsort(time, kind="stable")  # digitised points may go back and forth
+        if not sort:
+            check_increasing(path, next(iter(columns)), time)
+        order = np.argsort(time, kind="stable")
         self.time, self.value = time[order], value[order]
         # The word that comes first tells a measurement from a computation that cites one.
         words = re.search(r"(?i)(measure|experiment|laborator)|"
@@ -197,7 +221,7 @@ def references(run):
         path = next((p for p in [run.folder / given, *tails] if p.is_file()), None)
         if path is None:
             raise BadFile(f"{run.folder / 'case.cfg'}: [reference {name}]: no file {given}")
-        found.append(Reference(keys["probe"], path, name, keys.get("label") or name))
+        found.append(Reference(keys["probe"], path, name, keys.get("label") or name, sort=True))
     return found
 
 

@@ -22,11 +22,21 @@ try:
     import validation_kept
     import validation_report
     import validation_runs
-    from runfiles import BadFile
+    from runfiles import BadFile, Reference, Run, read_table
 except ImportError as missing:
     print(f"{missing.name} is missing")
     sys.exit(77)
 PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
+
+
+def refuses(words, function, *arguments):
+    """The function complains in a sentence that has all the words in it."""
+    try:
+        function(*arguments)
+    except BadFile as problem:
+        assert all(word in str(problem) for word in words), (words, str(problem))
+        return
+    raise AssertionError(f"accepted, though {' '.join(words)}")
 
 
 def near(found, wanted, tolerance):
@@ -96,6 +106,29 @@ def test_distances():
     assert np.array_equal(metrics.nearest(a, b, 0.2), plain)
     x = np.array([[0.05, 0.1], [0.05, 0.3], [0.45, 0.2]])
     assert metrics.surface_height(x, 0.1, np.array([0.05, 0.25, 0.45])).tolist() == [0.35, 0, 0.25]
+
+
+def test_tables(folder):
+    """What is no number is refused with its place, in references and probes; references go on in time, as
+    all shipped ones do, unless their points are to be sorted. What a guard stopped may end with nan."""
+    path, summary = folder / "probes.csv", folder / "summary.json"
+
+    def curve(**options):
+        return Reference("", path, "lab", "lab", **options)
+    for value in ("nan", "inf", "-inf"):
+        path.write_text(f"# made up\ntime_s,value\n0,1\n0.1,{value}\n")
+        for function, *arguments in ((read_table, path), (curve,), (Run(folder).table, "probes.csv")):
+            refuses(["probes.csv, line 4", f"value is {value}", "finite"], function, *arguments)
+    summary.write_text('{"exit_reason": "guard"}')
+    assert np.isinf(Run(folder).table("probes.csv")["value"][-1])
+    for rows in ("0.2,1\n0.1,2\n", "0.1,1\n0.1,2\n"):
+        path.write_text("time_s,value\n" + rows)
+        refuses(["probes.csv, row 2", "time_s is 0.1 after 0."], curve)
+        assert curve(sort=True).time[0] == 0.1
+    for shipped in validation_cases.REFERENCES.glob("*.csv"):
+        table, _ = read_table(shipped)
+        if "time_s" in table:
+            Reference("", shipped, shipped.stem, shipped.stem)
 
 
 def test_runner(folder):
@@ -176,7 +209,9 @@ def main():
     test_exact_solutions()
     test_distances()
     with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "report").mkdir()
+        for name in ("report", "tables"):
+            (Path(folder) / name).mkdir()
+        test_tables(Path(folder) / "tables")
         test_runner(Path(folder))
         test_report(Path(folder) / "report")
     print("the validation measures what it says and shows what is missing")
