@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from palette import shrink
 from runfiles import BadFile, Run, np
 from validation_measures import Missing, NotRun, balance
 from validation_runs import BY_NAME, ENDED, ROOT, SPECS
@@ -135,7 +136,7 @@ class Report:
         return self.picture(path, caption)
 
     def picture(self, path, caption, origin=""):
-        shrink(path, origin)
+        shrink(path, {ORIGIN: origin} if origin else {})
         return [f"![{caption}](img/{path.name})", "", f"*{caption}*", ""]
 
     def standing(self, path, caption):
@@ -148,19 +149,6 @@ class Report:
             return [f"*No figure: the snapshots are not kept, and {path.name} cannot be read "
                     f"({problem}).*", ""]
         return [f"![{caption}](img/{path.name})", "", f"*{caption}; drawn before, of {origin}*", ""]
-
-
-def shrink(path, origin="", width=1500, colours=256):
-    """Makes a picture small: at most `width` pixels wide, from a palette; it carries what it is of."""
-    from PIL import Image, PngImagePlugin  # comes with matplotlib
-    words = PngImagePlugin.PngInfo()
-    if origin:
-        words.add_text(ORIGIN, origin)
-    with Image.open(path) as image:
-        image = image.convert("RGB")
-        if image.width > width:
-            image = image.resize((width, round(image.height * width / image.width)), Image.LANCZOS)
-        image.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True, pnginfo=words)
 
 
 def series(run, column, since=-1.0):
