@@ -5,6 +5,7 @@ import json
 import math
 import re
 import sys
+import traceback
 from pathlib import Path
 
 try:
@@ -35,6 +36,15 @@ WIDTH = 7.2  # inches: the text width of a two-column journal page
 
 class BadFile(Exception):
     """A file that is missing or malformed; the text is the sentence for the user."""
+
+
+def sentence(problem):
+    """What went wrong, for the user, while an exception is handled. Of one that nobody foresaw the kind is
+    said, and the place in the program goes to stderr."""
+    if isinstance(problem, BadFile):
+        return str(problem)
+    traceback.print_exc()
+    return f"{type(problem).__name__}: {problem}"
 
 
 def run_tool(main):

@@ -5,7 +5,8 @@ import re
 import subprocess
 
 import metrics
-from runfiles import COLOURS, WIDTH, BadFile, np, plt, read_table
+from plot_ledger import read_ledger
+from runfiles import COLOURS, WIDTH, BadFile, check_increasing, np, plt, read_table
 from validation_measures import G, Missing, front_of, number, rest, turning
 from validation_report import COST, cost, ledgers, series, starting
 from validation_runs import BY_NAME, ROOT
@@ -14,7 +15,10 @@ REFERENCES = ROOT / "cases" / "reference"
 
 
 def scheme(run):
-    return next(keys for kind, _, keys in run.case() if kind == "fluid")
+    keys = next((keys for kind, _, keys in run.case() if kind == "fluid"), None)
+    if keys is None:
+        raise BadFile(f"{run.folder / 'case.cfg'}: no section [fluid ...]")
+    return keys
 
 
 # --- water alone ---
@@ -45,12 +49,11 @@ def still(report):
 
 def beat(run):
     """Frequency over that of linear theory and decay of a standing wave, from the momentum in x."""
-    ledger = run.table("ledger.csv")
-    column = next(name for name in ledger if name.startswith("momentum_x"))
+    ledger = read_ledger(run)
     height, width = number(run, "H"), number(run, "W")
     k = np.pi / width
     omega = float(np.sqrt(G * k * np.tanh(k * height)))
-    found, decay = metrics.damped_sine(ledger["time_s"], ledger[column], omega)
+    found, decay = metrics.damped_sine(ledger["time"], ledger["momentum_x"], omega)
     damping = float(scheme(run)["artificial_viscosity"]) * number(run, "h_over_dp") * run.spacing() * \
         run.summary["derived"]["c0"] / 8
     return found / omega, decay, 2 * damping * k * k
@@ -111,8 +114,8 @@ def shear_line(report):
 def fade(run):
     """Decay rate of kinetic energy between a tenth of a second and the end over the exact one, and
     the energy at 0.25 s and 1 s over the exact one."""
-    ledger = run.table("ledger.csv")
-    time, energy = ledger["time_s"], ledger["kinetic_J_per_m"]
+    ledger = read_ledger(run)
+    time, energy = ledger["time"], ledger["kinetic"]
     rate = 16 * np.pi ** 2 * number(run, "nu") / number(run, "L") ** 2
     own = -np.polyfit(time[time > 0.1], np.log(energy[time > 0.1]), 1)[0]
     shares = [float(np.interp(t, time, energy) / energy[0] / np.exp(-rate * t)) for t in (0.1, 0.25, 1.0)]
@@ -137,9 +140,11 @@ def vortices(report):
 
 
 def front(report):
-    table, _ = read_table(REFERENCES / "dam_break_martin_moyce_1952.csv")
+    path = REFERENCES / "dam_break_martin_moyce_1952.csv"
+    table, _ = read_table(path)
     if set(table) != {"time_nd", "front_nd"}:
-        raise BadFile("dam_break_martin_moyce_1952.csv: columns must be time_nd, front_nd")
+        raise BadFile(f"{path}: columns are {', '.join(table)}; they must be time_nd, front_nd")
+    check_increasing(path, "time_nd", table["time_nd"])
     known_t, known_x = table["time_nd"], table["front_nd"]
 
     seen = {}  # the way of a front takes many snapshots to find
@@ -327,13 +332,13 @@ def patch(report):
 
 def spin(run):
     """Relative change of the angular momentum, elastic over kinetic energy, error of the corner."""
-    ledger = run.table("ledger.csv")
+    ledger = read_ledger(run)
     side, omega = number(run, "L"), number(run, "omega")
     time, dx = series(run, "corner_dx_m")
     exact = side / 2 * (np.cos(omega * time) - np.sin(omega * time) - 1)
-    strain = ledger["elastic_J_per_m"] + ledger["hourglass_J_per_m"]
+    strain = ledger["elastic"] + ledger["hourglass"]
     return (turning(run)[0],
-            float((strain / ledger["kinetic_J_per_m"]).max()),
+            float((strain / ledger["kinetic"]).max()),
             float(np.abs(dx - exact).max() / side))
 
 
@@ -361,9 +366,13 @@ def bar(report):
         length, speed = number(run, "L"), number(run, "c")
         static = -G * length ** 2 / (2 * speed ** 2)
         turns = metrics.crossings(time, dy - static)
-        entry = run.summary["references"]["exact"]
+        try:
+            rms = float(run.summary["references"]["exact"]["rms_relative"])
+        except (KeyError, TypeError, ValueError):
+            raise BadFile(f"{run.folder / 'summary.json'}: no number rms_relative of the reference exact") \
+                from None
         return (dy.mean() / static - 1, 2 * np.diff(turns).mean() / (4 * length / speed) - 1,
-                entry["rms_relative"])
+                rms)
 
     def cells(run):
         mean, period, rms = measure(run)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Writes docs/validation.md and its figures from the runs that there are.
 
-A run that is not there is taken from what is kept of it (validation_kept.py). A section that meets a
-reference that is missing or malformed says so and the rest goes on; a run that failed, has not ended or was
-not run stands in its table with that word."""
+A run that is not there is taken from what is kept of it (validation_kept.py). A run that failed, has not
+ended or was not run stands in its table with that word. Whatever is wrong with a run, a row, a target or a
+section stands in its place, and the rest goes on."""
 
 import datetime
 import subprocess
@@ -11,9 +11,10 @@ import sys
 from pathlib import Path
 
 from palette import shrink
-from runfiles import BadFile, Run, np
+from runfiles import BadFile, Run, read_text, sentence
 from validation_measures import Missing, NotRun, balance
-from validation_runs import BY_NAME, ENDED, ROOT, SPECS
+from validation_runs import BY_NAME, ROOT, SPECS, last_line
+from validation_sound import ENDED, check_ended, check_standing
 
 TOOLS = Path(__file__).resolve().parent
 ORIGIN = "Runs"  # entry of a picture that says of which runs and version it is
@@ -25,33 +26,69 @@ class Report:
     def __init__(self, docs, failed, kept):
         self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
         self.targets, self.kept = [], kept
+        self.runs = {}      # name: the run, or why there is none
+        self.wrong = {}     # what is wrong with files or the program: where it was met first
+        self.replaced = {}  # runs that are damaged, and what is kept of them stands instead: what is wrong
 
-    def folder(self, spec):
-        """Where the result of a run is: its own folder if it has ended there and is of the case that is
-        meant now, or else what is kept of it, or else its own folder, such as it is."""
-        has_summary = (spec.folder / "summary.json").is_file()
-        case = spec.folder / "case.cfg"
-        if has_summary and Run(spec.folder).summary.get("exit_reason") in ENDED and case.is_file() and \
-                self.kept.means(spec, case.read_text()):
-            return spec.folder
+    def why(self, where, problem):
+        """What the report says instead of a result, while an exception is handled. That a run is missing
+        is no fault; a file that is, or an error that nobody foresaw, makes the command fail."""
+        if isinstance(problem, Missing):
+            return str(problem)
+        text = sentence(problem)
+        self.wrong.setdefault(text, where)
+        return text
+
+    def load(self, spec):
+        """The result of a run: its own folder if it has ended there and is of the case that is meant now, or
+        else what is kept of it, or else its own folder, such as it is."""
+        own = damage = None
         try:
-            return self.kept.find(spec)
+            if (spec.folder / "summary.json").is_file():
+                own = Run(spec.folder)
+                case = spec.folder / "case.cfg"
+                if own.summary.get("exit_reason") in ENDED and case.is_file() and \
+                        self.kept.means(spec, read_text(case)):
+                    check_ended(own)
+                    return own
+        except BadFile as problem:
+            damage = problem
+        try:
+            kept = Run(self.kept.find(spec))
         except NotRun:
-            if has_summary:
-                return spec.folder
-            raise
+            if damage:
+                raise damage from None
+            if not own:
+                raise
+            return own
+        if damage:
+            self.replaced[spec.name] = str(damage)
+        return kept
 
-    def run(self, name):
-        """A finished run."""
+    def finished(self, name):
         if name in self.failed:
             raise Missing(f"failed: {self.failed[name]}")
-        run = Run(self.folder(BY_NAME[name]))
-        if run.failure():
-            reason = run.summary.get("exit_reason", "")
-            ended = run.summary.get("time", 0)
-            raise Missing(f"failed at t = {ended:.3g} s: {run.summary.get('message', reason)}"
-                          if reason == "guard" else f"unfinished, at t = {ended:.3g} s")
-        return run
+        run = self.load(BY_NAME[name])
+        if not run.failure():
+            check_ended(run)
+            return run
+        check_standing(run)
+        ended = run.summary["time"]
+        raise Missing(f"failed at t = {ended:.3g} s: {run.summary['message']}"
+                      if run.summary["exit_reason"] == "guard" else f"unfinished, at t = {ended:.3g} s")
+
+    def run(self, name):
+        """A finished run; Missing or BadFile says why there is none."""
+        if name not in self.runs:
+            try:
+                self.runs[name] = self.finished(name)
+            except Missing as reason:
+                self.runs[name] = reason
+            except Exception as problem:  # one run must not cost the report
+                self.runs[name] = BadFile(self.why(name, problem))
+        if isinstance(self.runs[name], Exception):
+            raise self.runs[name].with_traceback(None)
+        return self.runs[name]
 
     def has(self, *names):
         """Those of the names that have finished."""
@@ -83,16 +120,19 @@ class Report:
         return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or coarse
 
     def target(self, case, words, value, met):
-        """A row of the table of targets; met: True, False, or None where there is no run."""
-        self.targets.append((case, words, value, {True: "met", False: "**missed**", None: "not run"}[met]))
+        """A row of the table of targets; met: True, False, None where there is no run, or why it is not
+        known."""
+        told = {True: "met", False: "**missed**", None: "not run"}
+        self.targets.append((case, words, value, told.get(met, met)))
 
     def try_target(self, case, words, measure):
         """measure() gives (text, met)."""
         try:
             value, met = measure()
             self.target(case, words, value, bool(met))
-        except (Missing, BadFile) as problem:
-            self.target(case, words, str(problem), None)
+        except Exception as problem:  # the other targets stand
+            self.target(case, words, self.why(f"target: {case}, {words}", problem),
+                        "not run" if isinstance(problem, Missing) else "**not judged**")
 
     # --- tables ---
     def table(self, head, specs, cells):
@@ -101,8 +141,8 @@ class Report:
         for spec in specs:
             try:
                 row = cells(self.run(spec.name))
-            except (Missing, BadFile) as problem:
-                row = [f"*{problem}*"] + [""] * (len(head) - 1)
+            except Exception as problem:  # the other rows stand
+                row = [f"*{self.why(f'row of {spec.name}', problem)}*"] + [""] * (len(head) - 1)
             lines.append(f"| {spec.words} | " + " | ".join(row) + " |")
         return [*lines, ""]
 
@@ -125,8 +165,7 @@ class Report:
                                "--out", str(path), *map(str, options)],
                               capture_output=True, text=True, check=False)
         if done.returncode:
-            last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-            return [f"*No figure: {last}*", ""]
+            return [f"*No figure: {self.why(path.name, BadFile(last_line(done)))}*", ""]
         versions = dict.fromkeys(run.summary.get("version", "?") for run in runs)
         return self.picture(path, caption, f"{', '.join(run.name for run in runs)} by {', '.join(versions)}")
 
@@ -177,13 +216,14 @@ def ledgers(report, prefixes):
     """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
     lines = ["| run | energy in play (J/m) | dissipated | largest gain from nowhere | momentum x, "
              "y at the end (N s/m) | mass | density |", "|---" * 7 + "|"]
-    for spec in [s for p in prefixes for s in starting(p)]:
+    for name in report.has(*(spec.name for prefix in prefixes for spec in starting(prefix))):
         try:
-            play, lost, gain, along, up, mass, density = balance(report.run(spec.name))
-        except (Missing, BadFile):
+            play, lost, gain, along, up, mass, density = balance(report.run(name))
+        except Exception as problem:  # the other rows stand
+            lines.append(f"| {name} | *{report.why(f'ledger of {name}', problem)}* |" + " |" * 5)
             continue
         lines.append(
-            f"| {spec.name} | {play:.4g} | {lost:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
+            f"| {name} | {play:.4g} | {lost:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
             f"| {along:.3g}, {up:.3g} | {mass:+.1g} | {100 * density:.2g} % |")
     return [*lines, ""]
 
@@ -206,7 +246,7 @@ def by_version(report, newest):
 
 def what_was_run(report, versions):
     """The runs by how they stand; those of another version than the newest for themselves."""
-    stand, done = {"unfinished or failed": [], "not run": []}, {}
+    stand, done = {"unfinished or failed": [], "damaged": [], "not run": []}, {}
     for k, (version, names) in enumerate(versions.items()):
         done[f"finished, by {version}" if k else "finished"] = names
     for spec in SPECS:
@@ -215,8 +255,12 @@ def what_was_run(report, versions):
         except NotRun as nothing:
             wrong = str(nothing).partition("; ")[2]
             stand["not run"].append(f"{spec.name} ({wrong})" if wrong else spec.name)
-        except (Missing, BadFile):
+        except Missing:
             stand["unfinished or failed"].append(spec.name)
+        except BadFile as problem:
+            stand["damaged"].append(f"{spec.name} ({problem})")
+    stand["damaged"] += [f"{name} ({text}; what is kept of it stands instead)"
+                         for name, text in report.replaced.items()]
     return [f"* {words} ({len(names)}): {', '.join(names) or 'none'}"
             for words, names in {**(done or {"finished": []}), **stand}.items()] + [""]
 
@@ -240,18 +284,24 @@ def sections():
             ("Ledgers of the verification runs", checks.all_ledgers)]
 
 
+def write_section(report, title, section):
+    """The lines of a section, or why there are none."""
+    try:
+        body = section(report)
+    except Exception as problem:  # the other sections stand
+        body = [f"**Not reported: {report.why(f'section {title}', problem)}.**", ""]
+    print(f"section: {title}", flush=True)
+    return [f"## {title}", "", *body]
+
+
 def write_report(docs, failed, kept, newest):
-    """`newest`: the version of the program as it is now."""
+    """Returns what is wrong with files or the program, a sentence each. `newest`: the version of the program
+    as it is now."""
     report = Report(docs, failed, kept)
     report.images.mkdir(parents=True, exist_ok=True)
     body = []
     for title, section in sections():
-        body += [f"## {title}", ""]
-        try:
-            body += section(report)
-        except (Missing, BadFile) as problem:
-            body += [f"**Not reported: {problem}.**", ""]
-        print(f"section: {title}", flush=True)
+        body += write_section(report, title, section)
     versions = by_version(report, newest)
     done = [name for names in versions.values() for name in names]
     taken = sum(report.run(name).folder != BY_NAME[name].folder for name in done)
@@ -272,5 +322,4 @@ def write_report(docs, failed, kept, newest):
     path = report.docs / "validation.md"
     path.write_text("\n".join([*head, *body, *tail]).rstrip() + "\n")
     print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")
-
-
+    return [f"{where}: {text}" for text, where in report.wrong.items()]

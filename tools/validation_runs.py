@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The runs of the validation: which there are, whether they are up to date, and running them."""
 
+import fcntl
 import shutil
 import subprocess
 import tempfile
@@ -8,12 +9,12 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from runfiles import BadFile, Run
+from runfiles import BadFile, Run, read_text, sentence
 from validation_measures import NotRun
+from validation_sound import ENDED, check_ended
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "runs" / "validation"
-ENDED = ("finished", "guard")  # exit reasons after which a run would end in the same way again
 PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
 
 # Rough seconds of a run with ratio = 1 or dp = 1 mm by leapfrog, or by the integrator of its file, which go
@@ -220,6 +221,43 @@ def physics(text):
             if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label "))]
 
 
+def last_line(done):
+    """What a program that failed said last."""
+    return (done.stderr.strip().splitlines() or [f"no message, exit status {done.returncode}"])[-1]
+
+
+def holds_results(folder):
+    """Whether the program would take the folder for that of a run."""
+    return any(path.suffix == ".ckpt" or path.name in ("summary.json", "probes.csv", "ledger.csv",
+                                                       "fields.vtkhdf", "case.cfg")
+               for path in (folder.iterdir() if folder.is_dir() else ()))
+
+
+def refuses_checkpoint(done):
+    """Whether the program ended because of the checkpoint that it was to go on from."""
+    text = last_line(done)
+    return done.returncode in (1, 2) and ("checkpoint" in text or ".ckpt" in text) and \
+        "no memory" not in text
+
+
+def summary_time(folder):
+    """When the summary was written, or None."""
+    path = folder / "summary.json"
+    return path.stat().st_mtime_ns if path.exists() else None
+
+
+def is_busy(folder):
+    """Whether a run holds the lock of its folder."""
+    try:
+        with open(folder / ".lock", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:  # no lock, or a file system that knows none
+        return False
+    return False
+
+
 class Program:
     """The program under validation."""
 
@@ -236,7 +274,7 @@ class Program:
         done = subprocess.run([self.path, "--effective", str(case), *arguments], capture_output=True,
                               text=True, check=False)
         if done.returncode:
-            raise BadFile(f"{case}: {done.stderr.strip().splitlines()[-1]}")
+            raise BadFile(f"{case}: {last_line(done)}")
         return done.stdout
 
     def means(self, spec, text):
@@ -273,18 +311,28 @@ class Runner:
         self.failed = {}
 
     def state(self, spec):
-        """new, finished, ended (and would end again), interrupted, or other: of another case or
-        version."""
-        if not (spec.folder / "case.cfg").is_file():
-            return "new"
-        run = Run(spec.folder)
-        same = self.program.means(spec, (spec.folder / "case.cfg").read_text())
-        if not same or not (self.any_version or run.summary.get("version") == self.program.version):
-            return "other"
-        reason = run.summary.get("exit_reason")
-        if reason in ENDED:
-            return "finished" if reason == "finished" else "ended"
-        return "interrupted" if list(spec.folder.glob("*.ckpt")) else "other"
+        """How a run stands: new, finished, ended (and would end again), interrupted, or other: what is there
+        cannot be used; and why not."""
+        if not holds_results(spec.folder):
+            return "new", ""
+        try:
+            run, case = Run(spec.folder), read_text(spec.folder / "case.cfg")
+        except BadFile as problem:
+            return "other", f"it is damaged: {problem}"
+        if not self.program.means(spec, case):
+            return "other", "it is of another case than is meant now"
+        reason, version = run.summary.get("exit_reason"), run.summary.get("version", "unknown")
+        if reason not in ENDED and not list(spec.folder.glob("*.ckpt")):
+            return "other", "it was interrupted and has no checkpoint"
+        if not self.any_version and version != self.program.version:
+            return "other", f"it is by version {version}, not {self.program.version} (--any-version takes it)"
+        if reason not in ENDED:
+            return "interrupted", ""
+        try:
+            check_ended(run)
+        except BadFile as problem:
+            return "other", f"it is damaged: {problem}"
+        return ("finished" if reason == "finished" else "ended"), ""
 
     def is_kept(self, spec):
         try:
@@ -295,38 +343,53 @@ class Runner:
 
     def run(self, spec):
         try:
-            state = self.state(spec)
+            state, why = self.state(spec)
             if state not in ("finished", "ended"):
                 if not self.again and self.is_kept(spec):
                     return
-                self.compute(spec, state)
+                self.compute(spec, state, why)
             self.store(spec)
-        except BadFile as problem:
-            self.say(str(problem))
-            self.failed.setdefault(spec.name, str(problem))
+        except Exception as problem:  # the other runs go on
+            text = sentence(problem)
+            self.say(f"{spec.name}: {text}")
+            self.failed.setdefault(spec.name, text)
 
-    def compute(self, spec, state):
+    def compute(self, spec, state, why):
         if state == "other":
-            shutil.rmtree(spec.folder)
-        command = [self.program.path, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
-                   *spec.arguments(), *(["--restart"] if state == "interrupted" else [])]
-        self.say(f"{'continues' if state == 'interrupted' else 'runs'} {spec.name}: {spec.words}")
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+            self.discard(spec, why)
+        goes_on, before = state == "interrupted", summary_time(spec.folder)
+        done = self.start(spec, goes_on)
+        # What it says of checkpoints once it has begun comes with a new summary.
+        if goes_on and refuses_checkpoint(done) and summary_time(spec.folder) == before:
+            self.discard(spec, f"the program does not go on from it: {last_line(done)}")
+            done = self.start(spec, False)
         if done.returncode:
-            text = (done.stderr.strip().splitlines() or ["no message"])[-1]
-            self.failed[spec.name] = text
-            self.say(f"{spec.name} failed: {text}")
+            self.failed[spec.name] = last_line(done)
+            self.say(f"{spec.name} failed: {last_line(done)}")
+
+    def start(self, spec, goes_on):
+        self.say(f"{'continues' if goes_on else 'runs'} {spec.name}: {spec.words}")
+        command = [self.program.path, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
+                   *spec.arguments(), *(["--restart"] if goes_on else [])]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def discard(self, spec, why):
+        """Removes the folder of a run that cannot be used, and says why."""
+        if is_busy(spec.folder):
+            raise BadFile(f"{spec.folder}: another process writes there; wait for it, or use other --runs")
+        self.say(f"discards {spec.folder}: {why}; {spec.name} is run anew")
+        shutil.rmtree(spec.folder)
 
     def store(self, spec):
         """Keeps the result of a longer run that has ended, if that is wanted."""
-        if not self.keep or spec.quick or not (spec.folder / "case.cfg").is_file() or \
-                Run(spec.folder).summary.get("exit_reason") not in ENDED:
+        if not self.keep or spec.quick or not holds_results(spec.folder):
             return
         try:
-            path = self.kept.store(spec)
-            self.say(f"kept {spec.name}: {path.stat().st_size / 1000:.0f} kB")
-        except (BadFile, OSError) as problem:
-            self.say(f"{spec.name} is not kept: {problem}")
+            if Run(spec.folder).summary.get("exit_reason") in ENDED:
+                path = self.kept.store(spec)
+                self.say(f"kept {spec.name}: {path.stat().st_size / 1000:.0f} kB")
+        except Exception as problem:  # the other runs are kept
+            self.say(f"{spec.name} is not kept: {sentence(problem)}")
 
     def say(self, text):
         with self.lock:

@@ -147,18 +147,18 @@ def test_runner(folder):
         data = json.loads(summary.read_text())
         data.update(edit)
         summary.write_text(json.dumps(data))
-        return runner.state(spec)
-    assert runner.state(spec) == "finished"
+        return runner.state(spec)[0]
+    assert runner.state(spec) == ("finished", "")
     before = summary.stat().st_mtime_ns
     runner.run(spec)
     assert summary.stat().st_mtime_ns == before
     assert state_after({"version": "0.0.0"}) == "other"
-    assert validation_runs.Runner(program, kept, any_version=True).state(spec) == "finished"
+    assert validation_runs.Runner(program, kept, any_version=True).state(spec)[0] == "finished"
     assert state_after({"version": program.version, "exit_reason": "interrupted"}) == "interrupted"
     runner.run(spec)
-    assert runner.state(spec) == "finished" and json.loads(summary.read_text())["restarted_from"]
+    assert runner.state(spec)[0] == "finished" and json.loads(summary.read_text())["restarted_from"]
     spec.sets[2] = "end_time=1 ms"
-    assert runner.state(spec) == "other"
+    assert runner.state(spec)[0] == "other"
     runner.run(spec)
     assert json.loads(summary.read_text())["time"] == 1e-3
     spec.sets.append("water.no_such_key=1")
