@@ -243,7 +243,7 @@ forecast: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/forecast.py $(ARGS)
 
 validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
-	$(Q)OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py --program '$(PROGRAM)' \
+	$(Q)BUILD='$(B)' OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py --program '$(PROGRAM)' \
 	  $(if $(QUICK),--quick) $(if $(KEEP),--keep) $(ARGS)
 
 check: $(PROGRAM) $(LIB)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The sections of the validation report on water alone and on solids alone."""
 
+import os
 import re
 import subprocess
+from pathlib import Path
 
 import metrics
 from plot_ledger import read_ledger
@@ -12,6 +14,7 @@ from validation_report import COST, cost, ledgers, series, starting
 from validation_runs import BY_NAME, ROOT
 
 REFERENCES = ROOT / "cases" / "reference"
+BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
 
 
 def scheme(run):
@@ -313,7 +316,7 @@ def all_ledgers(report):
 
 
 def patch(report):
-    program = ROOT / "build" / "release" / "tests" / "converge" / "test_solid_patch"
+    program = BUILD / "tests" / "converge" / "test_solid_patch"
     try:
         done = subprocess.run([str(program)], capture_output=True, text=True, check=False)
         found = re.search(r"linear field: largest error of the gradient "

@@ -6,6 +6,7 @@ what it says of runs and references that are missing or broken. Exit 77: a packa
 import json
 import math
 import os
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -131,6 +132,23 @@ def test_tables(folder):
             Reference("", shipped, shipped.stem, shipped.stem)
 
 
+def test_build(folder):
+    """The patch test is that of the build folder that make names, which its rule does."""
+    program = folder / "tests" / "converge" / "test_solid_patch"
+    program.parent.mkdir(parents=True)
+    program.write_text("#!/bin/sh\necho linear field: largest error of the gradient 2e-15\n")
+    program.chmod(0o755)
+    ask = ("import validation_checks as v, validation_report as r; t = r.Report('', {}, None); v.patch(t); "
+           "print(t.targets[0][2])")
+    done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True,
+                          cwd=ROOT / "tools", env={**os.environ, "BUILD": str(folder)})
+    assert done.stdout.strip() == "2.0e-15", done.stdout
+    rules = subprocess.run(["make", "-C", str(ROOT), "-n", "validate", "B=build/other", "SETUP=no"],
+                           capture_output=True, text=True, check=True,
+                           env={k: v for k, v in os.environ.items() if not k.startswith("MAKE")})
+    assert "BUILD='build/other'" in rules.stdout, rules.stdout[-500:]
+
+
 def test_runner(folder):
     """Finished runs of the same case stay; another setting runs anew; an interrupted one goes on."""
     spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
@@ -209,9 +227,10 @@ def main():
     test_exact_solutions()
     test_distances()
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("report", "tables"):
+        for name in ("report", "tables", "build"):
             (Path(folder) / name).mkdir()
         test_tables(Path(folder) / "tables")
+        test_build(Path(folder) / "build")
         test_runner(Path(folder))
         test_report(Path(folder) / "report")
     print("the validation measures what it says and shows what is missing")
