@@ -68,8 +68,8 @@ def wave(report):
         stiff = metrics.lattice_shear(float(number(run, "h_over_dp")))
         return [f"{ratio:.4f}", f"{stiff:+.4f}", f"{decay:.3f}", f"{exact:.3f}", *cost(run)]
 
-    def finest():
-        name = report.first("wave-40-1.5", "wave-20-1.5")
+    def finest(smoothing):
+        name = report.first(f"wave-40-{smoothing}", f"wave-20-{smoothing}")
         ratio = beat(report.run(name))[0]
         return f"{100 * (ratio - 1):+.2f} % ({BY_NAME[name].words})", abs(ratio - 1) <= 0.01
 
@@ -82,7 +82,9 @@ def wave(report):
         slope = metrics.order([run.spacing() for run in runs], errors)
         words = ", ".join(BY_NAME[name].words.split(",")[0] for name in names)
         return f"{slope:.2f} (over {words})", slope >= 1
-    report.try_target("standing wave", "frequency within 1 %", finest)
+    report.try_target("standing wave", "frequency within 1 %, h/dp = 1.5", lambda: finest("1.5"))
+    report.try_target("standing wave", "frequency within 1 %, h/dp = 1.35 as in the paper",
+                      lambda: finest("1.35"))
     report.try_target("standing wave", "order of convergence at least 1", converges)
     return [
         "Half a wave, H = 0.5 m, W = 1 m, amplitude 25 mm; a damped sine through the water's "
@@ -142,14 +144,30 @@ def vortices(report):
         "points, too.", ""]
 
 
-def front(report):
+def judged_by(load, report, *targets):
+    """What a reference holds; where it cannot be read, its targets say so."""
+    try:
+        return load()
+    except BadFile as problem:
+        for words in targets:
+            report.target("dry dam break", words, str(problem), None)
+        raise
+
+
+def front_places():
     path = REFERENCES / "dam_break_martin_moyce_1952.csv"
     table, _ = read_table(path)
     if set(table) != {"time_nd", "front_nd"}:
         raise BadFile(f"{path}: columns are {', '.join(table)}; they must be time_nd, front_nd")
     check_increasing(path, "time_nd", table["time_nd"])
-    known_t, known_x = table["time_nd"], table["front_nd"]
+    return table["time_nd"], table["front_nd"]
 
+
+FRONT = "front within 5 % of Martin-Moyce, column of height 2a, t sqrt(2g/a)"
+
+
+def front(report):
+    known_t, known_x = judged_by(front_places, report, FRONT)
     seen = {}  # the way of a front takes many snapshots to find
 
     def curve(run, scale):
@@ -178,8 +196,7 @@ def front(report):
     def target(name, scale):
         largest = float(np.abs(off(report.run(name), scale)).max())
         return f"{100 * largest:.1f} %", largest <= 0.05
-    report.try_target("dry dam break",
-                      "front within 5 % of Martin-Moyce, column of height 2a, t sqrt(2g/a)",
+    report.try_target("dry dam break", FRONT,
                       lambda: target(report.first("front-80", "front-40", "front-20"), 2))
     square = "the same table read as that of a square column, t sqrt(g/a)"
     report.try_target("dry dam break", square, lambda: target("front-40-square", 1))
@@ -245,11 +262,19 @@ def impact_figure(report, sensors, curve):
                                          "line is the measured peak")
 
 
-def impact(report):
+IMPACT = "impact peak at the lowest sensor within 25 % of the measured one, mean over 5 ms, {}"
+
+
+def impact_sensors():
     table, _ = read_table(REFERENCES / "dam_break_lobovsky_2014.csv")
     if set(table) != {"height_m", "peak_nd"} or len(table["peak_nd"]) != 3:
         raise BadFile("dam_break_lobovsky_2014.csv: three rows of height_m, peak_nd are needed")
-    sensors = list(zip(("P1", "P3", "P4"), table["height_m"], table["peak_nd"]))
+    return list(zip(("P1", "P3", "P4"), table["height_m"], table["peak_nd"]))
+
+
+def impact(report):
+    kernels = ("2", "h/dp = 2"), ("1.35", "h/dp = 1.35 as in the paper")
+    sensors = judged_by(impact_sensors, report, *(IMPACT.format(words) for _, words in kernels))
 
     def curve(run, probe, mean=1):
         height = number(run, "H")
@@ -264,14 +289,14 @@ def impact(report):
         time, p = curve(run, "P1", 5)
         return [*row, f"{time[np.argmax(p)]:.2f}", *cost(run)]
 
-    def target():
-        name = report.first("impact-60-2", "impact-30-2")
-        found = float(curve(report.run(name), "P1", 5)[1].max())
-        words = f"{found:.2f} rho g H, mean over 5 ms ({BY_NAME[name].words})"
-        return words, abs(found / sensors[0][2] - 1) <= 0.25
-    low = sensors[0][2]
-    report.try_target("dry dam break",
-                      f"impact peak at the lowest sensor within 25 % of {low:g} rho g H", target)
+    def target(smoothing):
+        name = report.first(f"impact-60-{smoothing}", f"impact-30-{smoothing}")
+        found, short, row = (float(curve(report.run(name), "P1", n)[1].max()) for n in (5, 2, 1))
+        low = sensors[0][2]
+        words = f"{found:.2f} rho g H for {low:g} ({short:.2f} over 2 ms, {row:.2f} in a row of 1 ms)"
+        return words, abs(found / low - 1) <= 0.25
+    for smoothing, words in kernels:
+        report.try_target("dry dam break", IMPACT.format(words), lambda h=smoothing: target(h))
     head = [f"{words} {height * 1e3:.0f} mm" for _, height, _ in sensors
             for words in ("peak", "mean of 5 ms,")]
     return [
@@ -283,7 +308,9 @@ def impact(report):
         *report.table([*head, "time of the first", "steps", "solid steps", "s (threads)"],
                       starting("impact"), cells),
         *impact_figure(report, sensors, curve),
-        "A wider kernel (h/dp = 2) takes most of the noise out.", ""]
+        "A wider kernel (h/dp = 2) takes most of the noise out. The verdict hangs on the 5 ms: over 2 ms "
+        "it would be another (the table of targets). The measured peaks are not averaged; their air and "
+        "their sensors' size round them off.", ""]
 
 
 # --- solids alone ---

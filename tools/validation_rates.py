@@ -27,7 +27,7 @@ def apart(run, other, column):
 def gained(run, until):
     """The largest energy from nowhere up to an instant, J/m."""
     ledger = read_ledger(run)
-    lost = ledger["dissipated"][ledger["time_s"] <= until + 1e-9]
+    lost = ledger["dissipated"][ledger["time"] <= until + 1e-9]
     return float(np.max(np.maximum.accumulate(lost) - lost))
 
 

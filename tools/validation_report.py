@@ -268,12 +268,14 @@ def what_was_run(report, versions):
 def sections():
     """(title, function) of each section, in order."""
     from validation_cases import baffle, cantilever, gate, plate, sluice
+    from validation_rates import rates
     import validation_checks as checks
     return [("3.1 Free oscillation of a cantilever", cantilever),
             ("3.2 Hydrostatic water column on an elastic plate", plate),
             ("3.3 Dam-break wave and elastic gate", gate),
             ("3.4 Dam break in a wet bed and an elastic baffle", baffle),
             ("3.5 Dam break and an elastic sluice gate", sluice),
+            ("Sub-steps of the solid", rates),
             ("Still water", checks.still), ("Standing wave", checks.wave),
             ("Taylor-Green vortices", checks.vortices),
             ("Dam break on a dry bed: the front", checks.front),

@@ -136,6 +136,16 @@ def test_apart():
     assert abs(off - 0.1) < 1e-12 and abs(top - 1.0) < 1e-12
 
 
+def test_gained():
+    """The rows up to an instant only, and as the ledger's own reader names them."""
+    ledger = {"time": np.array([0, 1, 2, 3.0]), "dissipated": np.array([0, 2, 1.5, -4])}
+    before, validation_rates.read_ledger = validation_rates.read_ledger, lambda run: ledger
+    try:
+        assert validation_rates.gained(None, 2.0) == 0.5 and validation_rates.gained(None, 3.0) == 6.0
+    finally:
+        validation_rates.read_ledger = before
+
+
 def test_performance_targets():
     """Seconds and rates against their limits; a run and a number that are not there."""
     rows = performance_targets.run_rows({"gate, dp = 1 mm, leapfrog": {"seconds": 11.9},
