@@ -150,7 +150,7 @@ def judged_by(load, report, *targets):
         return load()
     except BadFile as problem:
         for words in targets:
-            report.target("dry dam break", words, str(problem), None)
+            report.target("dry dam break", words, str(problem), "**not judged**")
         raise
 
 
