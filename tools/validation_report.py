@@ -309,8 +309,8 @@ def write_report(docs, failed, kept, newest):
     taken = sum(report.run(name).folder != BY_NAME[name].folder for name in done)
     head = [
         "# Validation", "",
-        "Written by `make validate` (`tools/validate.py`); nothing here is typed by hand, and what "
-        "is judged is computed from the runs. Program " +
+        "Written by `make validate` (`tools/validate.py`); nothing here is edited by hand: numbers "
+        "are computed from the runs, sentences stand in the tool. Program " +
         (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items()) or newest) +
         f"; {taken} of the {len(done)} runs are kept results (`docs/validation/`). Report of "
         f"{datetime.date.today()}, {machine()}. Seconds are the clock's of a run's last process, "
