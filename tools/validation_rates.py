@@ -66,6 +66,5 @@ def rates(report):
                       f"{gains[0]:.2g} for {gains[1]:.2g} J/m", gains[0] <= gains[1])
     return ["Sub-steps of the solid within a step of the fluid (`numerics.multirate`) against one step for "
             "all, over the time that both runs have: the gate's 0.4 s, the plate's first 0.1 s.", "",
-            *lines, "", "Held over the sub-steps, the fluid's force gives somewhat more energy from nowhere than "
-            "a single rate does: the larger of the two columns is to be read beside the energy in play, in the "
-            "ledgers of 3.2 and 3.3.", ""]
+            *lines, "", "Held over the sub-steps, the fluid's force gives somewhat more energy from nowhere "
+            "than a single rate does; the energy in play stands in the ledgers of 3.2 and 3.3.", ""]
