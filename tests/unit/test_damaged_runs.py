@@ -7,17 +7,15 @@ import contextlib
 import fcntl
 import io
 import json
-import os
 import shutil
 import sys
 import tempfile
 import zipfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import PROGRAM, packages
+with packages():
     import h5py  # noqa: F401  the snapshots need it
     import validation_cases
     import validation_checks
@@ -26,10 +24,7 @@ try:
     import validation_runs
     from runfiles import BadFile, Run
     from validation_sound import check_ended
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
-PROGRAM = validation_runs.Program(Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve())
+SPHFSI = validation_runs.Program(PROGRAM)
 SHORT = {"wave-40-1.5": ["ratio=10", "end_time=0.3"], "taylor-green-25": ["ratio=10", "end_time=0.3"],
          "block-20": ["ratio=10", "turns=0.05"]}  # water with probes, water without, a solid
 WAVE = "wave-40-1.5"
@@ -56,11 +51,11 @@ class Bench:
         return self.spec(name).folder
 
     def kept(self):
-        return validation_kept.Kept(self.folder / "kept", PROGRAM.means)
+        return validation_kept.Kept(self.folder / "kept", SPHFSI.means)
 
     def run(self, name, method="run", **options):
         """What is said, and the runner."""
-        runner = validation_runs.Runner(PROGRAM, self.kept(), **options)
+        runner = validation_runs.Runner(SPHFSI, self.kept(), **options)
         with contextlib.redirect_stdout(io.StringIO()) as said:
             getattr(runner, method)(self.spec(name))
         return said.getvalue(), runner
@@ -68,7 +63,7 @@ class Bench:
     def report(self):
         """The text, what is wrong, and what stderr says."""
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as errors:
-            wrong = validation_report.write_report(self.folder, {}, self.kept(), PROGRAM.version)
+            wrong = validation_report.write_report(self.folder, {}, self.kept(), SPHFSI.version)
         return (self.folder / "validation.md").read_text(), wrong, errors.getvalue()
 
 
@@ -173,7 +168,7 @@ def test_interrupted(bench):
         _, runner = bench.run(WAVE)
         assert "another process" in runner.failed[WAVE] and (folder / "summary.json").exists()
     said, runner = bench.run(WAVE)
-    assert f"it is by version {old}, not {PROGRAM.version}" in said and "--any-version" in said, said
+    assert f"it is by version {old}, not {SPHFSI.version}" in said and "--any-version" in said, said
     check_ended(Run(folder))
     for path in folder.glob("*.ckpt"):
         path.unlink()

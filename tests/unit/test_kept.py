@@ -6,27 +6,22 @@ another case or a damaged one is not used, and which runs there are to do. Exit 
 import contextlib
 import io
 import json
-import os
 import shutil
 import sys
 import tempfile
 import zipfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import PROGRAM, packages
+with packages():
     import h5py  # noqa: F401  the snapshots need it
     import validate
     import validation_kept
     import validation_report
     import validation_runs
     from runfiles import BadFile
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
-PROGRAM = validation_runs.Program(Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve())
+SPHFSI = validation_runs.Program(PROGRAM)
 NAME = "block-20"  # its section reads probes, ledger and snapshots
 SHORT = ["ratio=10", "turns=0.05"]
 
@@ -42,10 +37,10 @@ class Bench:
         self.archive = folder / "kept" / f"{NAME}.zip"
 
     def kept(self):
-        return validation_kept.Kept(self.folder / "kept", PROGRAM.means)
+        return validation_kept.Kept(self.folder / "kept", SPHFSI.means)
 
     def run(self, **options):
-        runner = validation_runs.Runner(PROGRAM, self.kept(), **options)
+        runner = validation_runs.Runner(SPHFSI, self.kept(), **options)
         with contextlib.redirect_stdout(io.StringIO()) as said:
             runner.run(self.spec)
         return said.getvalue(), runner
@@ -53,7 +48,7 @@ class Bench:
     def report(self):
         """The report, and what was printed beside the names of its sections."""
         with contextlib.redirect_stdout(io.StringIO()) as said:
-            validation_report.write_report(self.folder, {}, self.kept(), PROGRAM.version)
+            validation_report.write_report(self.folder, {}, self.kept(), SPHFSI.version)
         lines = [line for line in said.getvalue().splitlines() if not line.startswith(("section", "written"))]
         return (self.folder / "validation.md").read_text(), lines
 
@@ -97,12 +92,12 @@ def test_version(bench):
     """A kept result of another version is used, and the report says of which it is."""
     whole = bench.archive.read_bytes()
     text = rows(bench.report()[0])
-    bench.rewrite("summary.json", lambda old: old.replace(PROGRAM.version, "0.0.1+old"))
+    bench.rewrite("summary.json", lambda old: old.replace(SPHFSI.version, "0.0.1+old"))
     other, _ = bench.report()
     assert "Program 0.0.1+old (1 runs)" in other and rows(other) == text
     bench.run(again=True)
     newer, _ = bench.report()
-    assert f"Program {PROGRAM.version} (1 runs)" in newer and "0.0.1+old" not in newer
+    assert f"Program {SPHFSI.version} (1 runs)" in newer and "0.0.1+old" not in newer
     shutil.rmtree(bench.spec.folder)
     # One that a guard ended is a result, too, though without numbers.
     bench.rewrite("summary.json", lambda old: old.replace('"finished"', '"guard"'))
@@ -239,7 +234,7 @@ def test_picture(bench):
     assert "drawn before" not in draw("fields") and path.is_file()
     shutil.rmtree(bench.spec.folder)
     before = path.read_bytes()
-    assert f"drawn before, of {NAME} by {PROGRAM.version}" in draw("fields")
+    assert f"drawn before, of {NAME} by {SPHFSI.version}" in draw("fields")
     assert path.read_bytes() == before
     path.write_bytes(b"no picture")
     assert "cannot be read" in draw("fields")

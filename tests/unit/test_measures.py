@@ -7,10 +7,9 @@ import sys
 import types
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import packages
+with packages():
     import h5py  # noqa: F401  the snapshots need it
     import numpy as np
     import metrics
@@ -18,9 +17,6 @@ try:
     import validation_cases
     import validation_measures
     import validation_rates
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
 
 
 def lattice(nx, ny, low=(0.0, 0.0)):

@@ -7,17 +7,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import packages
+with packages():
     import numpy as np
     import palette
     from PIL import Image
     from runfiles import COLOURS, STYLE, WIDTH, plt
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
 
 
 def pixels(path):

@@ -9,17 +9,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import PROGRAM, ROOT, packages
+with packages():
     import tomllib
     from study_metrics import measure
     from study_points import points_of
     from study_order import convergence
     from runfiles import BadFile, np
-except (ImportError, SystemExit):
-    print("tomllib, numpy or matplotlib is missing")
-    sys.exit(77)
 
 STUDY = """
 [study]
@@ -94,8 +91,7 @@ def prepare(folder):
     (folder / "study.toml").write_text(STUDY)
     (folder / "kill").touch()
     program = folder / "program"
-    real = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
-    program.write_text(KILLER.format(folder=folder, program=real))
+    program.write_text(KILLER.format(folder=folder, program=PROGRAM))
     program.chmod(0o755)
     return dict(os.environ, SPHFSI=str(program))
 
@@ -183,11 +179,10 @@ def presets():
     with open(ROOT / "tools" / "study" / "study.toml", "rb") as file:
         definition = tomllib.load(file)
     sets = {p["name"]: p["set"] for p in points_of(definition)}
-    program = os.environ.get("SPHFSI", ROOT / "sphfsi")
 
     def effective(case, arguments):
         words = [word for text in arguments for word in ("--set", text)]
-        text = subprocess.run([program, "--effective", ROOT / case, *words], capture_output=True, text=True,
+        text = subprocess.run([PROGRAM, "--effective", ROOT / case, *words], capture_output=True, text=True,
                               check=True).stdout
         return [line for line in text.splitlines() if not line.startswith(("accuracy", "#"))]
 

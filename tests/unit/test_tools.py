@@ -11,17 +11,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import TOOLS, packages
+with packages():
     import h5py
     import matplotlib  # noqa: F401  the tools need it
     import numpy as np
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
 
-TOOLS = Path(__file__).resolve().parent.parent.parent / "tools"
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(TOOLS))
 END, STEPS, HEIGHT = 0.4, 5, 0.14
 
 

@@ -11,10 +11,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent.parent
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(ROOT / "tools"))
-try:
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import PROGRAM, ROOT, packages
+with packages():
     import h5py  # noqa: F401  the snapshots need it
     import numpy as np
     import metrics
@@ -24,10 +23,6 @@ try:
     import validation_report
     import validation_runs
     from runfiles import BadFile, Reference, Run, read_table
-except ImportError as missing:
-    print(f"{missing.name} is missing")
-    sys.exit(77)
-PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
 
 
 def refuses(words, function, *arguments):

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: MIT
+"""What tests in Python share: where the project and its program are, its tools as modules, and the end of a
+test for which a package is missing."""
+
+import contextlib
+import os
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TOOLS = ROOT / "tools"
+PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(TOOLS))
+
+
+@contextlib.contextmanager
+def packages():
+    """Around imports: a package that is not there ends the test as skipped, naming it."""
+    try:
+        yield
+    except ModuleNotFoundError as missing:
+        print(f"{missing.name} is missing")
+        sys.exit(77)
+    except SystemExit as end:  # so a tool ends without its packages
+        print(end.code)
+        sys.exit(77)
