@@ -51,16 +51,6 @@ static void weigh_force(struct particles *p, double share)
     }
 }
 
-/* The structure's mean velocity belongs to the middle of the step; the next evaluation is half a step on. */
-static void carry_velocity(struct particles *p, double half)
-{
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->wx[i] += half * p->ax[i];
-        p->wy[i] += half * p->ay[i];
-    }
-}
-
 void leapfrog_step(struct simulation *s, double t_limit)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
@@ -74,7 +64,6 @@ void leapfrog_step(struct simulation *s, double t_limit)
     if (s->effects & FX_COUPLING) {
         weigh_force(solid, 0.5 * (dt_old + dt) / dt);
         advance_solid(s, dt, timestep_substeps(s, dt), true);
-        carry_velocity(solid, 0.5 * dt);
     }
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);

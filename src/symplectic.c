@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Symplectic predictor-corrector (Eqs. 22-24), as the paper has it: two evaluations a step. With solid
- * sub-steps the predictor carries the structure on with its mean velocity, and the corrector's force is
- * what both sides feel over the whole step. */
+ * sub-steps the predictor carries the structure on (T-35), and the corrector's force is what both sides
+ * feel over the whole step. */
 #include "integrators.h"
 #include "timestep.h"
 
@@ -83,13 +83,15 @@ static void show_solid(struct particles *p, double newest)
     }
 }
 
-/* Sub-steps: the structure as the fluid sees it half a step on. */
+/* Sub-steps: the structure as the fluid sees it half a step on (T-35). */
 static void carry_solid(struct particles *p, double half)
 {
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] = p->X[i] + p->ux[i] + half * p->wx[i];
-        p->y[i] = p->Y[i] + p->uy[i] + half * p->wy[i];
+        p->x[i] = p->X[i] + p->ux[i] + half * (p->wx[i] + 0.5 * half * p->ax[i]);
+        p->y[i] = p->Y[i] + p->uy[i] + half * (p->wy[i] + 0.5 * half * p->ay[i]);
+        p->wx[i] += half * p->ax[i];
+        p->wy[i] += half * p->ay[i];
     }
 }
 
