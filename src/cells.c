@@ -159,17 +159,33 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
 }
 
 /* Within a cell the order is by id, so that it does not depend on the history of the run. */
-static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
+static void order_by_id(uint64_t *pair, int64_t first, int64_t end, const int64_t *id)
 {
-    for (int64_t k = 1; k < n; k++) {
+    for (int64_t k = first + 1; k < end; k++) {
         const uint64_t moved = pair[k];
         const int64_t moved_id = id[(uint32_t)moved];
         int64_t j = k;
-        for (; j > 0 && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id;
+        for (;
+             j > first && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id;
              j--)
             pair[j] = pair[j - 1];
         pair[j] = moved;
     }
+}
+
+/* The first place from k on where a cell begins. */
+static int64_t next_cell(const uint64_t *pair, int64_t n, int64_t k)
+{
+    while (k > 0 && k < n && pair[k] >> 32 == pair[k - 1] >> 32) k++;
+    return k;
+}
+
+static void order_cells(uint64_t *pair, int64_t n, const int64_t *id, int threads)
+{
+    int64_t first[MAX_SORT_THREADS + 1];
+    for (int t = 0; t <= threads; t++) first[t] = next_cell(pair, n, n * t / threads);
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++) order_by_id(pair, first[t], first[t + 1], id);
 }
 
 /* Sorts c->pair_a by key, then id; returns where the result lies. Bits do not depend on threads. */
@@ -183,28 +199,63 @@ static const uint64_t *sort_pairs(struct cells *c, int64_t n, const int64_t *id)
         from = to;
         to = swap;
     }
-    order_by_id(from, n, id);
+    order_cells(from, n, id, threads);
     return from;
 }
 
 static void list_clear(struct cell_list *list)
 {
+#pragma omp parallel for schedule(static)
     for (int32_t k = 0; k < list->n_active; k++) list->count[list->active[k]] = 0;
     list->n_active = 0;
+}
+
+/* The cell of the particle at place k of n in cell order; none behind the last. */
+static int32_t cell_at_place(const struct cell_list *list, const int32_t *cell, int64_t n,
+                             int64_t k)
+{
+    if (k < 0 || k >= n) return OUTSIDE;
+    return cell[list->order ? list->order[k] : k];
+}
+
+/* Enters the cells that begin in a share of the places, from `m` on among the active ones; returns their
+ * number. Without `enter` they are only counted. */
+static int32_t cells_of_share(struct cell_list *list, const int32_t *cell, int64_t n, int64_t first,
+                              int64_t end, int32_t m, bool enter)
+{
+    int32_t found = 0;
+    for (int64_t k = first; k < end; k++) {
+        const int32_t c = cell_at_place(list, cell, n, k);
+        if (c == OUTSIDE) break;
+        if (cell_at_place(list, cell, n, k - 1) == c) continue;
+        found++;
+        if (!enter) continue;
+        int64_t behind = k + 1;
+        while (cell_at_place(list, cell, n, behind) == c) behind++;
+        list->start[c] = (int32_t)k;
+        list->count[c] = (int32_t)(behind - k);
+        list->active[m++] = c;
+    }
+    return found;
 }
 
 /* Ranges and active cells from the cells of the particles in cell order. */
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
+    const int threads = sort_threads();
+    int32_t found[MAX_SORT_THREADS];
     list_clear(list);
-    for (int64_t k = 0; k < n; k++) {
-        const int32_t c = cell[list->order ? list->order[k] : k];
-        if (c == OUTSIDE) break;
-        if (list->count[c]++ == 0) {
-            list->start[c] = (int32_t)k;
-            list->active[list->n_active++] = c;
-        }
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++)
+        found[t] = cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, 0, false);
+    for (int t = 0; t < threads; t++) {
+        const int32_t own = found[t];
+        found[t] = list->n_active;
+        list->n_active += own;
     }
+#pragma omp parallel for schedule(static) num_threads(threads)
+    for (int t = 0; t < threads; t++)
+        cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
 }
 
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
