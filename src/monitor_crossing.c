@@ -12,26 +12,22 @@ static double nearest(const struct cells *c, int axis, double d)
     return c->joined[axis] ? d - width * rint(d / width) : d;
 }
 
-/* Square of the distance of (x, y) from particle i of a kind, in spacings of its body's reference
- * configuration: the body has turned and stretched since. */
-static double spacings2(const struct simulation *s, enum kind kind, int64_t i, double x, double y)
-{
-    const struct particles *const p = &s->kind[kind];
-    double dx = nearest(&s->cells, 0, x - p->x[i]), dy = nearest(&s->cells, 1, y - p->y[i]);
-    double dp = s->scene->top.dp;
-    if (kind == KIND_SOLID) {
-        const double xx = 1 + p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = 1 + p->Uyy[i];
-        const double det = xx * yy - xy * yx, X = (yy * dx - xy * dy) / det;
-        dy = (xx * dy - yx * dx) / det;
-        dx = X;
-        dp = s->solid.body[p->body[i]].dp;
-    }
-    return (dx * dx + dy * dy) / square(dp);
-}
-
 /* Spacings from a particle of a body within which a fluid particle stands inside. Fluid at rest is one
  * spacing away from those at the surface; pressed hard it comes as close as a half. */
 #define TAKEN 0.35
+
+/* Whether (x, y) is that close to particle i of a kind, in spacings of its body's reference configuration:
+ * the body has turned and stretched since. */
+static bool takes(const struct simulation *s, enum kind kind, int64_t i, double x, double y)
+{
+    const struct particles *const p = &s->kind[kind];
+    const double dx = nearest(&s->cells, 0, x - p->x[i]), dy = nearest(&s->cells, 1, y - p->y[i]);
+    if (kind != KIND_SOLID) return dx * dx + dy * dy < square(TAKEN * s->scene->top.dp);
+    const double xx = 1 + p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = 1 + p->Uyy[i];
+    /* F^-1 times det F: no division. */
+    const double X = yy * dx - xy * dy, Y = xx * dy - yx * dx;
+    return X * X + Y * Y < square(TAKEN * s->solid.body[p->body[i]].dp * (xx * yy - xy * yx));
+}
 
 /* Whether some wall or solid particle of one cell has (x, y) next to it. */
 static bool taken(const struct simulation *s, int32_t cell, double x, double y)
@@ -40,9 +36,7 @@ static bool taken(const struct simulation *s, int32_t cell, double x, double y)
         const struct cell_list *const list = &s->cells.kind[kind];
         if (s->kind[kind].n == 0) continue;
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
-            if (spacings2(s, (enum kind)kind, list->order ? list->order[j] : j, x, y) <
-                square(TAKEN))
-                return true;
+            if (takes(s, (enum kind)kind, list->order[j], x, y)) return true;
     }
     return false;
 }
