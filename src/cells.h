@@ -68,9 +68,9 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p);
 /* Measures by how much the particles of a kind hang over their cells' edges now. */
 void cells_measure(struct cells *c, enum kind kind, const struct particles *p);
 
-/* Whether, as last measured, a fluid particle may have come within `reach` of any particle in a cell that
- * does not touch its own. */
-bool cells_outgrown(const struct cells *c, double reach);
+/* What a fluid particle and any other may go together, m, from where they were last measured, until they can
+ * come within `reach` of each other in cells that do not touch; 0 or less: that may be so already. */
+double cells_room(const struct cells *c, double reach);
 
 SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
 SPHFSI_INLINE int cell_y(const struct cells *c, int32_t cell) { return cell / c->nx; }

@@ -67,32 +67,34 @@ static double overhang_across(const struct cells *c, int32_t cell, int to)
     return most;
 }
 
-bool cells_outgrown(const struct cells *c, double reach)
+double cells_room(const struct cells *c, double reach)
 {
     const struct cell_list *const fluid = &c->kind[KIND_FLUID];
     struct overhang all = nothing;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (c->kind[kind].n_active) widen(&all, &c->kind[kind].most);
+    double room = INFINITY;
     bool close[4], any = false;
     for (int to = 0; to < 4; to++) {
         const double side = c->side[to / 2], skin = side - reach,
                      sum = fluid->most.by[to] + all.by[to ^ 1];
-        if (!(fluid->most.by[to] < CELLS_ASTRAY * side)) return true;
-        if (!(sum < skin + side)) return true; /* even a cell further */
+        if (!(sum < skin + side)) return 0; /* even a cell further */
         close[to] = sum > skin;
         any |= close[to];
+        room = min2(room, CELLS_ASTRAY * side - fluid->most.by[to]);
+        if (!close[to]) room = min2(room, skin - sum);
     }
-    if (!any) return false;
-    int outgrown = 0;
-#pragma omp parallel for schedule(static) reduction(max : outgrown)
+    if (!any) return room;
+#pragma omp parallel for schedule(static) reduction(min : room)
     for (int32_t k = 0; k < fluid->n_active; k++) {
         const int32_t cell = fluid->active[k];
         for (int to = 0; to < 4; to++) {
             const double skin = c->side[to / 2] - reach, own = fluid->overhang[cell].by[to];
-            if (close[to] && own + all.by[to ^ 1] > skin &&
-                own + overhang_across(c, cell, to) > skin)
-                outgrown = 1;
+            if (!close[to]) continue;
+            const double most =
+                own + all.by[to ^ 1] > skin ? overhang_across(c, cell, to) : all.by[to ^ 1];
+            room = min2(room, skin - (own + most));
         }
     }
-    return outgrown;
+    return room;
 }

@@ -74,13 +74,17 @@ void evaluate_start(struct simulation *s)
     s->evaluated = false;
 }
 
-void place_solid(struct particles *p)
+double place_solid(struct particles *p)
 {
-#pragma omp parallel for simd schedule(static)
+    double way2 = 0;
+#pragma omp parallel for simd schedule(static) reduction(max : way2)
     for (int64_t i = 0; i < p->n; i++) {
-        p->x[i] = p->X[i] + p->ux[i];
-        p->y[i] = p->Y[i] + p->uy[i];
+        const double x = p->X[i] + p->ux[i], y = p->Y[i] + p->uy[i];
+        way2 = max2(way2, square(x - p->x[i]) + square(y - p->y[i]));
+        p->x[i] = x;
+        p->y[i] = y;
     }
+    return way2;
 }
 
 /* The acceleration that Eq. 19 feeds back holds oscillations of single particles and answers the fluid's
@@ -104,7 +108,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     s->substeps = n;
     s->state.solid_substeps += n;
     s->state.solid_evaluations += n;
-    place_solid(p);
+    s->solid_way = sqrt(place_solid(p));
     const double per_dt = 1 / dt;
     const double newest = acceleration_weight(s, dt);
 #pragma omp parallel for simd schedule(static)

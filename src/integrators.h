@@ -33,8 +33,8 @@ double acceleration_weight(const struct simulation *s, double dt);
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void move_walls(struct simulation *s, double time);
 
-/* x = X + u for the solid. */
-void place_solid(struct particles *p);
+/* x = X + u for the solid; returns the square of the longest way that a particle has gone by that, m^2. */
+double place_solid(struct particles *p);
 
 /* Adds the time since `since` to a phase and returns now. */
 double phase_add(struct simulation *s, enum phase phase, double since);

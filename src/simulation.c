@@ -174,6 +174,12 @@ static void forget_all_touch(struct particles *p)
     for (int64_t i = 0; i < p->n; i++) forget(p, i);
 }
 
+/* Room of the cells as last measured. */
+static void find_room(struct simulation *s)
+{
+    s->room = cells_room(&s->cells, KERNEL_REACH * s->fluid.k.h);
+}
+
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
 static enum err sort_particles(struct simulation *s, struct diag *d)
 {
@@ -195,6 +201,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     s->state.sorts++;
     const int32_t crowd = fluid_crowding(&s->cells);
     s->crowded = crowd > CELL_CAPACITY;
+    find_room(s);
     if (s->crowded && s->state.steps == 0)
         return diag_fail(
             d, ERR_INPUT,
@@ -210,16 +217,30 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Takes off the room what two particles can have gone in the last step: the fluid with the larger of its
+ * speeds before and after and half a step of its acceleration, whatever the integrator, and its shift. */
+static void use_room(struct simulation *s, double speed2_before)
+{
+    const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->fluid_speed2)),
+                 way = dt * (speed + 0.5 * dt * sqrt(s->fluid.extremes.acceleration2)) + s->shifted;
+    s->room -= way + max2(way, s->solid_way);
+}
+
 /* Whether a pair may be out of the cells' sight at the next evaluations: the next is at the state as it
  * is, the predictor's second one half a step of the present velocities on. */
 static bool sorting_due(struct simulation *s)
 {
+    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    /* Where ways are bounded, the cells need not be measured at every step: the answer would be no. Round-off
+     * of the ways is less than the hair. */
+    const double hair = 1e-6 * s->fluid.k.h;
+    if (s->room > hair && !predicts && !(s->effects & FX_MOTION)) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (s->cells.kind[kind].n_active && (kind != KIND_WALL || moving_any(&s->moving)))
             cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
-    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    find_room(s);
     const double ahead = predicts ? 1.1 * timestep_fluid_limit(s) * sqrt(s->speed2) : 0;
-    return cells_outgrown(&s->cells, KERNEL_REACH * s->fluid.k.h + ahead);
+    return !(s->room > ahead);
 }
 
 static enum err create_fluid(struct simulation *s, struct diag *d)
@@ -389,7 +410,7 @@ void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 /* Moves fluid particles to where they are fewer. */
 static double shift_fluid(struct simulation *s, double clock)
 {
-    fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+    s->shifted = fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
     return phase_add(s, PHASE_shift, clock);
 }
 
@@ -430,6 +451,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         timestep_recheck_solid(s);
         return ERR_OK;
     }
+    const double speed2_before = s->fluid_speed2;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
     else if (s->scene->top.integrator == INTEGRATOR_VERLET)
@@ -449,10 +471,14 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         timestep_recheck_solid(s);
     clock = phase_add(s, PHASE_update, clock);
     if (e) return e;
+    use_room(s, speed2_before);
     /* Now, so that the cells are good for whoever looks at the state between two steps. */
     if (sorting_due(s)) {
         TRY(sort_particles(s, d));
+        clock = phase_add(s, PHASE_sort, clock);
         TRY(monitor_crossing(s, d));
+        phase_add(s, PHASE_update, clock);
+        return ERR_OK;
     }
     phase_add(s, PHASE_sort, clock);
     return ERR_OK;
@@ -466,6 +492,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
             if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
+        find_room(s);
         if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
         if (s->effects & FX_WALL) forget_all_touch(&s->kind[KIND_WALL]);
         if (fluid_crowding(&s->cells) > CELL_CAPACITY)

@@ -75,6 +75,7 @@ void rig_sort(struct rig *r)
             TEST_ASSERT_EQUAL_INT64(0,
                                     cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
     fluid_find_near(&r->sim.fluid, &r->sim.cells);
+    r->sim.room = 0;
 }
 
 void rig_evaluate(struct rig *r)
