@@ -1,10 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * Ground floor: errors, memory that fails cleanly. */
+#define _GNU_SOURCE /* RUSAGE_THREAD */
 #include "base.h"
 
 #include "unity.h"
 
 #include <string.h>
+#include <sys/resource.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 static struct arena arena;
 static struct diag diag;
@@ -109,6 +114,41 @@ static void test_rehearsed_failure_hits_once(void)
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "second"));
 }
 
+#if defined _OPENMP && defined RUSAGE_THREAD
+/* Pages that either of two threads has touched first. */
+static void count_touched(long touched[2])
+{
+#pragma omp parallel num_threads(2)
+    {
+        struct rusage usage;
+        getrusage(RUSAGE_THREAD, &usage);
+        touched[omp_get_thread_num()] = usage.ru_minflt;
+    }
+}
+#endif
+
+/* On a machine of several sockets memory lies where it is first touched. */
+static void test_large_memory_is_first_touched_by_shares(void)
+{
+#if defined _OPENMP && defined RUSAGE_THREAD
+    const int before = omp_get_max_threads();
+    long first[2], touched[2];
+    omp_set_num_threads(2);
+    count_touched(first);
+    const double *const piece = arena_alloc(&arena, 8 << 20, sizeof *piece, "piece", &diag);
+    count_touched(touched);
+    omp_set_num_threads(before);
+    TEST_ASSERT_NOT_NULL(piece);
+    for (size_t k = 0; k < 8 << 20; k += 511) TEST_ASSERT_TRUE(piece[k] == 0);
+    TEST_ASSERT_TRUE(piece[(8 << 20) - 1] == 0);
+    const long one = touched[0] - first[0], other = touched[1] - first[1];
+    TEST_ASSERT_TRUE(other > 8);
+    TEST_ASSERT_TRUE(other > one / 2 && one > other / 2);
+#else
+    TEST_IGNORE_MESSAGE("one thread");
+#endif
+}
+
 static void test_freed_arenas_can_be_used_again(void)
 {
     TEST_ASSERT_NOT_NULL(arena_alloc(&arena, 100, 8, "piece", &diag));
@@ -137,6 +177,7 @@ int main(void)
     RUN_TEST(test_the_limit_refuses_and_says_what);
     RUN_TEST(test_sizes_that_overflow_are_refused);
     RUN_TEST(test_rehearsed_failure_hits_once);
+    RUN_TEST(test_large_memory_is_first_touched_by_shares);
     RUN_TEST(test_freed_arenas_can_be_used_again);
     RUN_TEST(test_the_clock_goes_forward);
     return UNITY_END();
