@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: MIT
  * What a step costs: ns per fluid particle and force evaluation by phase, ns per solid particle and
- * step, and the machine's own rates to hold them against. Prints CSV, asserts nothing.
+ * step, a snapshot and a checkpoint, and the machine's own rates to hold them against. Prints CSV, asserts
+ * nothing.
  *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
+#include "checkpoint.h"
 #include "counter.h"
 #include "simd.h"
 #include "simulation.h"
+#include "snapshot.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
@@ -221,6 +225,50 @@ static bool time_steps(struct bench *b, struct sim *x, int rep, int steps)
     return true;
 }
 
+static void print_per_particle(const struct bench *b, const struct sim *x, int threads,
+                               const char *part, const char *unit, double *seconds)
+{
+    const int64_t n = x->s.kind[KIND_FLUID].n;
+    for (int r = 0; r < b->reps; r++) seconds[r] *= 1e9 / (double)n;
+    print_row(b, "fluid", x->s.fluid.sweeps->name, n, threads, part, unit, seconds);
+}
+
+/* What a snapshot and a checkpoint cost: files in a folder that goes away. The first snapshot lays the file
+ * out and is not counted. */
+static void bench_output(struct bench *b, struct sim *x, int threads)
+{
+    char folder[] = "bench-XXXXXX", kept[FOLDER_PATH] = "";
+    struct snapshots snapshots = {.folder = ""};
+    struct image image = {NULL, 0, 0};
+    if (!mkdtemp(folder)) {
+        perror(folder);
+        return;
+    }
+    enum err e = snapshots_create(&snapshots, folder, &x->scene, "bench", &x->diag);
+    for (int r = -1; !e && r < b->reps; r++) {
+        x->s.state.time += 1;
+        simulation_refresh(&x->s);
+        const double start = wall_clock();
+        e = snapshots_write(&snapshots, &x->s, &x->diag);
+        const double between = wall_clock();
+        if (!e) e = checkpoint_capture(&image, &x->s, "", "bench", &x->diag);
+        if (!e) e = checkpoint_store(&image, folder, kept, &x->diag);
+        if (r < 0) continue;
+        b->sample[0][r] = between - start;
+        b->sample[1][r] = wall_clock() - between;
+    }
+    if (e) fprintf(stderr, "%s\n", x->diag.text);
+    if (!e) {
+        print_per_particle(b, x, threads, "snapshot", "ns/particle", b->sample[0]);
+        print_per_particle(b, x, threads, "checkpoint", "ns/particle", b->sample[1]);
+    }
+    snapshots_close(&snapshots);
+    checkpoint_free(&image);
+    unlink(snapshots.path);
+    unlink(kept);
+    if (rmdir(folder)) perror(folder);
+}
+
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
 {
     static const enum phase parts[] = {PHASE_sort, PHASE_lanes, PHASE_wall, PHASE_fluid,
@@ -243,6 +291,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     if (sound && threads == 1 && b->counter >= 0)
         print_row(b, "fluid", variant, count, threads, "instructions", "1/particle/evaluation",
                   b->instructions);
+    if (sound && rich) bench_output(b, &x, threads);
     const double bytes = (double)x.s.arena.bytes / (double)count;
     for (int r = 0; r < b->reps; r++) b->sample[0][r] = bytes;
     print_row(b, "fluid", variant, count, threads, "memory", "bytes/particle", b->sample[0]);

@@ -212,6 +212,11 @@ def bench_tables(rows):
         ["form", "threads", "ns"],
         [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
          if key[0] == "solid" and key[4] == "step"]))
+    written = [(v, n, t, *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
+               for v in variants for n in sizes for t in threads if ("fluid", v, n, t, "snapshot") in rows]
+    if written:
+        text.append("ns per fluid particle of a snapshot and of a checkpoint, files and folder synced:\n\n" +
+                    table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
     counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
                for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
     text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
