@@ -29,12 +29,22 @@ static bool takes(const struct simulation *s, enum kind kind, int64_t i, double 
     return X * X + Y * Y < square(TAKEN * s->solid.body[p->body[i]].dp * (xx * yy - xy * yx));
 }
 
+/* Whether some particle of a wall in the cell can be that close to (x, y): it stands within the cell. */
+static bool wall_near(const struct simulation *s, int32_t cell, double x, double y)
+{
+    const struct cells *const c = &s->cells;
+    const double reach = TAKEN * s->scene->top.dp;
+    return fabs(nearest(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
+           fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
+}
+
 /* Whether some wall or solid particle of one cell has (x, y) next to it. */
 static bool taken(const struct simulation *s, int32_t cell, double x, double y)
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         const struct cell_list *const list = &s->cells.kind[kind];
-        if (s->kind[kind].n == 0) continue;
+        if (list->n_active == 0 || list->count[cell] == 0) continue;
+        if (kind == KIND_WALL && !wall_near(s, cell, x, y)) continue;
         for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
             if (takes(s, (enum kind)kind, list->order[j], x, y)) return true;
     }
