@@ -101,6 +101,8 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     struct particles *const p = &s->kind[KIND_SOLID];
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
+        p->x0[i] = p->ux[i];
+        p->y0[i] = p->uy[i];
         p->vx0[i] = p->vx[i];
         p->vy0[i] = p->vy[i];
     }
@@ -109,14 +111,15 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     s->state.solid_substeps += n;
     s->state.solid_evaluations += n;
     s->solid_way = sqrt(place_solid(p));
-    const double per_dt = 1 / dt;
+    const double per_dt = 1 / dt, half = 0.5 * dt;
     const double newest = acceleration_weight(s, dt);
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        p->wx[i] = p->vx[i];
-        p->wy[i] = p->vy[i];
         p->ax[i] += newest * ((p->vx[i] - p->vx0[i]) * per_dt - p->ax[i]);
         p->ay[i] += newest * ((p->vy[i] - p->vy0[i]) * per_dt - p->ay[i]);
+        /* T-35: the mean velocity belongs to the middle of the step. */
+        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * p->ax[i];
+        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * p->ay[i];
     }
 }
 

@@ -24,7 +24,7 @@ void evaluate_fluid(struct simulation *s, double time);
 void evaluate_start(struct simulation *s);
 
 /* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
- * solid's velocity, and its acceleration over the step. */
+ * solid's mean velocity over the step, carried on to its end, and acceleration. */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
 /* Weight of the newest acceleration in the mean that the fluid sees of the structure. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * A fluid that is struck answers at once with the pressure rho0 c0 times the velocity, and sound spreads
- * it later. Held over the structure's sub-steps, that answer comes late, and modes that swing by half a
- * period to a whole one in a step take energy from it. */
+ * it later. Held over the structure's sub-steps, that answer comes a step late, and modes that swing
+ * by a quarter to three quarters of a period meanwhile take energy from it. */
 #include "interface.h"
 
 #include <math.h>
