@@ -2,7 +2,7 @@
  * How long a sorting stays good. Pairs in cells that do not touch are never looked at; they can only have
  * come within reach of each other if both, together, hang over their cells' edges by more than the skin.
  * That is a matter of where the particles are, not of how fast anything moves: a body of fluid that travels
- * as a whole seldom needs sorting, and nothing has to be carried from step to step. */
+ * as a whole seldom needs sorting. How fast things move only says when to measure again. */
 #include <math.h>
 
 #include "cells.h"
@@ -82,7 +82,7 @@ double cells_room(const struct cells *c, double reach)
         close[to] = sum > skin;
         any |= close[to];
         room = min2(room, CELLS_ASTRAY * side - fluid->most.by[to]);
-        if (!close[to]) room = min2(room, skin - sum);
+        room = min2(room, close[to] ? skin + side - sum : skin - sum);
     }
     if (!any) return room;
 #pragma omp parallel for schedule(static) reduction(min : room)

@@ -174,10 +174,13 @@ static void forget_all_touch(struct particles *p)
     for (int64_t i = 0; i < p->n; i++) forget(p, i);
 }
 
-/* Room of the cells as last measured. */
+/* Room of the cells as last measured. The next evaluation is at the state as it is, the predictor's second
+ * one half a step of the present velocities on. */
 static void find_room(struct simulation *s)
 {
-    s->room = cells_room(&s->cells, KERNEL_REACH * s->fluid.k.h);
+    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    const double ahead = predicts ? 1.1 * timestep_fluid_limit(s) * sqrt(s->speed2) : 0;
+    s->room = cells_room(&s->cells, KERNEL_REACH * s->fluid.k.h + ahead);
 }
 
 /* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
@@ -226,21 +229,19 @@ static void use_room(struct simulation *s, double speed2_before)
     s->room -= way + max2(way, s->solid_way);
 }
 
-/* Whether a pair may be out of the cells' sight at the next evaluations: the next is at the state as it
- * is, the predictor's second one half a step of the present velocities on. */
+/* Whether a pair may be out of the cells' sight at the next evaluations. Where ways are bounded, the cells
+ * need not be measured at every step: the answer would be no. Round-off of the ways is less than the hair. */
 static bool sorting_due(struct simulation *s)
 {
-    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
-    /* Where ways are bounded, the cells need not be measured at every step: the answer would be no. Round-off
-     * of the ways is less than the hair. */
+    const bool bounded =
+        s->scene->top.integrator != INTEGRATOR_SYMPLECTIC && !(s->effects & FX_MOTION);
     const double hair = 1e-6 * s->fluid.k.h;
-    if (s->room > hair && !predicts && !(s->effects & FX_MOTION)) return false;
+    if (bounded && s->room > hair) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (s->cells.kind[kind].n_active && (kind != KIND_WALL || moving_any(&s->moving)))
             cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
     find_room(s);
-    const double ahead = predicts ? 1.1 * timestep_fluid_limit(s) * sqrt(s->speed2) : 0;
-    return !(s->room > ahead);
+    return !(s->room > 0);
 }
 
 static enum err create_fluid(struct simulation *s, struct diag *d)

@@ -61,11 +61,11 @@ struct simulation {
     double phase_seconds[PHASE_COUNT];
     double fluid_speed2; /* of the fastest fluid particle, squared, (m/s)^2 */
     double speed2;       /* of the fastest particle of any kind, squared, (m/s)^2 */
-    double solid_way;    /* longest way of a solid particle in the last step, m */
-    double shifted;      /* longest way that a fluid particle was shifted in it, m; 0: none is */
-    double room;         /* what two particles may go together before a sorting can be due, m */
-    bool evaluated;      /* rates, pressures and the fluid's force belong to the present state */
-    bool crowded;        /* cells hold more than the sweeps can take: nothing is evaluated */
+    double solid_way; /* longest way of a solid particle in the last step, m (not by symplectic) */
+    double shifted;   /* longest way that a fluid particle was shifted in it, m; 0: none is */
+    double room;      /* what two particles may go together before a sorting can be due, m */
+    bool evaluated;   /* rates, pressures and the fluid's force belong to the present state */
+    bool crowded;     /* cells hold more than the sweeps can take: nothing is evaluated */
     struct guard guard;
     struct push push[KIND_COUNT]; /* of fluid and solid */
 };

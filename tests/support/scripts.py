@@ -9,6 +9,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = ROOT / "tools"
+PACKAGES = ("h5py", "matplotlib", "numpy", "PIL", "tomllib")
 PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
 
 sys.dont_write_bytecode = True
@@ -17,12 +18,17 @@ sys.path.insert(0, str(TOOLS))
 
 @contextlib.contextmanager
 def packages():
-    """Around imports: a package that is not there ends the test as skipped, naming it."""
+    """Around imports: a package that is not there ends the test as skipped, naming it; a module of the
+    project that is not there fails it."""
     try:
         yield
     except ModuleNotFoundError as missing:
-        print(f"{missing.name} is missing")
-        sys.exit(77)
-    except SystemExit as end:  # so a tool ends without its packages
-        print(end.code)
-        sys.exit(77)
+        if missing.name in PACKAGES:
+            print(f"{missing.name} is missing")
+            sys.exit(77)
+        raise
+    except SystemExit as end:
+        if "is missing; pip install" in str(end.code):  # so a tool ends without its packages
+            print(end.code)
+            sys.exit(77)
+        raise
