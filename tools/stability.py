@@ -24,6 +24,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -142,6 +143,7 @@ class Run:
         """Measures and user time."""
         known = self.known()
         if not known:
+            shutil.rmtree(self.folder, ignore_errors=True)  # of other settings or another program
             log, seconds = run(self.command, self.folder, minutes)
             known = {"command": self.command, "program": self.program(), "log": log,
                      "seconds": seconds}
