@@ -269,6 +269,25 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
     if (rmdir(folder)) perror(folder);
 }
 
+/* Candidates of the fluid that a fluid particle meets, on average. */
+static double candidates_of(const struct simulation *s)
+{
+    static struct surroundings around;
+    static struct cluster_list near;
+    const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
+    const struct cluster_boxes *const boxes = &s->fluid.lanes[KIND_FLUID].boxes;
+    int64_t seen = 0;
+    for (int32_t k = 0; k < list->n_active; k++) {
+        const int32_t cell = list->active[k];
+        clusters_around(&around, boxes, &s->cells, KIND_FLUID, cell, s->fluid.k.h);
+        for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+            clusters_near(&near, &around, boxes, list->cluster[cell] + m);
+            seen += near.n;
+        }
+    }
+    return (double)(seen * CLUSTER * CLUSTER) / (double)s->kind[KIND_FLUID].n;
+}
+
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
 {
     static const enum phase parts[] = {PHASE_sort, PHASE_lanes, PHASE_wall, PHASE_fluid,
@@ -295,7 +314,7 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     const double bytes = (double)x.s.arena.bytes / (double)count;
     for (int r = 0; r < b->reps; r++) b->sample[0][r] = bytes;
     print_row(b, "fluid", variant, count, threads, "memory", "bytes/particle", b->sample[0]);
-    const double candidates = 9 * x.s.cells.side[0] * x.s.cells.side[1] / square(x.scene.top.dp);
+    const double candidates = candidates_of(&x.s);
     for (int r = 0; r < b->reps; r++) b->sample[0][r] = candidates;
     print_row(b, "fluid", variant, count, threads, "candidates", "1/particle", b->sample[0]);
     sim_close(&x);

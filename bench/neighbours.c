@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * Where a particle finds its neighbours: in a tile of candidates copied once per cell, as the program
- * does it, or in a list of its own with a skin (Verlet 1967), as most codes do. The bare laws (Eqs. 1 and
- * 3b) over the same particles in single precision, one thread. Prints CSV; both ways give the same sums.
+ * Where a particle finds its neighbours: in the clusters near its own, as the program does it; in a tile of
+ * candidates copied once per cell; or in a list of its own with a skin (Verlet 1967), as most codes do. The
+ * bare laws (Eqs. 1 and 3b) over the same particles in single precision, one thread. Prints CSV; all ways
+ * give the same sums but for rounding.
  *   bench_neighbours [--reps N] */
-#include "base.h"
+#include "clusters.h"
 #include "morton.h"
-#include "simd.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,8 +18,9 @@ enum { SIDE = 316, N = SIDE * SIDE, TILE = 512, ROOM = 64, MAX_REPS = 99 };
 #define REACH (2 * H + SKIN)
 
 enum field { X, Y, U, V, P, VOLUME, FIELDS };
+enum way { WAY_TILE, WAY_LIST, WAY_CLUSTER, WAYS };
 
-static float field[FIELDS][N + TILE], rate[2][3][N]; /* by way: d ln rho/dt, ax, ay */
+static float field[FIELDS][N + TILE], rate[WAYS][3][N]; /* by way: d ln rho/dt, ax, ay */
 static int32_t first[(SIDE + 8) * (SIDE + 8)], count[(SIDE + 8) * (SIDE + 8)];
 static int32_t *list, neighbours[N];
 static int cells;
@@ -64,8 +65,8 @@ static void place(void)
         if (count[cell_of(i)]++ == 0) first[cell_of(i)] = i;
 }
 
-/* What a pack of pairs adds to the three sums of a particle. */
-SPHFSI_INLINE void add_pairs(const float *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
+/* What a vector of pairs adds to the three sums of a particle, or of one to each group. */
+SPHFSI_INLINE void add_pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
                              vfloat volume, vfloat sum[3])
 {
     const vfloat dx = me[X] - x, dy = me[Y] - y;
@@ -78,7 +79,7 @@ SPHFSI_INLINE void add_pairs(const float *me, vfloat x, vfloat y, vfloat u, vflo
     sum[2] = vfma_float(stress, dy, sum[2]);
 }
 
-static void keep(int way, int i, const vfloat sum[3])
+static void keep(enum way way, int i, const vfloat sum[3])
 {
     for (int k = 0; k < 3; k++) rate[way][k][i] = vsum_float(sum[k]);
 }
@@ -102,14 +103,14 @@ static void sweep_tiles(void)
         }
         for (int l = 0; l < LANES_FLOAT; l++) tile[X][n + l] = 1e6f, tile[VOLUME][n + l] = 0;
         for (int i = first[cell]; i < first[cell] + count[cell]; i++) {
-            float me[FIELDS];
-            for (int f = 0; f < FIELDS; f++) me[f] = field[f][i];
+            vfloat me[FIELDS];
+            for (int f = 0; f < FIELDS; f++) me[f] = vset_float(field[f][i]);
             vfloat sum[3] = {{0}, {0}, {0}};
             for (int j = 0; j < n; j += LANES_FLOAT)
                 add_pairs(me, vload_float(&tile[X][j]), vload_float(&tile[Y][j]),
                           vload_float(&tile[U][j]), vload_float(&tile[V][j]),
                           vload_float(&tile[P][j]), vload_float(&tile[VOLUME][j]), sum);
-            keep(0, i, sum);
+            keep(WAY_TILE, i, sum);
         }
     }
 }
@@ -151,14 +152,110 @@ static void sweep_lists(void)
     field[X][N] = 1e6f, field[VOLUME][N] = 0;
     for (int i = 0; i < N; i++) {
         const int32_t *const mine = &list[(size_t)i * ROOM];
-        float me[FIELDS];
-        for (int f = 0; f < FIELDS; f++) me[f] = field[f][i];
+        vfloat me[FIELDS];
+        for (int f = 0; f < FIELDS; f++) me[f] = vset_float(field[f][i]);
         vfloat sum[3] = {{0}, {0}, {0}};
         for (int k = 0; k < neighbours[i]; k += LANES_FLOAT)
             add_pairs(me, gather(field[X], &mine[k]), gather(field[Y], &mine[k]),
                       gather(field[U], &mine[k]), gather(field[V], &mine[k]),
                       gather(field[P], &mine[k]), gather(field[VOLUME], &mine[k]), sum);
-        keep(1, i, sum);
+        keep(WAY_LIST, i, sum);
+    }
+}
+
+/* The program's own cells and clusters, with lanes like its own. */
+static struct arena arena;
+static struct particles kinds[KIND_COUNT];
+static struct cells grid;
+static struct cluster_boxes boxes;
+static float *lanes; /* [clusters][FIELDS][CLUSTER] */
+static int64_t looked_at;
+
+static enum err clusters_create(struct diag *d)
+{
+    const double lower[2] = {-0.5, -0.5}, upper[2] = {SIDE + 0.5, SIDE + 0.5};
+    struct particles *const p = &kinds[KIND_FLUID];
+    TRY(particles_create(p, &arena, N, G_POINT, "bench", d));
+    p->n = N;
+    for (int i = 0; i < N; i++)
+        p->x[i] = (double)field[X][i], p->y[i] = (double)field[Y][i], p->id[i] = i;
+    TRY(cells_create(&grid, &arena, lower, upper, 2 * (double)H, 0.75 * (double)H, kinds, d));
+    TRY(cluster_boxes_create(&boxes, &arena, cells_clusters(&grid, N), d));
+    lanes = arena_alloc(&arena, (size_t)cells_clusters(&grid, N), sizeof *lanes * FIELDS * CLUSTER,
+                        "lanes", d);
+    return lanes ? ERR_OK : ERR_MEMORY;
+}
+
+static void sort_clusters(void) { cells_sort(&grid, KIND_FLUID, &kinds[KIND_FLUID]); }
+
+static void fill_clusters(void)
+{
+    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const struct particles *const p = &kinds[KIND_FLUID];
+    for (int32_t k = 0; k < listed->n_active; k++) {
+        const int32_t cell = listed->active[k];
+        const double centre[2] = {cell_centre_x(&grid, cell), cell_centre_y(&grid, cell)};
+        for (int32_t m = 0; m < clusters_in(listed, cell) * CLUSTER; m++) {
+            const int32_t cluster = listed->cluster[cell] + m / CLUSTER,
+                          i = listed->start[cell] + m;
+            float *const out = lanes + cluster * FIELDS * CLUSTER + m % CLUSTER;
+            const bool is = m < listed->count[cell];
+            for (int f = 0; f < FIELDS; f++) out[f * CLUSTER] = is ? field[f][p->id[i]] : 0;
+            out[X * CLUSTER] = is ? (float)(p->x[i] - centre[0]) : 1e9f;
+            out[Y * CLUSTER] = is ? (float)(p->y[i] - centre[1]) : 0;
+            if (!is) continue;
+            const float at[2] = {out[X * CLUSTER] / H, out[Y * CLUSTER] / H};
+            for (int side = 0; side < BOX_SIDES; side++) {
+                float *const box = &boxes.side[side][cluster];
+                const float place = at[side / 2];
+                if (m % CLUSTER == 0 || (side % 2 ? place > *box : place < *box)) *box = place;
+            }
+        }
+    }
+}
+
+/* The receivers of a cluster from the r-th on. */
+static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t cluster, int r)
+{
+    const float side[2] = {(float)grid.side[0], (float)grid.side[1]};
+    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
+    vfloat me[FIELDS], sum[3] = {{0}, {0}, {0}}, x[3], y[3];
+    for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
+    for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * side[0];
+    for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * side[1];
+    for (int k = 0; k < near->n; k++) {
+        const uint32_t seen = near->seen[k];
+        const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
+        me[X] = x[seen_column(seen)], me[Y] = y[seen_row(seen)];
+        add_pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
+                  vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
+                  vfour_float(b + P * CLUSTER), vfour_float(b + VOLUME * CLUSTER), sum);
+    }
+    for (int k = 0; k < 3; k++) {
+        float out[GROUPS_FLOAT];
+        vsum_four_float(sum[k], out);
+        for (int g = 0; g < GROUPS_FLOAT && at + g < N; g++)
+            rate[WAY_CLUSTER][k][kinds[KIND_FLUID].id[at + g]] = out[g];
+    }
+}
+
+/* In order: what a cell's last cluster writes beyond its particles, the next cell overwrites. */
+static void sweep_clusters(void)
+{
+    static struct surroundings around;
+    static struct cluster_list near;
+    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    looked_at = 0;
+    for (int32_t k = 0; k < listed->n_active; k++) {
+        const int32_t cell = listed->active[k];
+        clusters_around(&around, &boxes, &grid, KIND_FLUID, cell, (double)H);
+        for (int32_t m = 0; m < clusters_in(listed, cell); m++) {
+            clusters_near(&near, &around, &boxes, listed->cluster[cell] + m);
+            looked_at += near.n * CLUSTER * CLUSTER;
+            for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT)
+                sweep_receivers(&near, listed->start[cell] + m * CLUSTER + r,
+                                listed->cluster[cell] + m, r);
+        }
     }
 }
 
@@ -182,6 +279,11 @@ static void measure(const char *way, const char *part, void (*run)(void), int re
            sample[0], sample[reps - 1]);
 }
 
+static void say(const char *way, const char *what, const char *unit, double value)
+{
+    printf("neighbours,%s,%d,1,%s,%s,%.4g,%.4g,%.4g\n", way, N, what, unit, value, value, value);
+}
+
 int main(int argc, char **argv)
 {
     const int asked = argc > 2 && strcmp(argv[1], "--reps") == 0 ? atoi(argv[2]) : 5;
@@ -189,19 +291,27 @@ int main(int argc, char **argv)
     list = aligned_alloc(64, sizeof *list * ROOM * N);
     if (!list) return 1;
     place();
+    struct diag diag = {0};
+    if (clusters_create(&diag)) return 1;
     measure("tile", "copy and sweep", sweep_tiles, reps);
     measure("list", "build", build_lists, reps);
     measure("list", "sweep", sweep_lists, reps);
+    measure("cluster", "sort", sort_clusters, reps);
+    measure("cluster", "fill", fill_clusters, reps);
+    measure("cluster", "look and sweep", sweep_clusters, reps);
     double off = 0, top = 0, mean = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++) {
-            off = fmax(off, fabs((double)rate[0][k][i] - (double)rate[1][k][i]));
-            top = fmax(top, fabs((double)rate[0][k][i]));
+            const double tile = (double)rate[WAY_TILE][k][i];
+            for (int way = 1; way < WAYS; way++)
+                off = fmax(off, fabs(tile - (double)rate[way][k][i]));
+            top = fmax(top, fabs(tile));
         }
     for (int i = 0; i < N; i++) mean += (double)neighbours[i] / N;
-    printf("neighbours,list,%d,1,entries,1/particle,%.4g,%.4g,%.4g\n", N, mean, mean, mean);
-    printf("neighbours,both,%d,1,largest difference,of the largest,%.3g,%.3g,%.3g\n", N, off / top,
-           off / top, off / top);
+    say("list", "entries", "1/particle", mean);
+    say("cluster", "candidates", "1/particle", (double)looked_at / N);
+    say("all", "largest difference", "of the largest", off / top);
+    arena_free(&arena);
     free(list);
     return 0;
 }

@@ -20,30 +20,39 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
 {
     list->start = arena_alloc(a, n_cells, sizeof *list->start, "cell list", d);
     list->count = arena_alloc(a, n_cells, sizeof *list->count, "cell list", d);
+    list->cluster = arena_alloc(a, n_cells, sizeof *list->cluster, "cell list", d);
     list->active = arena_alloc(a, (size_t)p->capacity, sizeof *list->active, "cell list", d);
-    list->overhang = arena_alloc(a, n_cells, sizeof *list->overhang, "cell list", d);
-    if (!list->start || !list->count || !list->active || !list->overhang) return ERR_MEMORY;
+    if (!list->start || !list->count || !list->cluster || !list->active) return ERR_MEMORY;
     if (!keep_order) return ERR_OK;
     list->order = arena_alloc(a, (size_t)p->capacity, sizeof *list->order, "cell list", d);
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
+/* Cells along a stretch: twice as wide as the reach, or the three that joined sides take. */
+static double cells_across(double width, double reach)
+{
+    const double wide = floor(width / (2 * reach)), narrow = floor(width / (1.05 * reach));
+    return max2(1, max2(wide, min2(3, narrow)));
+}
+
 enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
-                      const double upper[2], double reach, const struct particles kinds[KIND_COUNT],
-                      struct diag *d)
+                      const double upper[2], double reach, double stray,
+                      const struct particles kinds[KIND_COUNT], struct diag *d)
 {
     memset(c, 0, sizeof *c);
+    c->stray = stray;
     double n[2];
     for (int k = 0; k < 2; k++) {
         c->lower[k] = lower[k];
-        n[k] = max2(1, floor((upper[k] - lower[k]) / reach));
+        n[k] = cells_across(upper[k] - lower[k], reach);
         if (!(n[k] <= MORTON_CELLS))
             return diag_fail(
                 d, ERR_INPUT,
                 "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
                 "smaller or dp larger",
-                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, reach);
+                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, 2 * reach);
         c->side[k] = (upper[k] - lower[k]) / n[k];
+        c->stray = min2(c->stray, max2(0, 0.5 * (c->side[k] - reach)));
     }
     c->nx = (int)n[0];
     c->ny = (int)n[1];
@@ -158,38 +167,9 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
             to[histogram[t][(from[k] >> shift) & (DIGITS - 1)]++] = from[k];
 }
 
-/* Within a cell the order is by id, so that it does not depend on the history of the run. */
-static void order_by_id(uint64_t *pair, int64_t first, int64_t end, const int64_t *id)
-{
-    for (int64_t k = first + 1; k < end; k++) {
-        const uint64_t moved = pair[k];
-        const int64_t moved_id = id[(uint32_t)moved];
-        int64_t j = k;
-        for (;
-             j > first && pair[j - 1] >> 32 == moved >> 32 && id[(uint32_t)pair[j - 1]] > moved_id;
-             j--)
-            pair[j] = pair[j - 1];
-        pair[j] = moved;
-    }
-}
-
-/* The first place from k on where a cell begins. */
-static int64_t next_cell(const uint64_t *pair, int64_t n, int64_t k)
-{
-    while (k > 0 && k < n && pair[k] >> 32 == pair[k - 1] >> 32) k++;
-    return k;
-}
-
-static void order_cells(uint64_t *pair, int64_t n, const int64_t *id, int threads)
-{
-    int64_t first[MAX_SORT_THREADS + 1];
-    for (int t = 0; t <= threads; t++) first[t] = next_cell(pair, n, n * t / threads);
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (int t = 0; t < threads; t++) order_by_id(pair, first[t], first[t + 1], id);
-}
-
-/* Sorts c->pair_a by key, then id; returns where the result lies. Bits do not depend on threads. */
-static const uint64_t *sort_pairs(struct cells *c, int64_t n, const int64_t *id)
+/* Sorts c->pair_a by key and then into clusters; returns where the result lies. Bits do not depend on
+ * threads. */
+static const uint64_t *sort_pairs(struct cells *c, int64_t n, const struct particles *p)
 {
     const int threads = c->sort_threads < sort_threads() ? c->sort_threads : sort_threads();
     uint64_t *from = c->pair_a, *to = c->pair_b;
@@ -199,7 +179,7 @@ static const uint64_t *sort_pairs(struct cells *c, int64_t n, const int64_t *id)
         from = to;
         to = swap;
     }
-    order_cells(from, n, id, threads);
+    cells_order(from, n, p, threads);
     return from;
 }
 
@@ -218,44 +198,56 @@ static int32_t cell_at_place(const struct cell_list *list, const int32_t *cell, 
     return cell[list->order ? list->order[k] : k];
 }
 
-/* Enters the cells that begin in a share of the places, from `m` on among the active ones; returns their
- * number. Without `enter` they are only counted. */
-static int32_t cells_of_share(struct cell_list *list, const int32_t *cell, int64_t n, int64_t first,
-                              int64_t end, int32_t m, bool enter)
+/* A number of cells and of the clusters in them. */
+struct tally {
+    int32_t cells, clusters;
+};
+
+/* Enters the cells that begin in a share of the places, from `at` on among the active ones and their
+ * clusters; returns what they come to. Without `enter` they are only counted. */
+static struct tally cells_of_share(struct cell_list *list, const int32_t *cell, int64_t n,
+                                   int64_t first, int64_t end, struct tally at, bool enter)
 {
-    int32_t found = 0;
+    struct tally found = {0, 0};
     for (int64_t k = first; k < end; k++) {
         const int32_t c = cell_at_place(list, cell, n, k);
         if (c == OUTSIDE) break;
         if (cell_at_place(list, cell, n, k - 1) == c) continue;
-        found++;
-        if (!enter) continue;
         int64_t behind = k + 1;
         while (cell_at_place(list, cell, n, behind) == c) behind++;
-        list->start[c] = (int32_t)k;
-        list->count[c] = (int32_t)(behind - k);
-        list->active[m++] = c;
+        if (enter) {
+            list->start[c] = (int32_t)k;
+            list->count[c] = (int32_t)(behind - k);
+            list->cluster[c] = at.clusters + found.clusters;
+            list->active[at.cells + found.cells] = c;
+        }
+        found.cells++;
+        found.clusters += (int32_t)((behind - k + CLUSTER - 1) / CLUSTER);
     }
     return found;
 }
 
-/* Ranges and active cells from the cells of the particles in cell order. */
+/* Ranges, clusters and active cells from the cells of the particles in cell order. */
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
     const int threads = sort_threads();
-    int32_t found[MAX_SORT_THREADS];
+    struct tally found[MAX_SORT_THREADS], sum = {0, 0};
     list_clear(list);
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)
-        found[t] = cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, 0, false);
+        found[t] =
+            cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, sum, false);
     for (int t = 0; t < threads; t++) {
-        const int32_t own = found[t];
-        found[t] = list->n_active;
-        list->n_active += own;
+        const struct tally own = found[t];
+        found[t] = sum;
+        sum.cells += own.cells;
+        sum.clusters += own.clusters;
     }
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)
         cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
+    list->n_active = sum.cells;
+    list->n_cluster = sum.clusters;
 }
 
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
@@ -272,7 +264,7 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
         c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
         outside += p->cell[k] == OUTSIDE;
     }
-    const uint64_t *const sorted = sort_pairs(c, n, p->id);
+    const uint64_t *const sorted = sort_pairs(c, n, p);
     int32_t *const order = list->order ? list->order : c->permutation;
 #pragma omp parallel for schedule(static)
     for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
@@ -282,42 +274,13 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     return outside;
 }
 
-/* Whether a comes before b in cell order. */
-static bool comes_before(const struct cells *c, const struct particles *p, int32_t a, int32_t b)
-{
-    const uint32_t key_a = key_of(c, p->cell[a]), key_b = key_of(c, p->cell[b]);
-    return key_a < key_b || (key_a == key_b && p->id[a] < p->id[b]);
-}
-
-void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const bool *moved)
-{
-    struct cell_list *const list = &c->kind[kind];
-    int64_t n_kept = 0, n_moved = 0;
-    for (int64_t k = 0; k < p->n; k++)
-        if (!moved[p->body[list->order[k]]]) c->permutation[n_kept++] = list->order[k];
-    for (int64_t i = 0; i < p->n; i++) {
-        if (!moved[p->body[i]]) continue;
-        p->cell[i] = cell_of(c, p->x[i], p->y[i]);
-        c->pair_a[n_moved++] = (uint64_t)key_of(c, p->cell[i]) << 32 | (uint64_t)i;
-    }
-    const uint64_t *const sorted = sort_pairs(c, n_moved, p->id);
-    for (int64_t k = 0, a = 0, b = 0; k < p->n; k++) {
-        const bool kept =
-            a < n_kept &&
-            (b == n_moved || comes_before(c, p, c->permutation[a], (int32_t)(uint32_t)sorted[b]));
-        list->order[k] = kept ? c->permutation[a++] : (int32_t)(uint32_t)sorted[b++];
-    }
-    list_fill(list, p->cell, p->n);
-    cells_measure(c, kind, p);
-}
-
 void cells_resume(struct cells *c, enum kind kind, struct particles *p)
 {
     struct cell_list *list = &c->kind[kind];
     if (list->order) {
         for (int64_t k = 0; k < p->n; k++)
             c->pair_a[k] = (uint64_t)key_of(c, p->cell[k]) << 32 | (uint64_t)k;
-        const uint64_t *const sorted = sort_pairs(c, p->n, p->id);
+        const uint64_t *const sorted = sort_pairs(c, p->n, p);
         for (int64_t k = 0; k < p->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
     list_fill(list, p->cell, p->n);

@@ -5,32 +5,36 @@
 
 #include "particles.h"
 
-/* By how much a cell's particles hang over its left, right, lower and upper edge, m; negative: they keep
- * off it. */
+/* By how much particles hang over the left, right, lower and upper edges of their cells, m; negative: they
+ * keep off them. */
 struct overhang {
     double by[4];
 };
 
-/* Fluid strays from its cell by less than this part of the cell's side, whatever its neighbours do. */
-#define CELLS_ASTRAY 0.25
+/* Most particles of one kind in a cell, where some thirty belong. More than this means particles have
+ * collapsed onto each other: a guard stops the run before. And particles near each other that sweeps take
+ * together. */
+enum { CELL_CAPACITY = 512, CLUSTER = 4 };
 
 /* The particles of one kind by cell. Cells are numbered cy * nx + cx. */
 struct cell_list {
     int32_t *start, *count; /* [nx * ny]: range in cell order; count 0: empty */
-    int32_t *active;        /* cells that hold particles, in Morton order */
+    int32_t *cluster; /* [nx * ny]: number of the cell's first cluster among all of its kind */
+    int32_t n_cluster;
+    int32_t *active; /* cells that hold particles, in Morton order */
     int32_t n_active;
-    struct overhang *overhang; /* [nx * ny], of cells with particles, when last measured */
-    struct overhang most;      /* the largest of them */
-    int32_t *order;            /* particle at each place of the cell order; fluid is kept sorted in
+    struct overhang most; /* the largest over all cells, when last measured */
+    int32_t *order;       /* particle at each place of the cell order; fluid is kept sorted in
                                memory, so that there place = particle and order is NULL */
 };
 
 /* Bits of a digit of the radix sort. */
 enum { CELLS_SORT_DIGIT_BITS = 11 };
 
-/* A grid of cells no smaller than the reach of the interaction plus a skin. */
+/* A grid of cells at least twice as wide as the interaction reaches, or once in a narrow domain. */
 struct cells {
     double lower[2], side[2]; /* m */
+    double stray;             /* m, from their cells, before particles have to be sorted again */
     int nx, ny;
     bool joined[2]; /* the opposite sides in x, in y are one: periodic */
     int64_t crossed
@@ -43,27 +47,27 @@ struct cells {
     void *scratch; /* 8 bytes for each particle of the largest kind */
 };
 
-/* Lays the grid over [lower, upper) with cells of at least `reach` and makes room for the kinds'
- * capacities. */
+/* Lays the grid over [lower, upper) for pairs within `reach` and particles that may stray by up to `stray`
+ * (less in a narrow domain), and makes room for the kinds' capacities. */
 enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
-                      const double upper[2], double reach, const struct particles kinds[KIND_COUNT],
-                      struct diag *d) SPHFSI_CHECKED;
+                      const double upper[2], double reach, double stray,
+                      const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
 
 /* Joins the opposite sides along an axis; a cell must not meet another one twice: three of them. */
 enum err cells_join(struct cells *c, int axis, struct diag *d) SPHFSI_CHECKED;
 
-/* Sorts the particles of one kind into cells, by Morton key and then id; the fluid itself is
- * permuted. Particles outside the grid come last and are left out: their number is returned, and
- * p->n counts them still (they are at p->n - lost ... p->n - 1 of a fluid). Non-finite positions
- * count as outside. */
+/* Sorts the particles of one kind into cells, by Morton key and then into clusters of neighbours
+ * (cells_order.c); the fluid itself is permuted. Particles outside the grid come last, by id, and are left
+ * out: their number is returned, and p->n counts them still (they are at p->n - lost ... p->n - 1 of a
+ * fluid). Non-finite positions count as outside. */
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p);
-
-/* The same for a kind that keeps its place in memory and has been sorted before, where only particles of
- * the bodies that have `moved` are elsewhere now. */
-void cells_sort_some(struct cells *c, enum kind kind, struct particles *p, const bool *moved);
 
 /* Builds the cell list of particles that are sorted already, from their `cell` fields (restart). */
 void cells_resume(struct cells *c, enum kind kind, struct particles *p);
+
+/* Orders the particles of each cell in `pair` (Morton key, particle), sorted by key already, so that every
+ * four in a row lie close together. */
+void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads);
 
 /* Measures by how much the particles of a kind hang over their cells' edges now. */
 void cells_measure(struct cells *c, enum kind kind, const struct particles *p);
@@ -91,11 +95,17 @@ SPHFSI_INLINE int32_t cell_at(const struct cells *c, int cx, int cy)
     return x < 0 || y < 0 ? -1 : y * c->nx + x;
 }
 
-/* Cells along an axis from two before a cell to two behind it, none twice through joined sides. */
-SPHFSI_INLINE int cells_around(const struct cells *c, int axis)
+/* Most clusters of one kind that n particles can fill. */
+SPHFSI_INLINE int64_t cells_clusters(const struct cells *c, int64_t n)
 {
-    const int n = axis ? c->ny : c->nx;
-    return c->joined[axis] && n < 5 ? n : 5;
+    const int64_t cells = (int64_t)c->nx * c->ny;
+    return n / CLUSTER + (n < cells ? n : cells);
+}
+
+/* Clusters of one kind in a cell; the last one need not be full. */
+SPHFSI_INLINE int32_t clusters_in(const struct cell_list *list, int32_t cell)
+{
+    return (list->count[cell] + CLUSTER - 1) / CLUSTER;
 }
 
 /* A difference of positions along an axis, the short way round through joined sides. */

@@ -41,14 +41,16 @@ static int lanes_wanted(enum kind kind, unsigned effects)
     return kind != KIND_FLUID && effects & FX_NO_SLIP ? LANE_NO_SLIP_FIELDS : LANE_FIELDS;
 }
 
-static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t n, size_t size,
+static enum err lanes_create(struct lanes *lanes, struct arena *a, int64_t clusters, size_t size,
                              struct diag *d)
 {
-    for (int m = 0; m < lanes->n; m++) {
-        lanes->field[m] = arena_alloc(a, (size_t)n, size, "lanes of the fluid's sweep", d);
-        if (!lanes->field[m]) return ERR_MEMORY;
-    }
-    return ERR_OK;
+    if (clusters > CLUSTERS_MOST)
+        return diag_fail(d, ERR_INPUT,
+                         "there is room for %lld clusters of particles, and for %d at most",
+                         (long long)clusters, CLUSTERS_MOST);
+    lanes->cluster = arena_alloc(a, (size_t)clusters, (size_t)(lanes->n * CLUSTER) * size,
+                                 "lanes of the fluid's sweep", d);
+    return lanes->cluster ? cluster_boxes_create(&lanes->boxes, a, clusters, d) : ERR_MEMORY;
 }
 
 static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *s, struct diag *d)
@@ -75,20 +77,16 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
                   s->numerics.kernel == KERNEL_GENERIC);
     f->threads = thread_count();
-    int most = 0;
-    for (int k = 0; k < KIND_COUNT; k++) {
-        f->lanes[k].n = lanes_wanted((enum kind)k, effects);
-        most = f->lanes[k].n > most ? f->lanes[k].n : most;
-    }
-    f->tile_size = f->sweeps->tile_head + (size_t)most * f->sweeps->tile_row;
-    f->tiles = arena_alloc(a, 2 * (size_t)f->threads, f->tile_size, "candidate tiles", d);
+    for (int k = 0; k < KIND_COUNT; k++) f->lanes[k].n = lanes_wanted((enum kind)k, effects);
+    f->sight = arena_alloc(a, (size_t)f->threads, sizeof *f->sight, "clusters in sight", d);
     f->near_dummies = arena_alloc(a, (size_t)c->nx * (size_t)c->ny, sizeof *f->near_dummies,
                                   "cells near walls and structures", d);
-    if (!f->tiles || !f->near_dummies) return ERR_MEMORY;
+    if (!f->sight || !f->near_dummies) return ERR_MEMORY;
     if (effects & FX_NO_SLIP) TRY(note_slip(f, a, s, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
-        TRY(lanes_create(&f->lanes[k], a, kinds[k].capacity, f->sweeps->lane_size, d));
+        TRY(lanes_create(&f->lanes[k], a, cells_clusters(c, kinds[k].capacity),
+                         f->sweeps->lane_size, d));
         if (k == KIND_FLUID) continue;
         f->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity, sizeof *f->near_fluid[k],
                                        "cells near fluid", d);

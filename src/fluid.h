@@ -3,7 +3,7 @@
 #ifndef SPHFSI_FLUID_H
 #define SPHFSI_FLUID_H
 
-#include "cells.h"
+#include "clusters.h"
 #include "effects.h"
 
 /* Constants of the fluid, SI. */
@@ -28,8 +28,8 @@ struct fluid_extremes {
     double approach;      /* max |h v.x/(r^2 + eta^2)| of Eq. 28b, m/s */
 };
 
-/* Copies in cell order that the sweeps read: positions relative to the cell's centre in units of h,
- * volume in units of h^2, the rest in SI; float in mixed, double in double precision. */
+/* Copies that the sweeps read: positions relative to the cell's centre in units of h, volume in units of
+ * h^2, the rest in SI; float in mixed, double in double precision. */
 enum lane_field {
     LANE_X,
     LANE_Y,
@@ -59,17 +59,12 @@ enum lane_field {
     LANE_MOST = LANE_REPULSION_FIELDS
 };
 
+/* By cluster of the cell order, one after the other: each field of its four particles in a row. What a cell's
+ * last cluster lacks is far away and has no volume. */
 struct lanes {
-    int n; /* fields in use */
-    void *field[LANE_MOST];
-};
-
-/* Most particles of one kind in a cell. More than this means particles have collapsed onto each other: a
- * guard stops the run before. And most candidates of one kind around a strip of cells side by side. */
-enum {
-    CELL_CAPACITY = 128,
-    STRIP_CELLS = 2,
-    TILE_CAPACITY = 3 * (STRIP_CELLS + 2) * CELL_CAPACITY
+    int n;         /* fields in use */
+    void *cluster; /* [clusters][n][CLUSTER] */
+    struct cluster_boxes boxes;
 };
 
 struct fluid;
@@ -79,7 +74,6 @@ struct fluid_sweeps {
     const char *name;
     unsigned effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
     size_t lane_size; /* of an item */
-    size_t tile_head, tile_row; /* of a candidate tile, and of each of its fields */
     /* Pressure by the equation of state, and lanes of the fluid. */
     void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
     /* Renormalised gradient of the fluid's density, and its lanes. */
@@ -101,6 +95,12 @@ struct fluid_sweeps {
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
+/* What the particles of a cell, and of a cluster, may see: a thread's room to work in. */
+struct sight {
+    struct surroundings around[KIND_COUNT];
+    struct cluster_list near[KIND_COUNT];
+};
+
 struct fluid {
     struct fluid_constants k;
     unsigned effects;
@@ -113,13 +113,12 @@ struct fluid {
     int32_t n_near_fluid[KIND_COUNT];
     bool *near_dummies; /* [cells]: whether walls or structures are in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
-    void *tiles;              /* [2 threads] of candidate tiles */
-    size_t tile_size;
+    struct sight *sight;      /* [threads] */
     int threads;
     struct fluid_extremes extremes;
 };
 
-/* Chooses the kernel and makes room for lanes and tiles. */
+/* Chooses the kernel and makes room for lanes. */
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
                       const struct particles kinds[KIND_COUNT], const struct cells *c,
                       struct diag *d) SPHFSI_CHECKED;

@@ -1,31 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * One inline function for each law between two particles of the fluid, over a pack of pairs. The
  * text is compiled once for float and once for double lanes: the including file defines `real`,
- * `vreal` and the verbs. Lengths are in units of h, so that
+ * `vreal`, the verbs and lane(). Lengths are in units of h, so that
  *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
  * and every sum below is to be multiplied by -PAIR_SLOPE/h. The clamp of t removes pairs beyond the
  * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
  * b flips the sign of a force and nothing else. */
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
-
-/* Particle a, spread over the lanes. */
-struct receiver {
-    vreal x, y, u, v, p, dens;
-    vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
-    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, of its unit */
-};
-
-/* Pairs of a with a pack of candidates b. */
-struct pair {
-    vreal x, y;    /* xi_ab */
-    vreal r2;      /* |xi_ab|^2 */
-    vreal u, v;    /* v_ab, m/s */
-    vreal vx;      /* v_ab . xi_ab, m/s */
-    vreal slope;   /* V_b/h^2 t^3 */
-    vreal p, dens; /* of b */
-    vreal slope_x, slope_y;
-};
 
 struct sums {
     vreal ax, ay;                   /* Pa */
@@ -45,23 +27,6 @@ struct lane_constants {
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
     vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
-
-/* Geometry of the pairs, Eq. 5. */
-SPHFSI_INLINE struct pair pair_load(const struct receiver *a, const real *x, const real *y,
-                                    const real *u, const real *v, const real *volume)
-{
-    struct pair q;
-    q.x = a->x - vload(x);
-    q.y = a->y - vload(y);
-    q.r2 = vfma(q.y, q.y, q.x * q.x);
-    const vreal t = vmax(vset(0), vset(2) - vsqrt(q.r2));
-    q.slope = vload(volume) * (t * t * t);
-    q.u = a->u - vload(u);
-    q.v = a->v - vload(v);
-    q.vx = vfma(q.v, q.y, q.u * q.x);
-    /* cppcheck-suppress uninitvar ; p and dens are loaded by those laws that need them */
-    return q;
-}
 
 /* Eq. 4a: sum of V_b v_ab . grad W. */
 SPHFSI_INLINE void fx_continuity(const struct pair *q, struct sums *s)

@@ -2,75 +2,160 @@
  * What the fluid brings to the sweeps: its lanes, and the renormalised gradient of its density. A part of the
  * sweeps' text (fluid_sweep.h), once for each precision. */
 
-/* Lanes of the fluid that do not depend on its cells, with the pressure by the equation of state; for use
- * inside a parallel region. */
-static void lanes_of_state(const struct fluid *f, struct particles *p)
+/* In units of h; the kernel ends at 2. */
+#define FAR 1e9
+
+/* The lanes of a cluster; those of its field m are lanes + m CLUSTER. */
+SPHFSI_INLINE real *cluster_lanes(const struct lanes *lanes, size_t cluster)
 {
-    const double rho0 = f->k.rho0, c0 = f->k.c0, volume = f->k.mass / rho0 * square(1 / f->k.h);
-    real *const *const out = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
-    real *const u = out[LANE_U], *const v = out[LANE_V], *const V = out[LANE_VOLUME];
-    real *const pressure = out[LANE_P], *const dens = out[LANE_DENS];
-#pragma omp for simd schedule(static) nowait
-    for (int64_t i = 0; i < p->n; i++) {
-        p->p[i] = eos_pressure(p->dens[i], rho0, c0);
-        u[i] = (real)p->vx[i];
-        v[i] = (real)p->vy[i];
-        V[i] = (real)(volume / (1 + p->dens[i]));
-        pressure[i] = (real)p->p[i];
-        dens[i] = (real)p->dens[i];
+    return (real *)lanes->cluster + cluster * (size_t)(lanes->n * CLUSTER);
+}
+
+/* Ends a cluster behind its first `count` particles. */
+static void cluster_close(real *lanes, int fields, int count)
+{
+    for (int r = count; r < CLUSTER; r++) {
+        for (int m = 0; m < fields; m++) lanes[m * CLUSTER + r] = 0;
+        lanes[LANE_X * CLUSTER + r] = (real)FAR;
     }
 }
 
-static void place_in_cell(const struct fluid *f, const struct particles *p, const struct cells *c,
+/* The box around the first `count` particles of a cluster. */
+SPHFSI_INLINE void cluster_box(const struct cluster_boxes *boxes, size_t cluster, const real *lanes,
+                               int count)
+{
+    const real *const x = lanes + LANE_X * CLUSTER, *const y = lanes + LANE_Y * CLUSTER;
+    real low[2] = {x[0], y[0]}, high[2] = {x[0], y[0]};
+    for (int r = 1; r < count; r++) {
+        low[0] = x[r] < low[0] ? x[r] : low[0];
+        low[1] = y[r] < low[1] ? y[r] : low[1];
+        high[0] = x[r] > high[0] ? x[r] : high[0];
+        high[1] = y[r] > high[1] ? y[r] : high[1];
+    }
+    boxes->side[BOX_LEFT][cluster] = (float)low[0];
+    boxes->side[BOX_RIGHT][cluster] = (float)high[0];
+    boxes->side[BOX_DOWN][cluster] = (float)low[1];
+    boxes->side[BOX_UP][cluster] = (float)high[1];
+}
+
+/* Four values of a field, as those of a lane. */
+#define FOUR(field, i) ((four_double) * (const four_double_at *)&(field)[i])
+
+SPHFSI_INLINE void put_four(real *lanes, enum lane_field m, four_double four)
+{
+    *(four_real *)(void *)(lanes + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
+}
+
+/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
+SPHFSI_INLINE void fluid_lanes(const struct fluid *f, const struct particles *p, int32_t i,
+                               const double centre[2], real *out)
+{
+    const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
+    const four_double dens = FOUR(p->dens, i);
+    put_four(out, LANE_X, (FOUR(p->x, i) - centre[0]) * inv_h);
+    put_four(out, LANE_Y, (FOUR(p->y, i) - centre[1]) * inv_h);
+    put_four(out, LANE_U, FOUR(p->vx, i));
+    put_four(out, LANE_V, FOUR(p->vy, i));
+    put_four(out, LANE_VOLUME, volume / (1 + dens));
+    put_four(out, LANE_P, FOUR(p->p, i));
+    put_four(out, LANE_DENS, dens);
+}
+
+static void lanes_of_cell(const struct fluid *f, const struct particles *p, const struct cells *c,
                           int32_t cell)
 {
-    const struct cell_list *list = &c->kind[KIND_FLUID];
-    const double centre_x = cell_centre_x(c, cell), centre_y = cell_centre_y(c, cell);
-    const double inv_h = 1 / f->k.h;
-    real *const *const out = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
-    for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-        out[LANE_X][i] = (real)((p->x[i] - centre_x) * inv_h);
-        out[LANE_Y][i] = (real)((p->y[i] - centre_y) * inv_h);
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct lanes *const lanes = &f->lanes[KIND_FLUID];
+    const double centre[2] = {cell_centre_x(c, cell), cell_centre_y(c, cell)};
+    const size_t first = (size_t)list->cluster[cell];
+    const int32_t full = list->count[cell] / CLUSTER, rest = list->count[cell] % CLUSTER;
+    for (int32_t m = 0; m < full; m++) {
+        real *const out = cluster_lanes(lanes, first + (size_t)m);
+        fluid_lanes(f, p, list->start[cell] + m * CLUSTER, centre, out);
+        cluster_box(&lanes->boxes, first + (size_t)m, out, CLUSTER);
     }
+    if (rest == 0) return;
+    real *const out = cluster_lanes(lanes, first + (size_t)full);
+    fluid_lanes(f, p, list->start[cell] + full * CLUSTER, centre, out);
+    cluster_close(out, lanes->n, rest);
+    cluster_box(&lanes->boxes, first + (size_t)full, out, rest);
 }
 
+/* Pressure by the equation of state, then lanes. */
 static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                          const struct cells *c)
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
+    struct particles *const p = &kinds[KIND_FLUID];
+    const double rho0 = f->k.rho0, c0 = f->k.c0;
 #pragma omp parallel num_threads(f->threads)
     {
-        lanes_of_state(f, &kinds[KIND_FLUID]);
+#pragma omp for simd schedule(static)
+        for (int64_t i = 0; i < p->n; i++) p->p[i] = eos_pressure(p->dens[i], rho0, c0);
 #pragma omp for schedule(static)
-        for (int32_t k = 0; k < list->n_active; k++)
-            place_in_cell(f, &kinds[KIND_FLUID], c, list->active[k]);
+        for (int32_t k = 0; k < list->n_active; k++) lanes_of_cell(f, p, c, list->active[k]);
     }
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,
  * (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W, times h. Where the neighbours
  * span no plane (a determinant below a thousandth of the trace squared) it is taken as zero. */
-static void slope_of(const struct SWEEP(tile) * tile, real x, real y, real dens, double slope[2])
+static void slopes_of(const struct view *see, const struct receiver *a, double slope[GROUPS][2])
 {
-    vreal xx = vset(0), xy = vset(0), yy = vset(0), dx = vset(0), dy = vset(0);
-    for (int j = 0; j < tile->n; j += LANES) {
-        const vreal rx = vset(x) - vload(&tile->field[LANE_X][j]);
-        const vreal ry = vset(y) - vload(&tile->field[LANE_Y][j]);
+    vreal xx[PARTS] = {{0}}, xy[PARTS] = {{0}}, yy[PARTS] = {{0}}, dx[PARTS] = {{0}},
+          dy[PARTS] = {{0}};
+    EACH_SEEN(see, k, part) {
+        const uint32_t seen = see->seen[k];
+        const real *const b = candidates(see, seen, part);
+        const vreal rx = a->x[seen_column(seen)] - lane(b, LANE_X);
+        const vreal ry = a->y[seen_row(seen)] - lane(b, LANE_Y);
         const vreal q = vsqrt(vfma(ry, ry, rx * rx));
         const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1)));
-        const vreal w = vload(&tile->field[LANE_VOLUME][j]) * (t * t * t);
-        const vreal step = w * (vset(dens) - vload(&tile->field[LANE_DENS][j]));
-        xx = vfma(w * rx, rx, xx);
-        xy = vfma(w * rx, ry, xy);
-        yy = vfma(w * ry, ry, yy);
-        dx = vfma(step, rx, dx);
-        dy = vfma(step, ry, dy);
+        const vreal w = lane(b, LANE_VOLUME) * (t * t * t);
+        const vreal step = w * (a->dens - lane(b, LANE_DENS));
+        xx[part] = vfma(w * rx, rx, xx[part]);
+        xy[part] = vfma(w * rx, ry, xy[part]);
+        yy[part] = vfma(w * ry, ry, yy[part]);
+        dx[part] = vfma(step, rx, dx[part]);
+        dy[part] = vfma(step, ry, dy[part]);
     }
-    const double a = (double)vsum(xx), b = (double)vsum(xy), c = (double)vsum(yy);
-    const double u = (double)vsum(dx), v = (double)vsum(dy), det = a * c - b * b;
-    const bool good = det > 1e-3 * square(a + c);
-    slope[0] = good ? (c * u - b * v) / det : 0;
-    slope[1] = good ? (a * v - b * u) / det : 0;
+    real A[GROUPS], B[GROUPS], C[GROUPS], U[GROUPS], V[GROUPS];
+    total(xx, A);
+    total(xy, B);
+    total(yy, C);
+    total(dx, U);
+    total(dy, V);
+    for (int g = 0; g < GROUPS; g++) {
+        const double det = (double)A[g] * (double)C[g] - square((double)B[g]);
+        const bool good = det > 1e-3 * square((double)A[g] + (double)C[g]);
+        slope[g][0] = good ? ((double)C[g] * (double)U[g] - (double)B[g] * (double)V[g]) / det : 0;
+        slope[g][1] = good ? ((double)A[g] * (double)V[g] - (double)B[g] * (double)U[g]) / det : 0;
+    }
+}
+
+static void slopes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
+                           int32_t cell)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    struct sight *const sight = &f->sight[thread_index()];
+    const struct place place = place_of(f, c);
+    look_around(sight, f, c, KIND_FLUID, cell);
+    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+        const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
+        const int count = particles_in(list, cell, m);
+        const struct view see = look_at(sight, f, KIND_FLUID, KIND_FLUID, cluster);
+        for (int r = 0; r < count; r += GROUPS) {
+            const real *const own = cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster) + r;
+            struct receiver a = receiver_at(&place, own);
+            a.dens = vspread(own + LANE_DENS * CLUSTER);
+            double slope[GROUPS][2];
+            slopes_of(&see, &a, slope);
+            for (int g = 0; g < GROUPS && r + g < count; g++) {
+                p->slope_x[i + r + g] = slope[g][0] / f->k.h;
+                p->slope_y[i + r + g] = slope[g][1] / f->k.h;
+            }
+        }
+    }
 }
 
 static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
@@ -78,24 +163,19 @@ static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COU
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
     struct particles *const p = &kinds[KIND_FLUID];
-    real *const *const lane = (real *const *)(const void *)f->lanes[KIND_FLUID].field;
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < list->n_active; k++) slopes_of_cell(f, p, c, list->active[k]);
+        /* Now that no other cell reads them. */
 #pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
-        struct SWEEP(tile) *const tile = thread_tile(f, 0);
-        tile->fields = LANE_FIELDS;
-        tile_around(tile, f, c, KIND_FLUID, cell);
-        for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
-            double slope[2];
-            slope_of(tile, lane[LANE_X][i], lane[LANE_Y][i], lane[LANE_DENS][i], slope);
-            p->slope_x[i] = slope[0] / f->k.h;
-            p->slope_y[i] = slope[1] / f->k.h;
+        for (int32_t m = 0; m < list->count[cell]; m++) {
+            const int32_t i = list->start[cell] + m;
+            real *const own =
+                cluster_lanes(&f->lanes[KIND_FLUID], (size_t)(list->cluster[cell] + m / CLUSTER)) +
+                m % CLUSTER;
+            own[LANE_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
+            own[LANE_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
         }
-    }
-    /* Now that no other cell reads them. */
-#pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int64_t i = 0; i < p->n; i++) {
-        lane[LANE_SLOPE_X][i] = (real)(p->slope_x[i] * f->k.h);
-        lane[LANE_SLOPE_Y][i] = (real)(p->slope_y[i] * f->k.h);
     }
 }

@@ -282,11 +282,11 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
 
 /* Strays that are let go: a share of the fluid, and this many whatever the share. */
 #define CROSSING_SHARE 0.01
-enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 /* sortings */ };
+enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * LOOK_INTERVAL };
 
 enum err monitor_crossing(struct simulation *s, struct diag *d)
 {
-    if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.sorts % CROSSING_INTERVAL)
+    if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.steps % CROSSING_INTERVAL)
         return ERR_OK;
     int64_t first;
     const int64_t count = monitor_crossed(s, &first);

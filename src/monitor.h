@@ -24,7 +24,7 @@ struct ledger;
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
     SPHFSI_CHECKED;
 
-/* After sorting: fluid that has entered a wall or a solid. Warns once, and fails where it is more than
+/* Now and then: fluid that has entered a wall or a solid. Warns once, and fails where it is more than
  * stray particles. */
 enum err monitor_crossing(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 

@@ -29,11 +29,11 @@ static bool takes(const struct simulation *s, enum kind kind, int64_t i, double 
     return X * X + Y * Y < square(TAKEN * s->solid.body[p->body[i]].dp * (xx * yy - xy * yx));
 }
 
-/* Whether some particle of a wall in the cell can be that close to (x, y): it stands within the cell. */
+/* Whether some particle of a wall in the cell can be that close to (x, y): at rest it stands within it. */
 static bool wall_near(const struct simulation *s, int32_t cell, double x, double y)
 {
     const struct cells *const c = &s->cells;
-    const double reach = TAKEN * s->scene->top.dp;
+    const double reach = TAKEN * s->scene->top.dp + (s->effects & FX_MOTION ? c->stray : 0);
     return fabs(nearest(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
            fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
 }

@@ -88,10 +88,7 @@ bool moving_any(const struct moving *m)
 
 void moving_sort(struct moving *m, struct cells *c, struct particles *walls)
 {
-    if (m->idle_is_work)
-        cells_sort(c, KIND_WALL, walls);
-    else if (moving_any(m))
-        cells_sort_some(c, KIND_WALL, walls, m->moved);
+    if (m->idle_is_work || moving_any(m)) cells_sort(c, KIND_WALL, walls);
     for (int k = 0; k < m->n; k++) m->moved[m->body[k].section] = false;
 }
 

@@ -10,6 +10,8 @@
 
 #include "base.h"
 
+#include <string.h>
+
 #if defined __AVX2__ && defined __FMA__
 #include <immintrin.h>
 #define SIMD_AVX2 1
@@ -30,10 +32,23 @@
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
 
+/* Groups of four lanes: sweeps let each lane of a group stand for another candidate, and each group for
+ * another receiver, so that sums over candidates are the same however wide a vector is. Vectors of two
+ * doubles hold half a group. */
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
     LANES_DOUBLE = SIMD_BYTES / 8,
+    GROUP = 4,
+    GROUPS_FLOAT = LANES_FLOAT / GROUP,
+    GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
+
+/* As many words as floats; and four doubles or floats, the particles of a group, whatever the registers. */
+typedef uint32_t vword __attribute__((vector_size(SIMD_BYTES)));
+typedef double four_double __attribute__((vector_size(32)));
+typedef float four_float __attribute__((vector_size(16)));
+typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
+typedef float four_float_at __attribute__((vector_size(16), aligned(4), may_alias));
 
 /* The same vectors at any address, and free to alias the arrays they are loaded from. */
 typedef float vfloat_at __attribute__((vector_size(SIMD_BYTES), aligned(4), may_alias));
@@ -222,6 +237,99 @@ SPHFSI_INLINE double vtop_double(vdouble a)
     double top = a[0];
     for (int l = 1; l < LANES_DOUBLE; l++) top = a[l] > top ? a[l] : top;
     return top;
+}
+
+/* vfour(p): the four items at p, or as many as there are lanes, in every group. vspread(p): item g at p in
+ * all lanes of group g. vsum_four(a, out): out[g] = the sum of group g by halving. */
+#ifdef SIMD_AVX512
+SPHFSI_INLINE vfloat vfour_float(const float *p)
+{
+    return (vfloat)_mm512_broadcast_f32x4(_mm_loadu_ps(p));
+}
+SPHFSI_INLINE vdouble vfour_double(const double *p)
+{
+    return (vdouble)_mm512_broadcast_f64x4(_mm256_loadu_pd(p));
+}
+SPHFSI_INLINE vfloat vspread_float(const float *p)
+{
+    const __m512i group = _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+    return (vfloat)_mm512_permutexvar_ps(group, _mm512_castps128_ps512(_mm_loadu_ps(p)));
+}
+SPHFSI_INLINE vdouble vspread_double(const double *p)
+{
+    return (vdouble)_mm512_insertf64x4(_mm512_set1_pd(p[0]), _mm256_set1_pd(p[1]), 1);
+}
+SPHFSI_INLINE void vsum_four_float(vfloat a, float out[GROUPS_FLOAT])
+{
+    const __m512 two = _mm512_add_ps((__m512)a, _mm512_permute_ps((__m512)a, 0x4e));
+    const __m512 one = _mm512_add_ps(two, _mm512_permute_ps(two, 0xb1));
+    const __m512i first = _mm512_setr_epi32(0, 4, 8, 12, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
+    _mm_storeu_ps(out, _mm512_castps512_ps128(_mm512_permutexvar_ps(first, one)));
+}
+SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
+{
+    const __m512d two = _mm512_add_pd((__m512d)a, _mm512_permutex_pd((__m512d)a, 0x4e));
+    const __m512d one = _mm512_add_pd(two, _mm512_permute_pd(two, 0x55));
+    out[0] = _mm512_cvtsd_f64(one);
+    out[1] = _mm256_cvtsd_f64(_mm512_extractf64x4_pd(one, 1));
+}
+#else
+SPHFSI_INLINE vfloat vfour_float(const float *p)
+{
+#ifdef SIMD_AVX2
+    return (vfloat)_mm256_broadcast_ps((const __m128 *)(const void *)p);
+#else
+    return vload_float(p);
+#endif
+}
+SPHFSI_INLINE vdouble vfour_double(const double *p) { return vload_double(p); }
+SPHFSI_INLINE vfloat vspread_float(const float *p)
+{
+#ifdef SIMD_AVX2
+    return (vfloat)_mm256_setr_m128(_mm_set1_ps(p[0]), _mm_set1_ps(p[1]));
+#else
+    return vset_float(*p);
+#endif
+}
+SPHFSI_INLINE vdouble vspread_double(const double *p) { return vset_double(*p); }
+SPHFSI_INLINE void vsum_four_float(vfloat a, float out[GROUPS_FLOAT])
+{
+    for (int g = 0; g < GROUPS_FLOAT; g++, out++)
+        *out = (a[4 * g] + a[4 * g + 2]) + (a[4 * g + 1] + a[4 * g + 3]);
+}
+SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
+{
+    out[0] = LANES_DOUBLE < GROUP ? a[0] + a[1]
+                                  : (a[0] + a[2 % LANES_DOUBLE]) + (a[1] + a[3 % LANES_DOUBLE]);
+}
+#endif
+
+/* Writes first, first + step, ... over the lanes of a vector of words. */
+SPHFSI_INLINE void vstore_ramp(uint32_t *out, uint32_t first, uint32_t step)
+{
+    static const uint32_t places[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    vword ramp;
+    memcpy(&ramp, places, sizeof ramp);
+    ramp = ramp * step + first;
+    memcpy(out, &ramp, sizeof ramp);
+}
+
+/* Appends to `out` the items whose lane of a is below the limit, in order; returns how many. Writes
+ * LANES_FLOAT items whatever there are. */
+SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, float limit)
+{
+#ifdef SIMD_AVX512
+    const __mmask16 below = _mm512_cmp_ps_mask((__m512)a, _mm512_set1_ps(limit), _CMP_LT_OQ);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(below, _mm512_loadu_si512(item)));
+    return __builtin_popcount(below);
+#else
+    int n = 0;
+    for (int l = 0; l < LANES_FLOAT; l++) { /* without branches, which would be guessed wrong */
+        out[n] = item[l];
+        n += a[l] < limit;
+    }
+    return n;
+#endif
 }
 
 #endif

@@ -247,9 +247,9 @@ static bool sorting_due(struct simulation *s)
 static enum err create_fluid(struct simulation *s, struct diag *d)
 {
     const struct scene *const scene = s->scene;
-    const double reach = (KERNEL_REACH + scene->numerics.skin) * scene->h;
-    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, s->kind,
-                     d));
+    const double reach = KERNEL_REACH * scene->h, stray = scene->numerics.skin * scene->h;
+    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, stray,
+                     s->kind, d));
     for (int axis = 0; axis < 2; axis++)
         if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, d));
     TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, &s->cells, d));
@@ -474,14 +474,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     if (e) return e;
     use_room(s, speed2_before);
     /* Now, so that the cells are good for whoever looks at the state between two steps. */
-    if (sorting_due(s)) {
-        TRY(sort_particles(s, d));
-        clock = phase_add(s, PHASE_sort, clock);
-        TRY(monitor_crossing(s, d));
-        phase_add(s, PHASE_update, clock);
-        return ERR_OK;
-    }
-    phase_add(s, PHASE_sort, clock);
+    if (sorting_due(s)) TRY(sort_particles(s, d));
+    clock = phase_add(s, PHASE_sort, clock);
+    TRY(monitor_crossing(s, d));
+    phase_add(s, PHASE_update, clock);
     return ERR_OK;
 }
 

@@ -19,12 +19,19 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
     const struct cells *const c = &s->cells;
     const struct cell_list *const list = &c->kind[kind];
     const struct particles *const p = &s->kind[kind];
-    const int cx = (int)floor((x - c->lower[0]) / c->side[0]);
-    const int cy = (int)floor((y - c->lower[1]) / c->side[1]);
-    /* Two cells either way: particles may have strayed since they were sorted. */
-    const int wide = cells_around(c, 0), high = cells_around(c, 1);
-    for (int place = 0; place < wide * high; place++) {
-        const int32_t cell = cell_at(c, cx - 2 + place % wide, cy - 2 + place / wide);
+    /* Cells that may hold particles within reach: they may have strayed since they were sorted. */
+    const double reach = KERNEL_REACH * s->fluid.k.h + c->stray;
+    int first[2], n[2];
+    for (int axis = 0; axis < 2; axis++) {
+        const int cells = axis ? c->ny : c->nx;
+        const double at = ((axis ? y : x) - c->lower[axis]) / c->side[axis],
+                     part = reach / c->side[axis];
+        first[axis] = (int)max2(-1, min2(cells, floor(at - part)));
+        n[axis] = (int)max2(-1, min2(cells, floor(at + part))) - first[axis] + 1;
+        if (c->joined[axis] && n[axis] > cells) n[axis] = cells;
+    }
+    for (int place = 0; place < n[0] * n[1]; place++) {
+        const int32_t cell = cell_at(c, first[0] + place % n[0], first[1] + place / n[0]);
         if (cell < 0) continue;
         for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
             const int64_t i = list->order ? list->order[k] : k;

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # its name continues a listed one after an underscore: case_lines is part of case.
 FLOORS = [
     "base meeting simd tensor2 errors",
-    "fields groups particles morton cells smoothing eos",
+    "fields groups particles morton cells clusters smoothing eos",
     "params presets evidence effects rules phases quantities pointdata case expr units geometry motion scene",
     "fluid variants solid material contact drive interface",
     "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",

@@ -184,16 +184,19 @@ def table(header, rows):
 
 
 def neighbour_words(rows):
-    """Candidate tile against neighbour list (bench/neighbours.c)."""
+    """Clusters against a candidate tile and a neighbour list (bench/neighbours.c)."""
     found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
              if key[0] == "neighbours"}
     n = next(key[2] for key in rows if key[0] == "neighbours")
-    tile, swept, built = found["tile", "copy and sweep"], found["list", "sweep"], found["list", "build"]
-    return (f"Where the neighbours come from, the bare laws alone over {n} particles, one thread: a "
-            f"tile of candidates {tile:.1f} ns a particle with its copying; a neighbour list with the same "
-            f"skin {swept:.1f} ns, {built:.0f} ns each time that it is built and "
-            f"{4 * found['list', 'entries']:.0f} bytes a particle. "
-            + ("The list would be the faster one." if swept < tile else "The tile is the faster one."))
+    swept = {"clusters": found["cluster", "look and sweep"], "tile": found["tile", "copy and sweep"],
+             "list": found["list", "sweep"]}
+    return (f"Where the neighbours come from, the bare laws alone over {n} particles, one thread: clusters "
+            f"that look for those near them {swept['clusters']:.1f} ns a particle "
+            f"({found['cluster', 'candidates']:.0f} candidates); a tile of candidates around each cell "
+            f"{swept['tile']:.1f} ns with its copying; a neighbour list with a skin {swept['list']:.1f} ns, "
+            f"{found['list', 'build']:.0f} ns each time that it is built and "
+            f"{4 * found['list', 'entries']:.0f} bytes a particle. The fastest: "
+            f"{min(swept, key=swept.get)}.")
 
 
 def bench_tables(rows):

@@ -11,7 +11,7 @@
 
 enum { N = 1500 };
 static const double lower[2] = {-0.3, 0.1}, upper[2] = {1.15, 0.92};
-static const double reach = 0.0731;
+static const double reach = 0.0731, stray = 0.02;
 
 static struct arena arena;
 static struct diag diag;
@@ -57,7 +57,8 @@ static void scatter(bool with_lost)
         kinds[KIND_FLUID].x[17] = lower[0];
         kinds[KIND_FLUID].y[17] = lower[1];
     }
-    TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&cells, &arena, lower, upper, reach, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK,
+                          cells_create(&cells, &arena, lower, upper, reach, stray, kinds, &diag));
 }
 
 static int32_t at(enum kind kind, int32_t place)
@@ -71,15 +72,24 @@ static bool adjacent(int32_t a, int32_t b)
            abs(cell_y(&cells, a) - cell_y(&cells, b)) <= 1;
 }
 
+/* Twice the reach, but three cells where a narrow domain has room for them, whose particles stray less. */
 static void test_cells_are_no_smaller_than_the_reach(void)
 {
     scatter(false);
     for (int k = 0; k < 2; k++) {
-        TEST_ASSERT_TRUE(cells.side[k] >= reach);
-        TEST_ASSERT_TRUE(cells.side[k] < 2 * reach);
+        TEST_ASSERT_TRUE(cells.side[k] >= 2 * reach);
+        TEST_ASSERT_TRUE(cells.side[k] < 4 * reach);
     }
     assert_near(1e-12, upper[0] - lower[0], cells.nx * cells.side[0], "width");
     assert_near(1e-12, upper[1] - lower[1], cells.ny * cells.side[1], "height");
+    assert_near(0, stray, cells.stray, "stray");
+    const double near[2] = {lower[0] + 3.3 * reach, lower[1] + 2.9 * reach};
+    struct cells narrow;
+    TEST_ASSERT_EQUAL_INT(ERR_OK,
+                          cells_create(&narrow, &arena, lower, near, reach, stray, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(3, narrow.nx);
+    TEST_ASSERT_EQUAL_INT(2, narrow.ny);
+    assert_near(1e-12, 0.5 * (narrow.side[0] - reach), narrow.stray, "stray");
 }
 
 /* Every pair closer than the reach lies in cells that touch, within a kind and across kinds. */
@@ -112,6 +122,7 @@ static void check_cover(enum kind kind, int64_t inside)
     int32_t place = 0;
     int64_t total = 0;
     uint32_t last_key = 0;
+    int32_t clusters = 0;
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
         const uint32_t key =
@@ -120,20 +131,23 @@ static void check_cover(enum kind kind, int64_t inside)
         last_key = key;
         TEST_ASSERT_EQUAL_INT32(place, list->start[cell]);
         TEST_ASSERT_TRUE(list->count[cell] > 0);
+        TEST_ASSERT_EQUAL_INT32(clusters, list->cluster[cell]);
+        clusters += clusters_in(list, cell);
         for (int32_t j = 0; j < list->count[cell]; j++, place++) {
             const int32_t i = at(kind, place);
             TEST_ASSERT_EQUAL_INT32(cell, p->cell[i]);
             TEST_ASSERT_TRUE(fabs(p->x[i] - cell_centre_x(&cells, cell)) <= 0.5001 * cells.side[0]);
             TEST_ASSERT_TRUE(fabs(p->y[i] - cell_centre_y(&cells, cell)) <= 0.5001 * cells.side[1]);
-            TEST_ASSERT_TRUE(j == 0 || p->id[at(kind, place - 1)] < p->id[i]);
         }
     }
     for (int32_t cell = 0; cell < cells.nx * cells.ny; cell++) total += list->count[cell];
+    TEST_ASSERT_EQUAL_INT32(clusters, list->n_cluster);
+    TEST_ASSERT_TRUE(clusters <= cells_clusters(&cells, inside));
     TEST_ASSERT_EQUAL_INT64(inside, place);
     TEST_ASSERT_EQUAL_INT64(inside, total);
 }
 
-static void test_cells_cover_all_in_morton_order_then_id(void)
+static void test_cells_cover_all_in_morton_order(void)
 {
     scatter(false);
     for (int kind = KIND_FLUID; kind <= KIND_WALL; kind++) {
@@ -145,6 +159,53 @@ static void test_cells_cover_all_in_morton_order_then_id(void)
         TEST_ASSERT_EQUAL_INT64(10 * i + KIND_WALL, kinds[KIND_WALL].id[i]);
         TEST_ASSERT_TRUE(kinds[KIND_FLUID].vx[i] == (double)(kinds[KIND_FLUID].id[i] / 10));
     }
+}
+
+/* Sixteen particles on a lattice, given in any order, are the four squares of four. */
+static void test_clusters_of_a_lattice_are_squares(void)
+{
+    scatter(false);
+    struct particles *const p = &kinds[KIND_WALL];
+    const double x = cell_centre_x(&cells, cells.nx + 1), y = cell_centre_y(&cells, cells.nx + 1);
+    p->n = 16;
+    for (int i = 0; i < 16; i++) {
+        const int place = 7 * i % 16;
+        p->x[i] = x + 0.01 * (place % 4 - 1.5);
+        p->y[i] = y + 0.01 * (place / 4 - 1.5);
+    }
+    cells_sort(&cells, KIND_WALL, p);
+    const struct cell_list *const list = &cells.kind[KIND_WALL];
+    TEST_ASSERT_EQUAL_INT32(1, list->n_active);
+    for (int k = 0; k < 16; k++) {
+        const int32_t i = list->order[k], first = list->order[k / CLUSTER * CLUSTER];
+        assert_at_most(0.0100001, fabs(p->x[i] - p->x[first]), "width of a cluster");
+        assert_at_most(0.0100001, fabs(p->y[i] - p->y[first]), "height of a cluster");
+    }
+}
+
+/* Clusters of particles thrown at random are hardly wider than squares with room for four of them. */
+static void test_clusters_are_compact(void)
+{
+    scatter(false);
+    cells_sort(&cells, KIND_FLUID, &kinds[KIND_FLUID]);
+    const struct cell_list *const list = &cells.kind[KIND_FLUID];
+    const struct particles *const p = &kinds[KIND_FLUID];
+    double sum = 0;
+    int full = 0;
+    for (int32_t k = 0; k < list->n_active; k++) {
+        const int32_t start = list->start[list->active[k]], n = list->count[list->active[k]];
+        for (int32_t j = start; j + CLUSTER <= start + n; j += CLUSTER, full++) {
+            double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+            for (int r = 0; r < CLUSTER; r++) {
+                low[0] = fmin(low[0], p->x[j + r]), high[0] = fmax(high[0], p->x[j + r]);
+                low[1] = fmin(low[1], p->y[j + r]), high[1] = fmax(high[1], p->y[j + r]);
+            }
+            sum += 0.5 * (high[0] - low[0] + high[1] - low[1]);
+        }
+    }
+    TEST_ASSERT_TRUE(full > N / CLUSTER - list->n_active);
+    const double square = sqrt(CLUSTER * 1.44 * 0.81 / N);
+    assert_at_most(0.8 * square, sum / full, "mean side of a cluster");
 }
 
 /* Particles beyond the edges, NaN and infinities come last, none is lost from the list of them; the
@@ -212,8 +273,8 @@ static void test_resume_rebuilds_the_same_list(void)
         /* Particles have moved on since the sorting; the list must not notice. */
         for (int64_t i = 0; i < N; i++) kinds[kind].x[i] += 0.05;
         struct cells fresh;
-        TEST_ASSERT_EQUAL_INT(ERR_OK,
-                              cells_create(&fresh, &arena, lower, upper, reach, kinds, &diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&fresh, &arena, lower, upper, reach, stray,
+                                                   kinds, &diag));
         cells_resume(&fresh, (enum kind)kind, &kinds[kind]);
         const struct cell_list *const a = &cells.kind[kind], *const b = &fresh.kind[kind];
         TEST_ASSERT_EQUAL_INT32(a->n_active, b->n_active);
@@ -228,7 +289,8 @@ static void test_resume_rebuilds_the_same_list(void)
 static void test_a_domain_of_too_many_cells_is_refused(void)
 {
     const double far[2] = {1e6, 1};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, cells_create(&cells, &arena, lower, far, 0.01, kinds, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
+                          cells_create(&cells, &arena, lower, far, 0.01, stray, kinds, &diag));
     TEST_ASSERT_TRUE(diag.text[0]);
 }
 
@@ -237,7 +299,9 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_cells_are_no_smaller_than_the_reach);
     RUN_TEST(test_no_pair_is_missed);
-    RUN_TEST(test_cells_cover_all_in_morton_order_then_id);
+    RUN_TEST(test_clusters_of_a_lattice_are_squares);
+    RUN_TEST(test_clusters_are_compact);
+    RUN_TEST(test_cells_cover_all_in_morton_order);
     RUN_TEST(test_lost_particles_come_last);
     RUN_TEST(test_order_does_not_depend_on_threads_or_history);
     RUN_TEST(test_resume_rebuilds_the_same_list);

@@ -126,7 +126,7 @@ static void test_nothing_is_allocated_that_is_not_needed(void)
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_FLUID].capacity);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_WALL].capacity);
     TEST_ASSERT_NULL(rig.sim.cells.kind[KIND_SOLID].start);
-    TEST_ASSERT_NULL(rig.sim.fluid.tiles);
+    TEST_ASSERT_NULL(rig.sim.fluid.sight);
     TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].p);
     TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].fx);
 }

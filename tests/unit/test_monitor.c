@@ -168,7 +168,7 @@ static void test_fluid_inside_of_bodies(void)
 {
     struct particles *const p = &rig.sim.kind[KIND_FLUID], *const solid = &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
-    rig.sim.state.sorts = 2;
+    rig.sim.state.steps = 64;
     rig_sort(&rig);
     TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_crossing(&rig.sim, &rig.diag));
     TEST_ASSERT_EQUAL_INT(0, warnings);

@@ -173,6 +173,52 @@ static void test_loads_and_stores_at_any_address(void)
     }
 }
 
+/* Four items in each group, an item for each group, and the groups' sums: the same as lane by lane. */
+static void test_groups(void)
+{
+    float f[2 * LANES_FLOAT], sum_f[GROUPS_FLOAT];
+    double d[2 * LANES_DOUBLE + GROUP], sum_d[GROUPS_DOUBLE];
+    for (int k = 0; k < 2 * LANES_FLOAT; k++) f[k] = 1 / (float)(k + 3);
+    for (int k = 0; k < 2 * LANES_DOUBLE + GROUP; k++) d[k] = 1 / (double)(k + 3);
+    const vfloat four_f = vfour_float(f + 1), spread_f = vspread_float(f + 2);
+    for (int l = 0; l < LANES_FLOAT; l++) {
+        TEST_ASSERT_TRUE(four_f[l] == f[1 + l % GROUP]);
+        TEST_ASSERT_TRUE(spread_f[l] == f[2 + l / GROUP]);
+    }
+    const vdouble four_d = vfour_double(d + 1), spread_d = vspread_double(d + 2);
+    for (int l = 0; l < LANES_DOUBLE; l++) {
+        TEST_ASSERT_TRUE(four_d[l] == d[1 + l % GROUP]);
+        TEST_ASSERT_TRUE(spread_d[l] == d[2 + l / GROUP]);
+    }
+    vsum_four_float(vload_float(f), sum_f);
+    for (int g = 0; g < GROUPS_FLOAT; g++)
+        TEST_ASSERT_TRUE(sum_f[g] == (f[4 * g] + f[4 * g + 2]) + (f[4 * g + 1] + f[4 * g + 3]));
+    vsum_four_double(vload_double(d), sum_d);
+    for (int g = 0; g < GROUPS_DOUBLE; g++)
+        TEST_ASSERT_TRUE(sum_d[g] == (LANES_DOUBLE < GROUP ? d[0] + d[1]
+                                                           : (d[4 * g] + d[4 * g + 2]) +
+                                                                 (d[4 * g + 1] + d[4 * g + 3])));
+}
+
+/* Those below the limit, in order, and no others: of all patterns of eight, twice. */
+static void test_kept_below(void)
+{
+    for (unsigned pattern = 0; pattern < 256; pattern++) {
+        float a[LANES_FLOAT];
+        uint32_t item[LANES_FLOAT], out[2 * LANES_FLOAT], expected[LANES_FLOAT];
+        int n = 0;
+        vstore_ramp(item, 1000 + pattern, 7);
+        for (int l = 0; l < LANES_FLOAT; l++) {
+            TEST_ASSERT_EQUAL_UINT32(1000 + pattern + 7 * (unsigned)l, item[l]);
+            const bool below = pattern >> l % 8 & 1;
+            a[l] = below ? 1.99f : l % 3 ? 2.0f : NAN;
+            if (below) expected[n++] = item[l];
+        }
+        TEST_ASSERT_EQUAL_INT(n, vkeep_below(out, item, vload_float(a), 2.0f));
+        if (n) TEST_ASSERT_EQUAL_UINT32_ARRAY(expected, out, n);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -181,6 +227,8 @@ int main(void)
     RUN_TEST(test_min_and_max_of_nan_and_zeros);
     RUN_TEST(test_fma_rounds_once);
     RUN_TEST(test_sum_follows_the_tree);
+    RUN_TEST(test_groups);
+    RUN_TEST(test_kept_below);
     RUN_TEST(test_top_finds_the_largest_wherever_it_is);
     RUN_TEST(test_loads_and_stores_at_any_address);
     return UNITY_END();

@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ * Which clusters of particles lie within reach of each other, by the boxes around them. Boxes are those of
+ * where the particles are now: that they were put together when they were last sorted decides how tight the
+ * boxes are, and never who is seen. */
+#ifndef SPHFSI_CLUSTERS_H
+#define SPHFSI_CLUSTERS_H
+
+#include "cells.h"
+#include "simd.h"
+
+enum {
+    BOX_LEFT,
+    BOX_RIGHT,
+    BOX_DOWN,
+    BOX_UP,
+    BOX_SIDES,
+    CLUSTERS_AROUND = 9 * CELL_CAPACITY / CLUSTER
+};
+
+/* Smallest and largest coordinates in each cluster, from its cell's centre in units of h. */
+struct cluster_boxes {
+    float *side[BOX_SIDES]; /* [clusters] */
+};
+
+/* A cluster seen from another cell: its number and the column and row of its cell, 1 being the seeing cell's
+ * own, in one word. */
+SPHFSI_INLINE uint32_t seen_cluster(int32_t cluster, int column, int row)
+{
+    return (uint32_t)cluster << 4 | (uint32_t)row << 2 | (uint32_t)column;
+}
+SPHFSI_INLINE size_t seen_number(uint32_t seen) { return seen >> 4; }
+SPHFSI_INLINE unsigned seen_column(uint32_t seen) { return seen & 3; }
+SPHFSI_INLINE unsigned seen_row(uint32_t seen) { return seen >> 2 & 3; }
+enum { CLUSTERS_MOST = 1 << 28 };
+
+/* The clusters of one kind in the nine cells around one: their boxes, from that cell's centre. */
+struct surroundings {
+    _Alignas(64) float side[BOX_SIDES][CLUSTERS_AROUND + LANES_FLOAT];
+    _Alignas(64) uint32_t seen[CLUSTERS_AROUND + LANES_FLOAT];
+    int n;
+};
+
+/* Those of them that a cluster has to look at. */
+struct cluster_list {
+    _Alignas(64) uint32_t seen[CLUSTERS_AROUND + LANES_FLOAT];
+    int n;
+};
+
+/* Room for the boxes of n clusters. */
+enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Looks around a cell. */
+void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
+                     const struct cells *c, enum kind kind, int32_t cell, double h);
+
+/* Lists the clusters around that lie within reach (2h) of a box. */
+void clusters_near(struct cluster_list *near, const struct surroundings *s,
+                   const struct cluster_boxes *boxes, int32_t cluster);
+
+#endif

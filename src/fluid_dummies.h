@@ -1,0 +1,321 @@
+/* SPDX-License-Identifier: MIT
+ * Walls and structures as the fluid's sweeps have them: pressures, mirrored velocities and forces by the
+ * fluid around. A part of the sweeps' text (fluid_sweep.h), once for each precision. */
+
+/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with accelerations
+ * (ax, ay) from the fluid that they see; 0 where none is in reach. */
+SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct view *see,
+                                         const struct receiver *s, const double *ax,
+                                         const double *ay, double pressure[GROUPS])
+{
+    vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(see, k, part) {
+        const uint32_t seen = see->seen[k];
+        const real *const b = candidates(see, seen, part);
+        const vreal dx = s->x[seen_column(seen)] - lane(b, LANE_X);
+        const vreal dy = s->y[seen_row(seen)] - lane(b, LANE_Y);
+        const vreal w = kernel_of(vsqrt(vfma(dy, dy, dx * dx)));
+        const vreal mass = w * (vset(1) + lane(b, LANE_DENS));
+        sum_w[part] = sum_w[part] + w;
+        sum_p[part] = vfma(w, lane(b, LANE_P), sum_p[part]);
+        sum_x[part] = vfma(mass, dx, sum_x[part]);
+        sum_y[part] = vfma(mass, dy, sum_y[part]);
+    }
+    real weight[GROUPS], p[GROUPS], x[GROUPS], y[GROUPS];
+    total(sum_w, weight);
+    total(sum_p, p);
+    total(sum_x, x);
+    total(sum_y, y);
+    for (int g = 0; g < GROUPS; g++) {
+        const double lift =
+            (f->k.gravity[0] - ax[g]) * (double)x[g] + (f->k.gravity[1] - ay[g]) * (double)y[g];
+        const double mean = ((double)p[g] + f->k.rho0 * f->k.h * lift) / (double)weight[g];
+        /* A particle alone on a wall meets nothing but its own pressure; pulled as well as pushed, its
+         * bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third of c0. */
+        pressure[g] = seen_at_all(weight[g]) ? max2(f->k.lowest_wall_pressure, mean) : 0;
+    }
+}
+
+/* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less the mean of
+ * the fluid's around them, so that between them the fluid moves with the surface. */
+static void mirrored_velocity(const struct view *see, const struct receiver *s, double *u,
+                              double *v)
+{
+    vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
+    EACH_SEEN(see, k, part) {
+        const uint32_t seen = see->seen[k];
+        const real *const b = candidates(see, seen, part);
+        const vreal dx = s->x[seen_column(seen)] - lane(b, LANE_X);
+        const vreal dy = s->y[seen_row(seen)] - lane(b, LANE_Y);
+        const vreal w = kernel_of(vsqrt(vfma(dy, dy, dx * dx)));
+        sum_w[part] = sum_w[part] + w;
+        sum_u[part] = vfma(w, lane(b, LANE_U), sum_u[part]);
+        sum_v[part] = vfma(w, lane(b, LANE_V), sum_v[part]);
+    }
+    real weight[GROUPS], fluid_u[GROUPS], fluid_v[GROUPS];
+    total(sum_w, weight);
+    total(sum_u, fluid_u);
+    total(sum_v, fluid_v);
+    for (int g = 0; g < GROUPS; g++) {
+        if (!seen_at_all(weight[g])) continue;
+        u[g] = 2 * u[g] - (double)fluid_u[g] / (double)weight[g];
+        v[g] = 2 * v[g] - (double)fluid_v[g] / (double)weight[g];
+    }
+}
+
+/* Takes sums over pairs, times a factor of each receiver, off its force. */
+SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS], double factor,
+                             const double *volume, double *fx, double *fy)
+{
+    real x[GROUPS], y[GROUPS];
+    total(sum_x, x);
+    total(sum_y, y);
+    for (int g = 0; g < GROUPS; g++) {
+        fx[g] += factor * volume[g] * (double)x[g];
+        fy[g] += factor * volume[g] * (double)y[g];
+    }
+}
+
+/* The mirror image of what sum_dummies adds to the fluid by laminar viscosity, as in fluid_force; s has
+ * the mirrored velocity. */
+static void drag_force(const struct fluid *f, const struct view *see, const struct receiver *s,
+                       const double *volume, const struct lane_constants *k, double *fx, double *fy)
+{
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(see, m, part) {
+        const uint32_t seen = see->seen[m];
+        const struct pair q = pair_load(s, seen, candidates(see, seen, part));
+        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
+        sum_x[part] = vfma(weight, q.u, sum_x[part]);
+        sum_y[part] = vfma(weight, q.v, sum_y[part]);
+    }
+    add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
+}
+
+/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with the sign reversed;
+ * N/m per depth. The mirror image of what the fluid particles sum. */
+SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct view *see,
+                               const struct receiver *s, const real *own, const double *volume,
+                               const struct lane_constants *k, unsigned effects, double *fx,
+                               double *fy)
+{
+    const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + LANE_LIFT_X * CLUSTER) : vset(0);
+    const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + LANE_LIFT_Y * CLUSTER) : vset(0);
+    const vreal near = effects & FX_REPULSION ? vspread(own + LANE_NEAR * CLUSTER) : vset(0);
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(see, m, part) {
+        const uint32_t seen = see->seen[m];
+        const real *const b = candidates(see, seen, part);
+        struct pair q = pair_load(s, seen, b);
+        q.p = lane(b, LANE_P);
+        vreal stress = fx_pressure(s, &q);
+        if (effects & FX_ONE_SIDED)
+            stress = q.p + fx_one_sided(q.p, lane(b, LANE_DENS), -q.x, -q.y, lift_x, lift_y, k);
+        if (effects & FX_REPULSION)
+            stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+        const vreal g = q.slope * stress;
+        sum_x[part] = vfma(g, q.x, sum_x[part]);
+        sum_y[part] = vfma(g, q.y, sum_y[part]);
+    }
+    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, fx, fy);
+}
+
+/* The surface per depth, m, on which a pressure of 1 Pa on both sides of the pair would press. */
+static void wetted_surface(const struct fluid *f, const struct view *see, const struct receiver *s,
+                           const double *volume, double *wet_x, double *wet_y)
+{
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(see, m, part) {
+        const uint32_t seen = see->seen[m];
+        const struct pair q = pair_load(s, seen, candidates(see, seen, part));
+        sum_x[part] = vfma(q.slope, q.x, sum_x[part]);
+        sum_y[part] = vfma(q.slope, q.y, sum_y[part]);
+    }
+    add_force(sum_x, sum_y, 2 * PAIR_SLOPE * f->k.h, volume, wet_x, wet_y);
+}
+
+/* Effects that walls and structures have code of their own for: without them it is stamped out. */
+#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION | FX_IMPEDANCE)
+
+/* The particles of a cluster: those there are, and their places in the arrays. */
+struct dummies {
+    enum kind kind;
+    int count;
+    const int32_t *at; /* [count] */
+    size_t cluster;
+    real *lanes;
+};
+
+/* Copies a field of the particles of a cluster, or zeros where it is off. */
+SPHFSI_INLINE void take(const struct dummies *d, const double *field, double out[CLUSTER])
+{
+    for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
+}
+
+SPHFSI_INLINE void put(const struct dummies *d, const double in[CLUSTER], double *field)
+{
+    for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
+}
+
+SPHFSI_INLINE void put_lanes(const struct dummies *d, const double in[CLUSTER], enum lane_field m)
+{
+    for (int r = 0; r < d->count; r++) d->lanes[(int)m * CLUSTER + r] = (real)in[r];
+}
+
+/* Where they are, with the box around them. */
+SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *p,
+                                 const struct cells *c, int32_t cell, const struct dummies *d)
+{
+    const double inv_h = 1 / f->k.h;
+    for (int r = 0; r < d->count; r++) {
+        const int32_t i = d->at[r];
+        const double x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
+        const double y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
+        d->lanes[LANE_X * CLUSTER + r] = (real)(x * inv_h);
+        d->lanes[LANE_Y * CLUSTER + r] = (real)(y * inv_h);
+    }
+    cluster_close(d->lanes, f->lanes[d->kind].n, d->count);
+    cluster_box(&f->lanes[d->kind].boxes, d->cluster, d->lanes, d->count);
+}
+
+/* What fx_one_sided and fx_repulsion need of the dummies. */
+SPHFSI_INLINE void surface_lanes(const struct fluid *f, const struct particles *p,
+                                 const struct dummies *d, const double ax[CLUSTER],
+                                 const double ay[CLUSTER], unsigned fx)
+{
+    for (int r = 0; r < d->count; r++) {
+        real *const own = d->lanes + r;
+        if (fx & FX_ONE_SIDED) {
+            own[LANE_LIFT_X * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[0] - ax[r]));
+            own[LANE_LIFT_Y * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[1] - ay[r]));
+        }
+        if (fx & FX_REPULSION) {
+            const double spacing =
+                0.5 * (1 + sqrt(f->volume[d->kind][p->body[d->at[r]]])) * f->k.dp;
+            own[LANE_NEAR * CLUSTER] = (real)(square(REPULSION_REACH * spacing / f->k.h) + ETA2);
+        }
+    }
+}
+
+/* The forces on those of a kind that feels them. */
+SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
+                                  const struct dummies *d, const struct view *see,
+                                  const struct place *place, const struct lane_constants *k,
+                                  unsigned fx)
+{
+    const bool wets = p->wet_x && (fx & FX_IMPEDANCE);
+    double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
+           wet_y[CLUSTER] = {0};
+    for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
+        const real *const own = d->lanes + r;
+        struct receiver s = receiver_at(place, own);
+        s.u = s.v = vset(0);
+        s.p = vspread(own + LANE_P * CLUSTER);
+        double volume[GROUPS];
+        for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[LANE_VOLUME * CLUSTER + g];
+        fluid_force(f, see, &s, own, volume, k, fx, &force_x[r], &force_y[r]);
+        if (wets) wetted_surface(f, see, &s, volume, &wet_x[r], &wet_y[r]);
+        if (!(fx & FX_NO_SLIP)) continue;
+        s.u = vspread(own + LANE_MIRROR_U * CLUSTER);
+        s.v = vspread(own + LANE_MIRROR_V * CLUSTER);
+        for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[LANE_STICKS * CLUSTER + g];
+        drag_force(f, see, &s, volume, k, &force_x[r], &force_y[r]);
+    }
+    put(d, force_x, p->fx);
+    put(d, force_y, p->fy);
+    if (!wets) return;
+    put(d, wet_x, p->wet_x);
+    put(d, wet_y, p->wet_y);
+}
+
+/* Velocities that the fluid meets where it sticks, with the body's own elsewhere. */
+static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
+                  const struct view *see, const struct place *place, const double u[CLUSTER],
+                  const double v[CLUSTER])
+{
+    double sticks[CLUSTER] = {0}, mirror_u[CLUSTER], mirror_v[CLUSTER];
+    memcpy(mirror_u, u, sizeof mirror_u);
+    memcpy(mirror_v, v, sizeof mirror_v);
+    for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
+        const struct receiver s = receiver_at(place, d->lanes + r);
+        mirrored_velocity(see, &s, &mirror_u[r], &mirror_v[r]);
+    }
+    for (int r = 0; r < d->count; r++) {
+        sticks[r] = see->n && f->sticks[d->kind][p->body[d->at[r]]];
+        if (sticks[r]) continue;
+        mirror_u[r] = u[r];
+        mirror_v[r] = v[r];
+    }
+    put_lanes(d, mirror_u, LANE_MIRROR_U);
+    put_lanes(d, mirror_v, LANE_MIRROR_V);
+    put_lanes(d, sticks, LANE_STICKS);
+}
+
+/* A cluster of wall or solid particles of a cell. */
+SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
+                                  const struct dummies *d, const struct view *see,
+                                  const struct place *place, const struct lane_constants *k,
+                                  unsigned fx)
+{
+    const bool solid = d->kind == KIND_SOLID;
+    double u[CLUSTER], v[CLUSTER], ax[CLUSTER], ay[CLUSTER], pressure[CLUSTER] = {0};
+    take(d, solid ? p->wx : p->vx, u);
+    take(d, solid ? p->wy : p->vy, v);
+    take(d, p->ax, ax);
+    take(d, p->ay, ay);
+    for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
+        const struct receiver s = receiver_at(place, d->lanes + r);
+        extrapolated_pressure(f, see, &s, &ax[r], &ay[r], &pressure[r]);
+    }
+    double dens[CLUSTER] = {0}, volume[CLUSTER] = {0};
+    for (int r = 0; r < d->count; r++) {
+        /* Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the fluid. */
+        const double own =
+            f->k.mass / f->k.rho0 * square(1 / f->k.h) * f->volume[d->kind][p->body[d->at[r]]];
+        dens[r] = eos_dens(pressure[r], f->k.rho0, f->k.c0);
+        volume[r] = own / (1 + dens[r]);
+    }
+    put(d, pressure, p->p);
+    put(d, dens, p->dens);
+    put_lanes(d, u, LANE_U);
+    put_lanes(d, v, LANE_V);
+    put_lanes(d, volume, LANE_VOLUME);
+    put_lanes(d, pressure, LANE_P);
+    put_lanes(d, dens, LANE_DENS);
+    if (fx & FX_NO_SLIP) stick(f, p, d, see, place, u, v);
+    surface_lanes(f, p, d, ax, ay, fx);
+    if (p->fx) dummies_forces(f, p, d, see, place, k, fx);
+}
+
+SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
+                                   const struct cells *c, int32_t cell, unsigned fx)
+{
+    const struct cell_list *list = &c->kind[kind];
+    struct sight *const sight = &f->sight[thread_index()];
+    const struct place place = place_of(f, c);
+    const struct lane_constants k =
+        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct lane_constants){0};
+    look_around(sight, f, c, KIND_FLUID, cell);
+    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+        const int32_t cluster = list->cluster[cell] + m;
+        const struct dummies d = {kind, particles_in(list, cell, m),
+                                  &list->order[list->start[cell] + m * CLUSTER], (size_t)cluster,
+                                  cluster_lanes(&f->lanes[kind], (size_t)cluster)};
+        place_dummies(f, p, c, cell, &d);
+        const struct view see = look_at(sight, f, KIND_FLUID, kind, cluster);
+        dummies_update(f, p, &d, &see, &place, &k, fx);
+    }
+}
+
+static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                           const struct cells *c, enum kind kind)
+{
+#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
+    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
+        const int32_t cell = f->near_fluid[kind][k];
+        if (f->effects & SURFACE_EFFECTS)
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects);
+        else
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, 0);
+    }
+}
