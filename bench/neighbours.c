@@ -81,7 +81,12 @@ SPHFSI_INLINE void add_pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfl
 
 static void keep(enum way way, int i, const vfloat sum[3])
 {
-    for (int k = 0; k < 3; k++) rate[way][k][i] = vsum_float(sum[k]);
+    for (int k = 0; k < 3; k++) {
+        float group[GROUPS_FLOAT];
+        vsum_four_float(sum[k], group);
+        rate[way][k][i] = group[0];
+        for (int g = 1; g < GROUPS_FLOAT; g++) rate[way][k][i] += group[g];
+    }
 }
 
 static void sweep_tiles(void)

@@ -1,10 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Lanes: compiler vector types for arithmetic (+ - * / are the language's), and the few verbs the
  * language has no word for. vfloat and vdouble fill the widest register there is: 512, 256 or 128 bits.
- * Sums over lanes follow one fixed tree and fma is explicit, so that a lane count gives the same bits
- * whatever the compiler and the instruction set (build with -ffp-contract=off); -DSPHFSI_LANES=8 asks an
- * AVX-512 machine for the 8 float lanes, and the bits, of an AVX2 one. Sweeps that give each lane a
- * particle of its own do not depend on the width at all. */
+ * Sums over lanes follow one fixed tree and fma is explicit, so that bits are the same whatever the compiler
+ * and the instruction set (build with -ffp-contract=off); -DSPHFSI_LANES=8 asks an AVX-512 machine for the 8
+ * float lanes of an AVX2 one. */
 #ifndef SPHFSI_SIMD_H
 #define SPHFSI_SIMD_H
 
@@ -190,25 +189,7 @@ SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 #undef SIMD_LANEWISE
 #endif
 
-/* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. Maximum likewise. */
-SPHFSI_INLINE float vsum_float(vfloat a)
-{
-#ifdef SIMD_AVX2
-#ifdef SIMD_AVX512
-    const __m256 eight =
-        _mm256_add_ps(_mm512_castps512_ps256((__m512)a), _mm512_extractf32x8_ps((__m512)a, 1));
-#else
-    const __m256 eight = (__m256)a;
-#endif
-    const __m128 four = _mm_add_ps(_mm256_castps256_ps128(eight), _mm256_extractf128_ps(eight, 1));
-    const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-    return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
-#else
-    for (int half = LANES_FLOAT / 2; half > 0; half /= 2)
-        for (int l = 0; l < half; l++) a[l] += a[l + half];
-    return a[0];
-#endif
-}
+/* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. And the largest of them. */
 SPHFSI_INLINE double vsum_double(vdouble a)
 {
 #ifdef SIMD_AVX2
@@ -321,6 +302,16 @@ SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, flo
 #ifdef SIMD_AVX512
     const __mmask16 below = _mm512_cmp_ps_mask((__m512)a, _mm512_set1_ps(limit), _CMP_LT_OQ);
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(below, _mm512_loadu_si512(item)));
+    return __builtin_popcount(below);
+#elif defined SIMD_AVX2 && defined __BMI2__
+    /* The numbers of the lanes that stay, a byte each, by the mask. */
+    const unsigned below =
+        (unsigned)_mm256_movemask_ps(_mm256_cmp_ps((__m256)a, _mm256_set1_ps(limit), _CMP_LT_OQ));
+    const uint64_t bytes = _pdep_u64(below, 0x0101010101010101) * 0xff;
+    const uint64_t lanes = _pext_u64(0x0706050403020100, bytes);
+    const __m256i from = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)lanes));
+    const __m256i all = _mm256_loadu_si256((const __m256i *)(const void *)item);
+    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_permutevar8x32_epi32(all, from));
     return __builtin_popcount(below);
 #else
     int n = 0;

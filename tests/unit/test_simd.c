@@ -122,27 +122,6 @@ static void test_fma_rounds_once(void)
                      0x1p-12f + 0x1p-26f);
 }
 
-/* The sum is by halving, whatever the machine: lane k meets lane k + n/2. */
-static void test_sum_follows_the_tree(void)
-{
-    uint32_t seed = 1;
-    for (int turn = 0; turn < 200; turn++) {
-        float f[LANES_FLOAT], tree_f[LANES_FLOAT];
-        double d[LANES_DOUBLE], tree_d[LANES_DOUBLE];
-        for (int l = 0; l < LANES_FLOAT; l++) {
-            seed = seed * 1664525u + 1013904223u;
-            tree_f[l] = f[l] = ldexpf((float)(int32_t)seed, -(int)(seed >> 28));
-        }
-        for (int l = 0; l < LANES_DOUBLE; l++) tree_d[l] = d[l] = (double)f[l] / 3;
-        for (int half = LANES_FLOAT / 2; half; half /= 2)
-            for (int l = 0; l < half; l++) tree_f[l] += tree_f[l + half];
-        for (int half = LANES_DOUBLE / 2; half; half /= 2)
-            for (int l = 0; l < half; l++) tree_d[l] += tree_d[l + half];
-        TEST_ASSERT_TRUE(tree_f[0] == vsum_float(vload_float(f)));
-        TEST_ASSERT_TRUE(tree_d[0] == vsum_double(vload_double(d)));
-    }
-}
-
 static void test_top_finds_the_largest_wherever_it_is(void)
 {
     for (int where = 0; where < LANES_FLOAT; where++) {
@@ -170,6 +149,22 @@ static void test_loads_and_stores_at_any_address(void)
         vstore_float(f + shift, vset_float((float)shift + 1));
         TEST_ASSERT_TRUE(vload_float(f + shift)[LANES_FLOAT - 1] == (float)shift + 1);
         TEST_ASSERT_TRUE(f[shift + LANES_FLOAT] == 0);
+    }
+}
+
+/* The sum is by halving, whatever the machine: lane k meets lane k + n/2. */
+static void test_sum_follows_the_tree(void)
+{
+    uint32_t seed = 1;
+    for (int turn = 0; turn < 200; turn++) {
+        double d[LANES_DOUBLE], tree[LANES_DOUBLE];
+        for (int l = 0; l < LANES_DOUBLE; l++) {
+            seed = seed * 1664525u + 1013904223u;
+            tree[l] = d[l] = ldexp((double)(int32_t)seed, -(int)(seed >> 28)) / 3;
+        }
+        for (int half = LANES_DOUBLE / 2; half; half /= 2)
+            for (int l = 0; l < half; l++) tree[l] += tree[l + half];
+        TEST_ASSERT_TRUE(tree[0] == vsum_double(vload_double(d)));
     }
 }
 
