@@ -10,7 +10,11 @@
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
 
-enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS, MAX_SORT_THREADS = 256 };
+enum {
+    DIGIT_BITS = CELLS_SORT_DIGIT_BITS,
+    DIGITS = 1 << DIGIT_BITS,
+    MAX_SORT_THREADS = CELLS_SORT_THREADS
+};
 
 /* All or one: teams must not shrink (solid.c). */
 static int sort_threads(void) { return thread_count() <= MAX_SORT_THREADS ? thread_count() : 1; }
@@ -28,10 +32,14 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
-/* Cells along a stretch: twice as wide as the reach, or the three that joined sides take. */
+/* Sides of cells over the reach: with wider ones particles meet more boxes of clusters, with narrower ones
+ * clusters are less often full. And the least, for the three cells that joined sides take. */
+#define SIDE 1.6
+#define LEAST_SIDE 1.05
+
 static double cells_across(double width, double reach)
 {
-    const double wide = floor(width / (2 * reach)), narrow = floor(width / (1.05 * reach));
+    const double wide = floor(width / (SIDE * reach)), narrow = floor(width / (LEAST_SIDE * reach));
     return max2(1, max2(wide, min2(3, narrow)));
 }
 
@@ -50,7 +58,7 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                 d, ERR_INPUT,
                 "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
                 "smaller or dp larger",
-                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, 2 * reach);
+                upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
         c->side[k] = (upper[k] - lower[k]) / n[k];
         c->stray = min2(c->stray, max2(0, 0.5 * (c->side[k] - reach)));
     }
@@ -77,15 +85,14 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                                                                                   : ERR_MEMORY;
 }
 
-enum err cells_join(struct cells *c, int axis, struct diag *d)
+enum err cells_join(struct cells *c, int axis, double reach, struct diag *d)
 {
     const int n = axis ? c->ny : c->nx;
     if (n < 3)
-        return diag_fail(
-            d, ERR_INPUT,
-            "[domain] is periodic in %c and %.6g m wide there, %.3g times the reach of "
-            "%.3g m: at least 3 times is needed, lest a particle meets another twice",
-            "xy"[axis], n * c -> side[axis], (double)n, c -> side[axis]);
+        return diag_fail(d, ERR_INPUT,
+                         "[domain] is periodic in %c and %.6g m wide there: at least %.6g m is "
+                         "needed, lest a particle meets another twice",
+                         "xy"[axis], n * c -> side[axis], 3 * LEAST_SIDE * reach);
     c->joined[axis] = true;
     return ERR_OK;
 }
@@ -247,7 +254,6 @@ static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
     for (int t = 0; t < threads; t++)
         cells_of_share(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
     list->n_active = sum.cells;
-    list->n_cluster = sum.clusters;
 }
 
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)

@@ -11,17 +11,16 @@ struct overhang {
     double by[4];
 };
 
-/* Most particles of one kind in a cell, where some thirty belong. More than this means particles have
+/* Most particles of one kind in a cell, where some twenty belong. More than this means particles have
  * collapsed onto each other: a guard stops the run before. And particles near each other that sweeps take
  * together. */
-enum { CELL_CAPACITY = 512, CLUSTER = 4 };
+enum { CELL_CAPACITY = 320, CLUSTER = 4 };
 
 /* The particles of one kind by cell. Cells are numbered cy * nx + cx. */
 struct cell_list {
     int32_t *start, *count; /* [nx * ny]: range in cell order; count 0: empty */
     int32_t *cluster; /* [nx * ny]: number of the cell's first cluster among all of its kind */
-    int32_t n_cluster;
-    int32_t *active; /* cells that hold particles, in Morton order */
+    int32_t *active;  /* cells that hold particles, in Morton order */
     int32_t n_active;
     struct overhang most; /* the largest over all cells, when last measured */
     int32_t *order;       /* particle at each place of the cell order; fluid is kept sorted in
@@ -31,7 +30,10 @@ struct cell_list {
 /* Bits of a digit of the radix sort. */
 enum { CELLS_SORT_DIGIT_BITS = 11 };
 
-/* A grid of cells at least twice as wide as the interaction reaches, or once in a narrow domain. */
+/* Most threads that sort; where there are more, one does. */
+enum { CELLS_SORT_THREADS = 256 };
+
+/* A grid of cells wider than the interaction reaches, by less in a narrow domain. */
 struct cells {
     double lower[2], side[2]; /* m */
     double stray;             /* m, from their cells, before particles have to be sorted again */
@@ -54,7 +56,7 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                       const struct particles kinds[KIND_COUNT], struct diag *d) SPHFSI_CHECKED;
 
 /* Joins the opposite sides along an axis; a cell must not meet another one twice: three of them. */
-enum err cells_join(struct cells *c, int axis, struct diag *d) SPHFSI_CHECKED;
+enum err cells_join(struct cells *c, int axis, double reach, struct diag *d) SPHFSI_CHECKED;
 
 /* Sorts the particles of one kind into cells, by Morton key and then into clusters of neighbours
  * (cells_order.c); the fluid itself is permuted. Particles outside the grid come last, by id, and are left
@@ -124,6 +126,14 @@ SPHFSI_INLINE double cell_centre_x(const struct cells *c, int32_t cell)
 SPHFSI_INLINE double cell_centre_y(const struct cells *c, int32_t cell)
 {
     return c->lower[1] + ((double)cell_y(c, cell) + 0.5) * c->side[1];
+}
+
+/* Whether a position is no further from a cell than half of a side, which no particle strays. */
+SPHFSI_INLINE bool cells_near(const struct cells *c, int32_t cell, double x, double y)
+{
+    const double dx = cells_short_way(c, 0, x - cell_centre_x(c, cell)) / c->side[0],
+                 dy = cells_short_way(c, 1, y - cell_centre_y(c, cell)) / c->side[1];
+    return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
 #endif

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * The order of the particles within a cell: clusters of four that lie close together, packed as the leaves
- * of an R-tree are (sort-tile-recursive, Leutenegger, Lopez and Edgington 1997): strips of whole clusters
- * by x, each by y. It follows from positions and ids alone: those of the fluid as it is sorted, of bodies in
- * their reference configuration, which a restart knows as well. */
+ * The order of the particles within a cell: clusters of four that lie close together, the leaves of a k-d
+ * tree (Bentley 1975) that halves along the longer axis. It follows from positions and ids alone: those of
+ * the fluid as it is sorted, of bodies in their reference configuration, which a restart knows as well. */
 #include <math.h>
 
 #include "cells.h"
@@ -33,8 +32,8 @@ static void sort_spots(struct spot *spot, int n, int axis)
     }
 }
 
-/* Strips that make clusters as wide as high. */
-static int strips_of(const struct spot *spot, int n)
+/* The axis along which the particles extend further. */
+static int longer_axis(const struct spot *spot, int n)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int k = 0; k < n; k++)
@@ -42,11 +41,17 @@ static int strips_of(const struct spot *spot, int n)
             low[axis] = min2(low[axis], spot[k].at[axis]);
             high[axis] = max2(high[axis], spot[k].at[axis]);
         }
-    const int clusters = (n + CLUSTER - 1) / CLUSTER;
-    const double width = high[0] - low[0], height = high[1] - low[1];
-    if (!(width < clusters * height)) return clusters;
-    const int strips = (int)lround(sqrt(clusters * width / height));
-    return strips < 1 ? 1 : strips;
+    return high[1] - low[1] > high[0] - low[0];
+}
+
+/* Halves the particles along the longer axis, whole clusters each, until they are clusters. */
+static void split(struct spot *spot, int n)
+{
+    if (n <= CLUSTER) return;
+    sort_spots(spot, n, longer_axis(spot, n));
+    const int half = (n + CLUSTER - 1) / CLUSTER / 2 * CLUSTER;
+    split(spot, half);
+    split(spot + half, n - half);
 }
 
 /* One cell's range of pairs. */
@@ -58,10 +63,7 @@ static void order_cell(uint64_t *pair, int n, const struct particles *p)
         const uint32_t i = (uint32_t)pair[k];
         spot[k] = (struct spot){{x[i], y[i]}, p->id[i], i};
     }
-    const int clusters = (n + CLUSTER - 1) / CLUSTER, strips = strips_of(spot, n);
-    const int most = (clusters + strips - 1) / strips * CLUSTER;
-    sort_spots(spot, n, 0);
-    for (int k = 0; k < n; k += most) sort_spots(&spot[k], n - k < most ? n - k : most, 1);
+    split(spot, n);
     for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | spot[k].particle;
 }
 
@@ -84,18 +86,17 @@ static int64_t end_of_cell(const uint64_t *pair, int64_t n, int64_t k)
     return end;
 }
 
-/* The first place from k on where a cell begins. */
-static int64_t next_cell(const uint64_t *pair, int64_t n, int64_t k)
-{
-    return k > 0 && k < n ? end_of_cell(pair, n, k - 1) : k;
-}
-
+/* Shares of the places begin where cells do: found before any of them is put in order. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads)
 {
+    int64_t first[CELLS_SORT_THREADS + 1] = {0};
+    for (int t = 1; t <= threads; t++) {
+        const int64_t k = n * t / threads;
+        first[t] = k > 0 && k < n ? end_of_cell(pair, n, k - 1) : k;
+    }
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++) {
-        const int64_t last = next_cell(pair, n, n * (t + 1) / threads);
-        for (int64_t k = next_cell(pair, n, n * t / threads), end; k < last; k = end) {
+        for (int64_t k = first[t], end; k < first[t + 1]; k = end) {
             end = end_of_cell(pair, n, k);
             if (pair[k] >> 32 == UINT32_MAX || end - k > CELL_CAPACITY)
                 order_by_id(&pair[k], end - k, p->id);

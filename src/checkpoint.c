@@ -10,7 +10,7 @@
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 2, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
+enum { FORMAT = 3, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
 
 /* What a block belongs to: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
@@ -550,12 +550,20 @@ static enum err check_cells(const struct simulation *s, enum kind kind, struct d
 {
     const struct particles *p = &s->kind[kind];
     const int64_t cells = (int64_t)s->cells.nx * s->cells.ny;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->cell[i] < -1 || p->cell[i] >= cells)
+    for (int64_t i = 0; i < p->n; i++) {
+        const int32_t cell = p->cell[i];
+        if (cell < -1 || cell >= cells)
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64 " is in cell %d, the case has -1 "
                              "(outside) to %" PRId64,
-                             kind_names[kind], i, p->cell[i], cells - 1);
+                             kind_names[kind], i, cell, cells - 1);
+        if (cell < 0) continue;
+        if (!cells_near(&s->cells, cell, p->x[i], p->y[i]))
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64
+                             " at (%.6g, %.6g) m is nowhere near cell %d, where it should be",
+                             kind_names[kind], i, p->x[i], p->y[i], cell);
+    }
     return ERR_OK;
 }
 

@@ -133,7 +133,7 @@ void fluid_find_near(struct fluid *f, const struct cells *c);
 /* Most particles of any kind in one cell. */
 int32_t fluid_crowding(const struct cells *c);
 
-/* One evaluation: pressures, dummies, rates. Positions must lie within the skin of the last sorting.
+/* One evaluation: pressures, dummies, rates. The cells must have room (cells_room).
  * The time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
                     double phase_seconds[PHASE_COUNT]);

@@ -214,7 +214,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     if (s->crowded)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some ten "
+            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some twenty "
             "belong: the run is unstable; a smaller cfl or another sound_speed may help",
             s->state.time, crowd, s->cells.side[0]);
     return ERR_OK;
@@ -251,7 +251,7 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, stray,
                      s->kind, d));
     for (int axis = 0; axis < 2; axis++)
-        if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, d));
+        if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, reach, d));
     TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, &s->cells, d));
     start_fluid(s);
     return ERR_OK;

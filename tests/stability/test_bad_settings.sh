@@ -48,7 +48,7 @@ says 0 'shifting_speed = largest under gravity lifts a free surface' column.cfg 
     water.shifting_speed=largest
 says 0 'their product is beyond 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6
-says 1 'particles start in one cell of .* has room for 512' gate.cfg numerics.h_over_dp=2 \
+says 1 'particles start in one cell of .* has room for 320' gate.cfg numerics.h_over_dp=2 \
     'thickness=100 mm' gate.dp=dp/3
 says 0 'growing modes' beam.cfg beam.hourglass_form=printed beam.gradient=linear
 "$sphfsi" tests/stability/gate.cfg --explain >"$dir/output" 2>&1

@@ -72,13 +72,13 @@ static bool adjacent(int32_t a, int32_t b)
            abs(cell_y(&cells, a) - cell_y(&cells, b)) <= 1;
 }
 
-/* Twice the reach, but three cells where a narrow domain has room for them, whose particles stray less. */
+/* 1.6 times the reach, but three cells where a narrow domain has room for them: particles stray less. */
 static void test_cells_are_no_smaller_than_the_reach(void)
 {
     scatter(false);
     for (int k = 0; k < 2; k++) {
-        TEST_ASSERT_TRUE(cells.side[k] >= 2 * reach);
-        TEST_ASSERT_TRUE(cells.side[k] < 4 * reach);
+        TEST_ASSERT_TRUE(cells.side[k] >= 1.6 * reach);
+        TEST_ASSERT_TRUE(cells.side[k] < 3.2 * reach);
     }
     assert_near(1e-12, upper[0] - lower[0], cells.nx * cells.side[0], "width");
     assert_near(1e-12, upper[1] - lower[1], cells.ny * cells.side[1], "height");
@@ -141,7 +141,6 @@ static void check_cover(enum kind kind, int64_t inside)
         }
     }
     for (int32_t cell = 0; cell < cells.nx * cells.ny; cell++) total += list->count[cell];
-    TEST_ASSERT_EQUAL_INT32(clusters, list->n_cluster);
     TEST_ASSERT_TRUE(clusters <= cells_clusters(&cells, inside));
     TEST_ASSERT_EQUAL_INT64(inside, place);
     TEST_ASSERT_EQUAL_INT64(inside, total);

@@ -90,6 +90,25 @@ static void says_what_it_is(void)
     TEST_ASSERT_EQUAL_STRING("1.2.3", info.version);
 }
 
+/* Cells are numbers of a grid: those of another one are refused, whatever they name. */
+static void cells_of_another_grid_are_refused(void)
+{
+    const int32_t wrong[] = {-2, 0, INT32_MAX};
+    const char *const why[] = {"is in cell -2", "is nowhere near cell 0", "is in cell 2147483647"};
+    for (int k = 0; k < 3; k++) {
+        open_with(0, NULL);
+        step(&first, 3);
+        first.kind[KIND_FLUID].cell[99] = wrong[k];
+        store(tiny_path("grid"), &first);
+        TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
+        diag = (struct diag){0};
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_apply(&other, &second, &diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, why[k]), diag.text);
+        tearDown();
+        setUp();
+    }
+}
+
 /* --- damage: two checkpoints of a small run, of which the newer one is damaged --- */
 
 static int warnings;
@@ -229,6 +248,7 @@ int main(void)
     RUN_TEST(same_bits_verlet);
     RUN_TEST(same_bits_double_single_rate);
     RUN_TEST(says_what_it_is);
+    RUN_TEST(cells_of_another_grid_are_refused);
     RUN_TEST(every_flipped_byte_is_found);
     RUN_TEST(every_changed_byte_is_found);
     RUN_TEST(every_cut_is_found);
