@@ -106,7 +106,8 @@ static double run_float(void)
     for (int k = 0; k < ROUNDS; k++)
         for (int c = 0; c < CHAINS; c++) x[c] = vfma_float(x[c], a, b);
     double sum = 0;
-    for (int c = 0; c < CHAINS; c++) sum += (double)vsum_float(x[c]);
+    for (int c = 0; c < CHAINS; c++)
+        for (int l = 0; l < LANES_FLOAT; l++) sum += (double)x[c][l];
     return sum;
 }
 
