@@ -152,7 +152,7 @@ $(B)/tests/fault/test_alloc: private WRAP := $(addprefix -Wl$(comma)--wrap=,mall
 $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
 	$(Q)$(LINK)
 
-test: $(PROGRAM) $(TESTS)
+test: $(PROGRAM) $(TESTS) $(BENCHES)
 	@SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
 
 test-neon:

@@ -242,7 +242,7 @@ static void stick(const struct fluid *f, const struct particles *p, const struct
     }
     for (int r = 0; r < d->count; r++) {
         sticks[r] = see->n && f->sticks[d->kind][p->body[d->at[r]]];
-        if (sticks[r]) continue;
+        if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];
     }
