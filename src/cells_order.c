@@ -97,7 +97,7 @@ void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threa
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++) {
         for (int64_t k = first[t], end; k < first[t + 1]; k = end) {
-            end = end_of_cell(pair, n, k);
+            end = end_of_cell(pair, first[t + 1], k);
             if (pair[k] >> 32 == UINT32_MAX || end - k > CELL_CAPACITY)
                 order_by_id(&pair[k], end - k, p->id);
             else
