@@ -12,14 +12,13 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct vie
     EACH_SEEN(see, k, part) {
         const uint32_t seen = see->seen[k];
         const real *const b = candidates(see, seen, part);
-        const vreal dx = s->x[seen_column(seen)] - lane(b, LANE_X);
-        const vreal dy = s->y[seen_row(seen)] - lane(b, LANE_Y);
-        const vreal w = kernel_of(vsqrt(vfma(dy, dy, dx * dx)));
+        const struct way d = way_from(s, seen, b);
+        const vreal w = kernel_of(d.length);
         const vreal mass = w * (vset(1) + lane(b, LANE_DENS));
         sum_w[part] = sum_w[part] + w;
         sum_p[part] = vfma(w, lane(b, LANE_P), sum_p[part]);
-        sum_x[part] = vfma(mass, dx, sum_x[part]);
-        sum_y[part] = vfma(mass, dy, sum_y[part]);
+        sum_x[part] = vfma(mass, d.x, sum_x[part]);
+        sum_y[part] = vfma(mass, d.y, sum_y[part]);
     }
     real weight[GROUPS], p[GROUPS], x[GROUPS], y[GROUPS];
     total(sum_w, weight);
@@ -45,9 +44,8 @@ static void mirrored_velocity(const struct view *see, const struct receiver *s, 
     EACH_SEEN(see, k, part) {
         const uint32_t seen = see->seen[k];
         const real *const b = candidates(see, seen, part);
-        const vreal dx = s->x[seen_column(seen)] - lane(b, LANE_X);
-        const vreal dy = s->y[seen_row(seen)] - lane(b, LANE_Y);
-        const vreal w = kernel_of(vsqrt(vfma(dy, dy, dx * dx)));
+        const struct way d = way_from(s, seen, b);
+        const vreal w = kernel_of(d.length);
         sum_w[part] = sum_w[part] + w;
         sum_u[part] = vfma(w, lane(b, LANE_U), sum_u[part]);
         sum_v[part] = vfma(w, lane(b, LANE_V), sum_v[part]);

@@ -107,17 +107,15 @@ static void slopes_of(const struct view *see, const struct receiver *a, double s
     EACH_SEEN(see, k, part) {
         const uint32_t seen = see->seen[k];
         const real *const b = candidates(see, seen, part);
-        const vreal rx = a->x[seen_column(seen)] - lane(b, LANE_X);
-        const vreal ry = a->y[seen_row(seen)] - lane(b, LANE_Y);
-        const vreal q = vsqrt(vfma(ry, ry, rx * rx));
-        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1)));
+        const struct way r = way_from(a, seen, b);
+        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r.length, vset(1)));
         const vreal w = lane(b, LANE_VOLUME) * (t * t * t);
         const vreal step = w * (a->dens - lane(b, LANE_DENS));
-        xx[part] = vfma(w * rx, rx, xx[part]);
-        xy[part] = vfma(w * rx, ry, xy[part]);
-        yy[part] = vfma(w * ry, ry, yy[part]);
-        dx[part] = vfma(step, rx, dx[part]);
-        dy[part] = vfma(step, ry, dy[part]);
+        xx[part] = vfma(w * r.x, r.x, xx[part]);
+        xy[part] = vfma(w * r.x, r.y, xy[part]);
+        yy[part] = vfma(w * r.y, r.y, yy[part]);
+        dx[part] = vfma(step, r.x, dx[part]);
+        dy[part] = vfma(step, r.y, dy[part]);
     }
     real A[GROUPS], B[GROUPS], C[GROUPS], U[GROUPS], V[GROUPS];
     total(xx, A);

@@ -103,6 +103,20 @@ SPHFSI_INLINE int particles_in(const struct cell_list *list, int32_t cell, int32
     return rest < CLUSTER ? rest : CLUSTER;
 }
 
+/* From candidates to receivers, in units of h. */
+struct way {
+    vreal x, y, length;
+};
+
+SPHFSI_INLINE struct way way_from(const struct receiver *a, uint32_t seen, const real *b)
+{
+    struct way d;
+    d.x = a->x[seen_column(seen)] - lane(b, LANE_X);
+    d.y = a->y[seen_row(seen)] - lane(b, LANE_Y);
+    d.length = vsqrt(vfma(d.y, d.y, d.x * d.x));
+    return d;
+}
+
 /* Geometry of the pairs, Eq. 5. */
 SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t seen, const real *b)
 {
