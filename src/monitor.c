@@ -242,8 +242,29 @@ static enum err check_step(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Walls that are nowhere would be seen by no fluid, and not be missed. */
+static enum err check_motion(const struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < s->moving.n; k++) {
+        const struct moving_body *const b = &s->moving.body[k];
+        const struct motion_state *const m = &b->placed;
+        const double sum = m->d[0] + m->d[1] + m->v[0] + m->v[1] + m->a[0] + m->a[1] + m->angle +
+                           m->rate + m->angular_acceleration;
+        if (!isfinite(sum))
+            return diag_fail(
+                d, ERR_GUARD,
+                "t = %.6g s: [motion %s] puts [wall %s] at a displacement of (%g, %g) m "
+                "with (%g, %g) m/s and (%g, %g) m/s^2: all of them have to be finite",
+                s->state.time, s->scene->motion[b->motion].common.name,
+                s->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
+                m->a[1]);
+    }
+    return ERR_OK;
+}
+
 enum err monitor_check(struct simulation *s, struct diag *d)
 {
+    if (s->effects & FX_MOTION) TRY(check_motion(s, d));
     if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
     if (s->effects & FX_SOLID) TRY(check_solid(s, d));
     return check_step(s, d);

@@ -164,6 +164,23 @@ static void a_motion_of_the_program(void)
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is push"));
 }
 
+static void lost_after_a_while(void *context, double t, double d[2], double v[2], double acc[2])
+{
+    pushing(context, t, d, v, acc);
+    if (t > 0.01) d[0] = (double)NAN;
+}
+
+/* The fluid would not feel a wall that is nowhere, and go on. */
+static void a_motion_to_nowhere_is_stopped(void)
+{
+    a = create(piston, NULL);
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_set_motion(a, "push", lost_after_a_while, NULL));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_GUARD, sphfsi_advance(a, 0.02));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "[motion push] puts [wall piston]"),
+                                 sphfsi_error());
+    TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.01, sphfsi_time(a));
+}
+
 static void an_unknown_probe_names_the_nearest(void)
 {
     double values[SPHFSI_PROBE_COLUMNS];
@@ -250,6 +267,7 @@ int main(void)
     RUN_TEST(a_drop_falls);
     RUN_TEST(forces_act_on_what_is_there);
     RUN_TEST(a_motion_of_the_program);
+    RUN_TEST(a_motion_to_nowhere_is_stopped);
     RUN_TEST(an_unknown_probe_names_the_nearest);
     RUN_TEST(simulations_in_two_threads);
     RUN_TEST(errors_belong_to_their_thread);
