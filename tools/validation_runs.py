@@ -215,10 +215,10 @@ BY_NAME = {spec.name: spec for spec in SPECS}
 
 
 def physics(text):
-    """Lines of an effective case that the results depend on: comments name the program, and the
-    paths of files the place where it ran."""
+    """Lines of an effective case that the results depend on: comments name the program, the paths of
+    files the place where it ran, and numerics.skin says only when particles are sorted."""
     return [line for line in text.splitlines()
-            if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label "))]
+            if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label ", "skin "))]
 
 
 def last_line(done):

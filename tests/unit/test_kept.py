@@ -289,6 +289,15 @@ def test_choice():
         assert any("verlet" in text or plain not in text for text in texts), case
 
 
+def test_what_is_meant():
+    """Of an effective case counts what results depend on."""
+    case = "# 0.1.0\ntitle = a\ndp = 0.001 m\n[numerics]\nskin = 0.15\ncfl = 0.4\n"
+    same = validation_runs.physics(case)
+    assert same == ["dp = 0.001 m", "[numerics]", "cfl = 0.4"], same
+    assert validation_runs.physics(case.replace("0.15", "0.6").replace("= a", "= b")) == same
+    assert validation_runs.physics(case.replace("cfl = 0.4", "cfl = 0.2")) != same
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(Path(folder))
@@ -298,6 +307,7 @@ def main():
     test_thinning()
     test_archive()
     test_choice()
+    test_what_is_meant()
     print("kept results stand for their runs, and damaged or stale ones do not")
 
 
