@@ -10,14 +10,10 @@
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
 
-enum {
-    DIGIT_BITS = CELLS_SORT_DIGIT_BITS,
-    DIGITS = 1 << DIGIT_BITS,
-    MAX_SORT_THREADS = CELLS_SORT_THREADS
-};
+enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS };
 
 /* All or one: teams must not shrink (solid.c). */
-static int sort_threads(void) { return thread_count() <= MAX_SORT_THREADS ? thread_count() : 1; }
+static int sort_threads(void) { return thread_count() <= CELLS_SORT_THREADS ? thread_count() : 1; }
 
 static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
                             const struct particles *p, bool keep_order, struct diag *d)
@@ -238,7 +234,7 @@ static struct tally cells_of_share(struct cell_list *list, const int32_t *cell, 
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
     const int threads = sort_threads();
-    struct tally found[MAX_SORT_THREADS], sum = {0, 0};
+    struct tally found[CELLS_SORT_THREADS], sum = {0, 0};
     list_clear(list);
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)

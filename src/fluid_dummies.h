@@ -61,7 +61,7 @@ static void mirrored_velocity(const struct view *see, const struct receiver *s, 
     }
 }
 
-/* Takes sums over pairs, times a factor of each receiver, off its force. */
+/* Adds sums over pairs, times a factor and the volume of each receiver, to its force. */
 SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS], double factor,
                              const double *volume, double *fx, double *fy)
 {
@@ -198,7 +198,7 @@ SPHFSI_INLINE void surface_lanes(const struct fluid *f, const struct particles *
 /* The forces on those of a kind that feels them. */
 SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
                                   const struct dummies *d, const struct view *see,
-                                  const struct place *place, const struct lane_constants *k,
+                                  const struct cell_sides *sides, const struct lane_constants *k,
                                   unsigned fx)
 {
     const bool wets = p->wet_x && (fx & FX_IMPEDANCE);
@@ -206,7 +206,7 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
            wet_y[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
         const real *const own = d->lanes + r;
-        struct receiver s = receiver_at(place, own);
+        struct receiver s = receiver_at(sides, own);
         s.u = s.v = vset(0);
         s.p = vspread(own + LANE_P * CLUSTER);
         double volume[GROUPS];
@@ -228,14 +228,14 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
 
 /* Velocities that the fluid meets where it sticks, with the body's own elsewhere. */
 static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
-                  const struct view *see, const struct place *place, const double u[CLUSTER],
+                  const struct view *see, const struct cell_sides *sides, const double u[CLUSTER],
                   const double v[CLUSTER])
 {
     double sticks[CLUSTER] = {0}, mirror_u[CLUSTER], mirror_v[CLUSTER];
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
-        const struct receiver s = receiver_at(place, d->lanes + r);
+        const struct receiver s = receiver_at(sides, d->lanes + r);
         mirrored_velocity(see, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
@@ -252,7 +252,7 @@ static void stick(const struct fluid *f, const struct particles *p, const struct
 /* A cluster of wall or solid particles of a cell. */
 SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
                                   const struct dummies *d, const struct view *see,
-                                  const struct place *place, const struct lane_constants *k,
+                                  const struct cell_sides *sides, const struct lane_constants *k,
                                   unsigned fx)
 {
     const bool solid = d->kind == KIND_SOLID;
@@ -262,7 +262,7 @@ SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
     take(d, p->ax, ax);
     take(d, p->ay, ay);
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
-        const struct receiver s = receiver_at(place, d->lanes + r);
+        const struct receiver s = receiver_at(sides, d->lanes + r);
         extrapolated_pressure(f, see, &s, &ax[r], &ay[r], &pressure[r]);
     }
     double dens[CLUSTER] = {0}, volume[CLUSTER] = {0};
@@ -280,9 +280,9 @@ SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
     put_lanes(d, volume, LANE_VOLUME);
     put_lanes(d, pressure, LANE_P);
     put_lanes(d, dens, LANE_DENS);
-    if (fx & FX_NO_SLIP) stick(f, p, d, see, place, u, v);
+    if (fx & FX_NO_SLIP) stick(f, p, d, see, sides, u, v);
     surface_lanes(f, p, d, ax, ay, fx);
-    if (p->fx) dummies_forces(f, p, d, see, place, k, fx);
+    if (p->fx) dummies_forces(f, p, d, see, sides, k, fx);
 }
 
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
@@ -290,7 +290,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
 {
     const struct cell_list *list = &c->kind[kind];
     struct sight *const sight = &f->sight[thread_index()];
-    const struct place place = place_of(f, c);
+    const struct cell_sides sides = cell_sides_of(f, c);
     const struct lane_constants k =
         fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct lane_constants){0};
     look_around(sight, f, c, KIND_FLUID, cell);
@@ -301,7 +301,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
                                   cluster_lanes(&f->lanes[kind], (size_t)cluster)};
         place_dummies(f, p, c, cell, &d);
         const struct view see = look_at(sight, f, KIND_FLUID, kind, cluster);
-        dummies_update(f, p, &d, &see, &place, &k, fx);
+        dummies_update(f, p, &d, &see, &sides, &k, fx);
     }
 }
 

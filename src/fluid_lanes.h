@@ -136,7 +136,7 @@ static void slopes_of_cell(const struct fluid *f, struct particles *p, const str
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     struct sight *const sight = &f->sight[thread_index()];
-    const struct place place = place_of(f, c);
+    const struct cell_sides sides = cell_sides_of(f, c);
     look_around(sight, f, c, KIND_FLUID, cell);
     for (int32_t m = 0; m < clusters_in(list, cell); m++) {
         const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
@@ -144,7 +144,7 @@ static void slopes_of_cell(const struct fluid *f, struct particles *p, const str
         const struct view see = look_at(sight, f, KIND_FLUID, KIND_FLUID, cluster);
         for (int r = 0; r < count; r += GROUPS) {
             const real *const own = cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster) + r;
-            struct receiver a = receiver_at(&place, own);
+            struct receiver a = receiver_at(&sides, own);
             a.dens = vspread(own + LANE_DENS * CLUSTER);
             double slope[GROUPS][2];
             slopes_of(&see, &a, slope);

@@ -179,10 +179,10 @@ SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles
 }
 
 /* Receivers of the fluid from their lanes on. */
-SPHFSI_INLINE struct receiver fluid_at(const struct place *place, const real *own,
+SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
                                        const struct lane_constants *k, unsigned fx)
 {
-    struct receiver a = receiver_at(place, own);
+    struct receiver a = receiver_at(sides, own);
     a.u = vspread(own + LANE_U * CLUSTER);
     a.v = vspread(own + LANE_V * CLUSTER);
     a.p = vspread(own + LANE_P * CLUSTER);
@@ -198,11 +198,11 @@ SPHFSI_INLINE struct receiver fluid_at(const struct place *place, const real *ow
 /* A cluster of `count` particles from i on. */
 SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, int32_t i,
                                     int count, const real *own, const struct view see[KIND_COUNT],
-                                    const struct place *place, const struct lane_constants *k,
+                                    const struct cell_sides *sides, const struct lane_constants *k,
                                     unsigned fx, vreal *approach, struct fluid_extremes *top)
 {
     for (int r = 0; r < count; r += GROUPS) {
-        const struct receiver a = fluid_at(place, own + r, k, fx);
+        const struct receiver a = fluid_at(sides, own + r, k, fx);
         const int here = count - r < GROUPS ? count - r : GROUPS;
         struct sums s[PARTS] = {{.approach = *approach}};
         sum_fluid(&see[KIND_FLUID], &a, k, fx, s);
@@ -224,7 +224,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     struct sight *const sight = &f->sight[thread_index()];
-    const struct place place = place_of(f, c);
+    const struct cell_sides sides = cell_sides_of(f, c);
     bool around[KIND_COUNT];
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         around[kind] = kind == KIND_FLUID || (f->near_dummies[cell] && f->n_near_fluid[kind]);
@@ -237,7 +237,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
             see[kind] = around[kind] ? look_at(sight, f, (enum kind)kind, KIND_FLUID, cluster)
                                      : (struct view){.n = 0};
         rates_of_cluster(f, p, list->start[cell] + m * CLUSTER, particles_in(list, cell, m),
-                         cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster), see, &place, k, fx,
+                         cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster), see, &sides, k, fx,
                          approach, top);
     }
 }

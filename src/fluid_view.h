@@ -53,13 +53,13 @@ SPHFSI_INLINE struct view look_at(struct sight *sight, const struct fluid *f, en
 }
 
 /* Sides of the cells in units of h. */
-struct place {
-    real side_x, side_y;
+struct cell_sides {
+    real x, y;
 };
 
-static struct place place_of(const struct fluid *f, const struct cells *c)
+static struct cell_sides cell_sides_of(const struct fluid *f, const struct cells *c)
 {
-    return (struct place){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
+    return (struct cell_sides){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
 }
 
 /* Particles a, one to each group of four lanes; with their places as seen from the centres of the three
@@ -82,11 +82,11 @@ struct pair {
 };
 
 /* Receivers from their lanes on, as far as geometry goes. */
-SPHFSI_INLINE struct receiver receiver_at(const struct place *place, const real *own)
+SPHFSI_INLINE struct receiver receiver_at(const struct cell_sides *sides, const real *own)
 {
     struct receiver a;
     const vreal x = vspread(own + LANE_X * CLUSTER), y = vspread(own + LANE_Y * CLUSTER);
-    const vreal side_x = vset(place->side_x), side_y = vset(place->side_y);
+    const vreal side_x = vset(sides->x), side_y = vset(sides->y);
     a.x[0] = x + side_x;
     a.x[1] = x;
     a.x[2] = x - side_x;

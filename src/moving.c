@@ -16,8 +16,7 @@ enum err moving_create(struct moving *m, struct arena *a, const struct scene *s,
     memset(m, 0, sizeof *m);
     m->idle_is_work = s->numerics.idle == IDLE_WORK;
     m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
-    m->moved = arena_alloc(a, (size_t)s->n_wall, sizeof *m->moved, "moving walls", d);
-    if (!m->body || !m->moved) return ERR_MEMORY;
+    if (!m->body) return ERR_MEMORY;
     for (int k = 0; k < s->n_wall; k++) {
         const int motion = s->wall[k].motion[0] ? scene_find_motion(s, s->wall[k].motion) : -1;
         if (motion < 0) continue;
@@ -74,22 +73,15 @@ void moving_place(struct moving *m, const struct scene *s, struct particles *wal
         b->placed = now;
         b->known = true;
         b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
-        m->moved[b->section] = true;
+        m->moved = true;
         place_body(b, walls);
     }
 }
 
-bool moving_any(const struct moving *m)
-{
-    bool any = false;
-    for (int k = 0; k < m->n; k++) any |= m->moved[m->body[k].section];
-    return any;
-}
-
 void moving_sort(struct moving *m, struct cells *c, struct particles *walls)
 {
-    if (m->idle_is_work || moving_any(m)) cells_sort(c, KIND_WALL, walls);
-    for (int k = 0; k < m->n; k++) m->moved[m->body[k].section] = false;
+    if (m->idle_is_work || m->moved) cells_sort(c, KIND_WALL, walls);
+    m->moved = false;
 }
 
 double moving_speed2(const struct moving *m, const struct particles *walls)

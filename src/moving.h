@@ -18,7 +18,7 @@ struct moving_body {
 struct moving {
     int n;
     struct moving_body *body;
-    bool *moved;       /* by wall section: since the last sorting */
+    bool moved;        /* any wall, since the last sorting */
     bool idle_is_work; /* numerics.idle = work: nothing is left alone */
 };
 
@@ -28,10 +28,7 @@ enum err moving_create(struct moving *m, struct arena *a, const struct scene *s,
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void moving_place(struct moving *m, const struct scene *s, struct particles *walls, double time);
 
-/* Whether a wall has moved since the last sorting. */
-bool moving_any(const struct moving *m);
-
-/* Sorts the walls that have moved since the last sorting in among those that have not. */
+/* Sorts the walls again where any has moved since the last sorting. */
 void moving_sort(struct moving *m, struct cells *c, struct particles *walls);
 
 /* Largest speed, squared, and power that the walls give to the fluid, W/m. */

@@ -238,7 +238,7 @@ static bool sorting_due(struct simulation *s)
     const double hair = 1e-6 * s->fluid.k.h;
     if (bounded && s->room > hair) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        if (s->cells.kind[kind].n_active && (kind != KIND_WALL || moving_any(&s->moving)))
+        if (s->cells.kind[kind].n_active && (kind != KIND_WALL || s->moving.moved))
             cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
     find_room(s);
     return !(s->room > 0);
