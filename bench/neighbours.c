@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * Where a particle finds its neighbours: in the clusters near its own, as the program does it; in a tile of
- * candidates copied once per cell; or in a list of its own with a skin (Verlet 1967), as most codes do. The
- * bare laws (Eqs. 1 and 3b) over the same particles in single precision, one thread. Prints CSV; all ways
- * give the same sums but for rounding.
+ * Where a particle finds its neighbours: in the clusters near its own, all pairs from both sides or, as the
+ * program does it, those in a share of cells from one; in a tile of candidates copied once per cell; or in a
+ * list of its own with a skin (Verlet 1967), as most codes do. The bare laws (Eqs. 1 and 3b) over the same
+ * particles in single precision, one thread. Prints CSV; all ways give the same sums but for rounding.
  *   bench_neighbours [--reps N] */
-#include "clusters.h"
+#include "fluid.h"
 #include "morton.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ enum { SIDE = 316, N = SIDE * SIDE, TILE = 512, ROOM = 64, MAX_REPS = 99 };
 #define REACH (2 * H + SKIN)
 
 enum field { X, Y, U, V, P, VOLUME, FIELDS };
-enum way { WAY_TILE, WAY_LIST, WAY_CLUSTER, WAYS };
+enum way { WAY_TILE, WAY_LIST, WAY_CLUSTER, WAY_SHARE, WAYS };
 
 static float field[FIELDS][N + TILE], rate[WAYS][3][N]; /* by way: d ln rho/dt, ax, ay */
 static int32_t first[(SIDE + 8) * (SIDE + 8)], count[(SIDE + 8) * (SIDE + 8)];
@@ -65,18 +65,26 @@ static void place(void)
         if (count[cell_of(i)]++ == 0) first[cell_of(i)] = i;
 }
 
-/* What a vector of pairs adds to the three sums of a particle, or of one to each group. */
-SPHFSI_INLINE void add_pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
-                             vfloat volume, vfloat sum[3])
+/* What a vector of pairs brings the three sums of a particle, or of one to each group. */
+SPHFSI_INLINE void pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
+                         vfloat volume, vfloat more[3])
 {
     const vfloat dx = me[X] - x, dy = me[Y] - y;
     const vfloat q = vsqrt_float(vfma_float(dy, dy, dx * dx)) * (1 / H);
     const vfloat t = vmax_float(vset_float(0), vfma_float(vset_float(-0.5f), q, vset_float(1)));
     const vfloat slope = t * t * t * volume;
     const vfloat stress = slope * (me[P] + p);
-    sum[0] = vfma_float(slope, vfma_float(me[U] - u, dx, (me[V] - v) * dy), sum[0]);
-    sum[1] = vfma_float(stress, dx, sum[1]);
-    sum[2] = vfma_float(stress, dy, sum[2]);
+    more[0] = slope * vfma_float(me[U] - u, dx, (me[V] - v) * dy);
+    more[1] = stress * dx;
+    more[2] = stress * dy;
+}
+
+SPHFSI_INLINE void add_pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
+                             vfloat volume, vfloat sum[3])
+{
+    vfloat more[3];
+    pairs(me, x, y, u, v, p, volume, more);
+    for (int k = 0; k < 3; k++) sum[k] = sum[k] + more[k];
 }
 
 static void keep(enum way way, int i, const vfloat sum[3])
@@ -173,8 +181,8 @@ static struct arena arena;
 static struct particles kinds[KIND_COUNT];
 static struct cells grid;
 static struct cluster_boxes boxes;
-static float *lanes; /* [clusters][FIELDS][CLUSTER] */
-static int64_t looked_at;
+static float *lanes;             /* [clusters][FIELDS][CLUSTER] */
+static int64_t looked_at, taken; /* pairs by clusters, and in shares of them */
 
 static enum err clusters_create(struct diag *d)
 {
@@ -264,6 +272,80 @@ static void sweep_clusters(void)
     }
 }
 
+/* By cluster of a share and sum: [receiver][candidate]. */
+static float room[1 + SHARE_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
+
+/* The receivers of a cluster from the r-th on, pairs with those ahead for both sides: with both volumes. */
+static void share_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
+                            vfloat sum[3])
+{
+    const float side[2] = {(float)grid.side[0], (float)grid.side[1]};
+    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
+    vfloat me[FIELDS], more[3];
+    for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
+    const vfloat x = me[X], y = me[Y];
+    for (int k = 0; k < near->n; k++) {
+        const uint32_t seen = near->seen[k];
+        const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
+        me[X] = x - ((float)seen_column(seen) - 1) * side[0];
+        me[Y] = y - ((float)seen_row(seen) - 1) * side[1];
+        pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
+              vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
+              vfour_float(b + P * CLUSTER), me[VOLUME] * vfour_float(b + VOLUME * CLUSTER), more);
+        const size_t place = (seen_number(seen) - before) * seen_ahead(seen);
+        for (int m = 0; m < 3; m++) {
+            float *const at = room[place][m][r];
+            sum[m] = sum[m] + more[m];
+            vstore_float(at, vload_float(at) + more[m]);
+        }
+    }
+}
+
+/* Of the m-th cluster of a cell, what its receivers have and what those before left for them. */
+static void share_cluster(const struct cluster_list *near, size_t before, int32_t cell, int32_t m)
+{
+    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const int32_t cluster = listed->cluster[cell] + m, i = listed->start[cell] + m * CLUSTER;
+    float own[3][CLUSTER];
+    for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT) {
+        vfloat sum[3] = {{0}, {0}, {0}};
+        share_receivers(near, before, cluster, r, sum);
+        for (int k = 0; k < 3; k++) vsum_four_float(sum[k], &own[k][r]);
+    }
+    for (int k = 0; k < 3; k++) {
+        float(*const left)[CLUSTER] = room[(size_t)cluster - before][k];
+        const float sign = k == 0 ? 1 : -1;
+        for (int r = 0; r < CLUSTER && m * CLUSTER + r < listed->count[cell]; r++)
+            rate[WAY_SHARE][k][kinds[KIND_FLUID].id[i + r]] =
+                (own[k][r] + sign * ((left[0][r] + left[2][r]) + (left[1][r] + left[3][r]))) /
+                lanes[(cluster * FIELDS + VOLUME) * CLUSTER + r];
+        memset(left, 0, sizeof room[0][0]);
+    }
+}
+
+static void sweep_shares(void)
+{
+    static struct surroundings around;
+    static struct cluster_list near;
+    const struct cell_list *const listed = &grid.kind[KIND_FLUID];
+    const int32_t n = listed->n_active;
+    taken = 0;
+    for (int32_t share = 0; share < fluid_shares(n); share++) {
+        const int32_t begin = fluid_share(n, share), end = fluid_share(n, share + 1);
+        if (begin == end) continue;
+        const struct cluster_range range = clusters_of(listed, begin, end);
+        for (int32_t k = begin; k < end; k++) {
+            const int32_t cell = listed->active[k];
+            clusters_ahead_around(&around, &boxes, &grid, KIND_FLUID, cell, (double)H, range);
+            for (int32_t m = clusters_in(listed, cell) - 1; m >= 0; m--) {
+                clusters_ahead_near(&near, &around, &boxes);
+                taken += near.n * CLUSTER * CLUSTER;
+                share_cluster(&near, (size_t)range.first - 1, cell, m);
+            }
+        }
+    }
+}
+
 static int compare_double(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
@@ -304,6 +386,7 @@ int main(int argc, char **argv)
     measure("cluster", "sort", sort_clusters, reps);
     measure("cluster", "fill", fill_clusters, reps);
     measure("cluster", "look and sweep", sweep_clusters, reps);
+    measure("share", "look and sweep", sweep_shares, reps);
     double off = 0, top = 0, mean = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++) {
@@ -314,7 +397,8 @@ int main(int argc, char **argv)
         }
     for (int i = 0; i < N; i++) mean += (double)neighbours[i] / N;
     say("list", "entries", "1/particle", mean);
-    say("cluster", "candidates", "1/particle", (double)looked_at / N);
+    say("cluster", "pairs", "1/particle", (double)looked_at / N);
+    say("share", "pairs", "1/particle", (double)taken / N);
     say("all", "largest difference", "of the largest", off / top);
     arena_free(&arena);
     free(list);

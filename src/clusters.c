@@ -15,52 +15,111 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
     return ERR_OK;
 }
 
-/* Appends `count` clusters of one cell from `first` on; `seen` is the word for cluster 0 there. */
-static void append(struct surroundings *s, const struct cluster_boxes *boxes, int32_t first,
-                   int32_t count, uint32_t seen, float dx, float dy)
+#define FAR_AWAY 1e18f
+
+/* A cell and where it lies from another one, whose own column and row are 1. */
+struct cell_seen {
+    int32_t cell;
+    int column, row;
+};
+
+/* The cells around one that have particles, itself among them. */
+SPHFSI_INLINE int cells_around(struct cell_seen seen[9], const struct cells *c,
+                               const struct cell_list *list, int32_t cell)
 {
-    const vfloat shift_x = vset_float(dx), shift_y = vset_float(dy);
-    for (int m = 0; m < count; m += LANES_FLOAT) {
+    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    int columns[3], n = 0;
+    for (int column = 0; column < 3; column++) columns[column] = cells_place(c, 0, cx + column - 1);
+    for (int row = 0; row < 3; row++) {
+        const int y = cells_place(c, 1, cy + row - 1);
+        for (int column = 0; column < 3 && y >= 0; column++) {
+            const int32_t other = y * c->nx + columns[column];
+            if (columns[column] < 0 || list->count[other] == 0) continue;
+            seen[n++] = (struct cell_seen){other, column, row};
+        }
+    }
+    return n;
+}
+
+/* Sides of the cells in units of h. */
+struct sides {
+    float x, y;
+};
+
+SPHFSI_INLINE struct sides sides_of(const struct cells *c, double h)
+{
+    return (struct sides){(float)(c->side[0] / h), (float)(c->side[1] / h)};
+}
+
+/* Appends the clusters of a cell; `ahead` is SEEN_AHEAD or 0. By eights, since a cell has four or five: what
+ * wider vectors store beyond is a loss. */
+SPHFSI_INLINE void append(struct surroundings *s, const struct cluster_boxes *boxes,
+                          const struct cell_list *list, struct sides sides, struct cell_seen seen,
+                          uint32_t ahead)
+{
+    const float dx = (float)(seen.column - 1) * sides.x, dy = (float)(seen.row - 1) * sides.y;
+    const int32_t first = list->cluster[seen.cell], count = clusters_in(list, seen.cell);
+    const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
+    const eight_word word =
+        ramp * seen_cluster(1, 0, 0) + (seen_cluster(first, seen.column, seen.row) | ahead);
+    for (int m = 0; m < count; m += 8) {
+        const int to = s->n + m;
         for (int k = 0; k < BOX_SIDES; k++)
-            vstore_float(&s->side[k][s->n + m], vload_float(&boxes->side[k][first + m]) +
-                                                    (k < BOX_DOWN ? shift_x : shift_y));
-        vstore_ramp(&s->seen[s->n + m], seen + seen_cluster(first + m, 0, 0),
-                    seen_cluster(1, 0, 0));
+            *(eight_float_at *)&s->side[k][to] =
+                *(const eight_float_at *)&boxes->side[k][first + m] + (k < BOX_DOWN ? dx : dy);
+        *(eight_word_at *)&s->seen[to] = word + seen_cluster(m, 0, 0);
     }
     s->n += count;
+}
+
+/* Boxes that nothing is near to, for a vector that reaches beyond the last. */
+SPHFSI_INLINE void close_boxes(struct surroundings *s)
+{
+    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(FAR_AWAY));
 }
 
 void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
                      const struct cells *c, enum kind kind, int32_t cell, double h)
 {
     const struct cell_list *const list = &c->kind[kind];
-    const float side_x = (float)(c->side[0] / h), side_y = (float)(c->side[1] / h);
-    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
-    int columns[3];
-    for (int column = 0; column < 3; column++) columns[column] = cells_place(c, 0, cx + column - 1);
+    const struct sides sides = sides_of(c, h);
+    struct cell_seen seen[9];
+    const int n = cells_around(seen, c, list, cell);
     s->n = 0;
-    for (int row = 0; row < 3; row++) {
-        const int y = cells_place(c, 1, cy + row - 1);
-        for (int column = 0; column < 3 && y >= 0; column++) {
-            const int32_t other = y * c->nx + columns[column];
-            if (columns[column] < 0 || list->count[other] == 0) continue;
-            append(s, boxes, list->cluster[other], clusters_in(list, other),
-                   seen_cluster(0, column, row), (float)(column - 1) * side_x,
-                   (float)(row - 1) * side_y);
-        }
-    }
-    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(1e18f));
+    for (int k = 0; k < n; k++) append(s, boxes, list, sides, seen[k], 0);
+    close_boxes(s);
 }
 
-void clusters_near(struct cluster_list *near, const struct surroundings *s,
-                   const struct cluster_boxes *boxes, int32_t cluster)
+void clusters_ahead_around(struct surroundings *s, const struct cluster_boxes *boxes,
+                           const struct cells *c, enum kind kind, int32_t cell, double h,
+                           struct cluster_range range)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    const struct sides sides = sides_of(c, h);
+    struct cell_seen seen[9];
+    const int n = cells_around(seen, c, list, cell);
+    s->n = 0;
+    for (int k = 0; k < n; k++) {
+        const int32_t first = list->cluster[seen[k].cell];
+        const bool inside = first >= range.first && first < range.end;
+        if (inside && first <= list->cluster[cell]) continue;
+        append(s, boxes, list, sides, seen[k], inside ? SEEN_AHEAD : 0);
+    }
+    append(s, boxes, list, sides, (struct cell_seen){cell, 1, 1}, SEEN_AHEAD);
+    s->n--;
+    close_boxes(s);
+}
+
+/* Appends those clusters around that lie within reach of a box. */
+SPHFSI_INLINE void list_near(struct cluster_list *near, const struct surroundings *s,
+                             const struct cluster_boxes *boxes, size_t cluster)
 {
     const vfloat none = vset_float(0), left = vset_float(boxes->side[BOX_LEFT][cluster]),
                  right = vset_float(boxes->side[BOX_RIGHT][cluster]),
                  down = vset_float(boxes->side[BOX_DOWN][cluster]),
                  up = vset_float(boxes->side[BOX_UP][cluster]);
     const float reach2 = (float)square(REACH_MARGIN * KERNEL_REACH);
-    int n = 0;
+    int n = near->n;
     for (int k = 0; k < s->n; k += LANES_FLOAT) {
         const vfloat dx = vmax_float(none, vmax_float(vload_float(&s->side[BOX_LEFT][k]) - right,
                                                       left - vload_float(&s->side[BOX_RIGHT][k])));
@@ -69,4 +128,22 @@ void clusters_near(struct cluster_list *near, const struct surroundings *s,
         n += vkeep_below(&near->seen[n], &s->seen[k], vfma_float(dy, dy, dx * dx), reach2);
     }
     near->n = n;
+}
+
+void clusters_near(struct cluster_list *near, const struct surroundings *s,
+                   const struct cluster_boxes *boxes, int32_t cluster)
+{
+    near->n = 0;
+    list_near(near, s, boxes, (size_t)cluster);
+}
+
+void clusters_ahead_near(struct cluster_list *near, struct surroundings *s,
+                         const struct cluster_boxes *boxes)
+{
+    const uint32_t own = s->seen[s->n];
+    near->seen[0] = own & ~(uint32_t)SEEN_AHEAD;
+    near->n = 1;
+    list_near(near, s, boxes, seen_number(own));
+    /* Now rather than in the next call, which loads what this stores as a part of vectors. */
+    if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
 }

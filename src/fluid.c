@@ -66,6 +66,19 @@ static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *
     return ERR_OK;
 }
 
+static enum err sight_create(struct fluid *f, struct arena *a, int64_t clusters, struct diag *d)
+{
+    const int64_t most = SHARE_CELLS * (CELL_CAPACITY / CLUSTER);
+    const size_t sums = (size_t)pair_sums(f->effects) * CLUSTER * CLUSTER;
+    f->sight = arena_alloc(a, (size_t)f->threads, sizeof *f->sight, "clusters in sight", d);
+    for (int t = 0; f->sight && t < f->threads; t++) {
+        f->sight[t].room = arena_alloc(a, (size_t)(1 + (clusters < most ? clusters : most)),
+                                       sums * f->sweeps->lane_size, "sums over pairs", d);
+        if (!f->sight[t].room) return ERR_MEMORY;
+    }
+    return f->sight ? ERR_OK : ERR_MEMORY;
+}
+
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
                       const struct particles kinds[KIND_COUNT], const struct cells *c,
                       struct diag *d)
@@ -78,10 +91,10 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, u
                   s->numerics.kernel == KERNEL_GENERIC);
     f->threads = thread_count();
     for (int k = 0; k < KIND_COUNT; k++) f->lanes[k].n = lanes_wanted((enum kind)k, effects);
-    f->sight = arena_alloc(a, (size_t)f->threads, sizeof *f->sight, "clusters in sight", d);
+    TRY(sight_create(f, a, cells_clusters(c, kinds[KIND_FLUID].capacity), d));
     f->near_dummies = arena_alloc(a, (size_t)c->nx * (size_t)c->ny, sizeof *f->near_dummies,
                                   "cells near walls and structures", d);
-    if (!f->sight || !f->near_dummies) return ERR_MEMORY;
+    if (!f->near_dummies) return ERR_MEMORY;
     if (effects & FX_NO_SLIP) TRY(note_slip(f, a, s, d));
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;

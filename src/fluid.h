@@ -95,10 +95,36 @@ struct fluid_sweeps {
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
+/* The fluid's active cells are swept in shares: a pair within one is taken once for both of its particles.
+ * At most so many cells, and multiples of so many shares, so that threads have equally many. The number of
+ * threads must not matter: the order of sums follows from the shares. */
+enum { SHARE_CELLS = 64, SHARES = 16 };
+
+/* The shares of n active cells. */
+SPHFSI_INLINE int32_t fluid_shares(int32_t n)
+{
+    return (n + SHARES * SHARE_CELLS - 1) / (SHARES * SHARE_CELLS) * SHARES;
+}
+
+/* The first cell of the m-th of them; shares may be empty. */
+SPHFSI_INLINE int32_t fluid_share(int32_t n, int32_t m)
+{
+    return (int32_t)((int64_t)n * m / fluid_shares(n));
+}
+
+/* Sums over pairs that an evaluation takes, in this order: force (2), rate, mixing, crowding (2), spread. */
+SPHFSI_INLINE int pair_sums(unsigned effects)
+{
+    return effects & FX_SHIFTING ? 7 : effects & FX_DIFFUSION ? 4 : 3;
+}
+
 /* What the particles of a cell, and of a cluster, may see: a thread's room to work in. */
 struct sight {
     struct surroundings around[KIND_COUNT];
     struct cluster_list near[KIND_COUNT];
+    /* [1 + clusters of a share][sums][receiver][candidate]: what receivers before them brought the clusters
+     * as candidates; zeros between evaluations, but for the first, which is what nobody asks for. */
+    void *room;
 };
 
 struct fluid {

@@ -10,6 +10,8 @@
 #define SWEEP(name) name##_double
 #define SWEEP_LABEL "double"
 #define vset vset_double
+#define vload vload_double
+#define vstore vstore_double
 #define vfma vfma_double
 #define vmin vmin_double
 #define vmax vmax_double

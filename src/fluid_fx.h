@@ -3,18 +3,20 @@
  * text is compiled once for float and once for double lanes: the including file defines `real`,
  * `vreal`, the verbs and lane(). Lengths are in units of h, so that
  *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
- * and every sum below is to be multiplied by -PAIR_SLOPE/h. The clamp of t removes pairs beyond the
+ * and every sum below is to be multiplied by -PAIR_SLOPE/h and, since a pair has the volumes of both,
+ * divided by that of the particle it is for. The clamp of t removes pairs beyond the
  * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
  * b flips the sign of a force and nothing else. */
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
-struct sums {
+/* What a pair brings its receiver; its candidate it brings the opposite, but for the rate and the spread,
+ * which are even. With the volumes of both, over h^4. */
+struct exchange {
     vreal ax, ay;                   /* Pa */
     vreal rate;                     /* m/s */
     vreal mixing;                   /* 1: of Eq. 6, without its factor 2 delta c0/(1 + dens_a) */
     vreal crowd_x, crowd_y, spread; /* 1: sums of slope xi and of slope |xi|^2 */
-    vreal approach;                 /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
 /* Constants of the sweep, spread over the lanes. */
@@ -29,10 +31,7 @@ struct lane_constants {
 };
 
 /* Eq. 4a: sum of V_b v_ab . grad W. */
-SPHFSI_INLINE void fx_continuity(const struct pair *q, struct sums *s)
-{
-    s->rate = vfma(q->slope, q->vx, s->rate);
-}
+SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope * q->vx; }
 
 /* Eq. 4b and 21a, pressure: V_b (P_a + P_b), still to be multiplied by the slope and 1/rho_a. */
 SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
@@ -97,28 +96,25 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct lan
  * FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
  * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
  * of both particles' gradients. */
-SPHFSI_INLINE void fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
-                                const struct lane_constants *k, unsigned fx, struct sums *s)
+SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
+                                 const struct lane_constants *k, unsigned fx)
 {
     vreal step = a->dens - q->dens;
     if (fx & FX_FOURTAKAS) step = step - vfma(k->gy, q->y, k->gx * q->x);
     if (fx & FX_ANTUONO)
         step = step - vset((real)0.5) *
                           vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
-    s->mixing = vfma(step, q->slope * (q->r2 * inv), s->mixing);
+    return step * (q->slope * (q->r2 * inv));
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
  * - sum of V_b x_ab . grad W. */
-SPHFSI_INLINE void fx_crowd(const struct pair *q, struct sums *s)
+SPHFSI_INLINE void fx_crowd(const struct pair *q, struct exchange *e)
 {
-    s->crowd_x = vfma(q->slope, q->x, s->crowd_x);
-    s->crowd_y = vfma(q->slope, q->y, s->crowd_y);
-    s->spread = vfma(q->slope, q->r2, s->spread);
+    e->crowd_x = q->slope * q->x;
+    e->crowd_y = q->slope * q->y;
+    e->spread = q->slope * q->r2;
 }
 
 /* Eq. 28b: the pair's rate of approach or parting. */
-SPHFSI_INLINE void fx_approach(const struct pair *q, vreal inv, struct sums *s)
-{
-    s->approach = vmax(s->approach, vabs(q->vx * inv));
-}
+SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }

@@ -10,6 +10,8 @@
 #define SWEEP(name) name##_mixed
 #define SWEEP_LABEL "mixed"
 #define vset vset_float
+#define vload vload_float
+#define vstore vstore_float
 #define vfma vfma_float
 #define vmin vmin_float
 #define vmax vmax_float

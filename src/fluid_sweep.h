@@ -3,9 +3,9 @@
  *   real, vreal, four_real, LANES, GROUPS, SWEEP(name), the verbs vset vfma vmin vmax vabs vsqrt vtop vfour
  *   vspread vsum_four
  * and include it. Four particles of a cell that lie close together, a cluster, look at the clusters near
- * them. Gather form: a particle sums its own neighbours and writes only itself, so that the bits do not
- * depend on the number of threads; and each lane of a group of four sums its own candidates, so that they
- * do not depend on how many groups a vector holds. */
+ * them. What a thread writes belongs to its share of the cells, and shares do not depend on the number of
+ * threads, so that the bits do not; and each lane of a group of four sums its own candidates, so that they do
+ * not depend on how many groups a vector holds. */
 
 #include <math.h>
 #include <string.h>
@@ -51,131 +51,51 @@ SPHFSI_INLINE bool seen_at_all(real weight) { return (double)weight > 1e-12; }
 
 #include "fluid_dummies.h"
 
-/* Sums over the fluid that is seen; fx is a constant where the kernel is stamped. */
-SPHFSI_INLINE void sum_fluid(const struct view *see, const struct receiver *a,
-                             const struct lane_constants *k, unsigned fx, struct sums sums[PARTS])
+/* The part of the fluid that a thread takes at once. */
+struct share {
+    struct cluster_range range;
+    size_t before; /* the number whose place in the room is the first */
+    real *room;    /* sight.room */
+};
+
+/* Largest values over a share: the lanes are searched once. */
+struct share_top {
+    vreal approach;
+    double acceleration2[CLUSTER];
+};
+
+#include "fluid_pairs.h"
+
+/* Stores the first `count` of four. */
+SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 {
-    EACH_SEEN(see, m, part) {
-        const uint32_t seen = see->seen[m];
-        const real *const b = candidates(see, seen, part);
-        struct sums *const s = &sums[part];
-        struct pair q = pair_load(a, seen, b);
-        q.p = lane(b, LANE_P);
-        fx_continuity(&q, s);
-        vreal stress = fx_pressure(a, &q), inv;
-        if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
-            q.dens = lane(b, LANE_DENS);
-            if (fx & FX_ANTUONO) {
-                q.slope_x = lane(b, LANE_SLOPE_X);
-                q.slope_y = lane(b, LANE_SLOPE_Y);
-            }
-            vreal both;
-            const vreal damping = pair_damping(a, &q, k, &both);
-            inv = damping * both;
-            if (fx & FX_VISCOSITY) stress = fx_viscosity(a, &q, damping, k, stress);
-            if (fx & FX_DIFFUSION) fx_diffusion(a, &q, inv, k, fx, s);
-        } else {
-            inv = vset(1) / (q.r2 + k->eta2);
-        }
-        if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
-        if (fx & FX_LAMINAR) {
-            const vreal weight = fx_laminar(&q, inv, k);
-            s->ax = s->ax - weight * q.u;
-            s->ay = s->ay - weight * q.v;
-        }
-        if (fx & FX_SHIFTING) fx_crowd(&q, s);
-        fx_approach(&q, inv, s);
-        const vreal g = q.slope * stress;
-        s->ax = vfma(g, q.x, s->ax);
-        s->ay = vfma(g, q.y, s->ay);
-    }
+    if (count == CLUSTER)
+        *(four_double_at *)to = four;
+    else
+        for (int r = 0; r < count; r++) to[r] = four[r];
 }
 
-/* Sums over walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
-SPHFSI_INLINE void sum_dummies(const struct view *see, const struct receiver *a,
-                               const struct lane_constants *k, unsigned fx, struct sums sums[PARTS])
-{
-    EACH_SEEN(see, m, part) {
-        const uint32_t seen = see->seen[m];
-        const real *const b = candidates(see, seen, part);
-        struct sums *const s = &sums[part];
-        struct pair q = pair_load(a, seen, b);
-        q.p = lane(b, LANE_P);
-        fx_continuity(&q, s);
-        const vreal inv = vset(1) / (q.r2 + k->eta2);
-        if (fx & FX_NO_SLIP) {
-            const vreal weight = lane(b, LANE_STICKS) * fx_laminar(&q, inv, k);
-            s->ax = s->ax - weight * (a->u - lane(b, LANE_MIRROR_U));
-            s->ay = s->ay - weight * (a->v - lane(b, LANE_MIRROR_V));
-        }
-        if (fx & FX_SHIFTING) fx_crowd(&q, s);
-        fx_approach(&q, inv, s);
-        vreal stress = fx_pressure(a, &q);
-        if (fx & FX_ONE_SIDED)
-            stress = a->p + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, LANE_LIFT_X),
-                                         lane(b, LANE_LIFT_Y), k);
-        if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, LANE_NEAR), inv, k);
-        const vreal g = q.slope * stress;
-        s->ax = vfma(g, q.x, s->ax);
-        s->ay = vfma(g, q.y, s->ay);
-    }
-}
-
-/* Joins the sums over the parts of clusters in the first. */
-SPHFSI_INLINE void sums_join(struct sums s[PARTS])
-{
-    for (int part = 1; part < PARTS; part++) {
-        s[0].ax = s[0].ax + s[part].ax;
-        s[0].ay = s[0].ay + s[part].ay;
-        s[0].rate = s[0].rate + s[part].rate;
-        s[0].mixing = s[0].mixing + s[part].mixing;
-        s[0].crowd_x = s[0].crowd_x + s[part].crowd_x;
-        s[0].crowd_y = s[0].crowd_y + s[part].crowd_y;
-        s[0].spread = s[0].spread + s[part].spread;
-        s[0].approach = vmax(s[0].approach, s[part].approach);
-    }
-}
-
-/* Writes the rates of `count` particles from i on: the factors that the sums lack. */
+/* Writes the rates of `count` particles from i on, which `left` has sums of: the factors that they lack. */
 SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
-                               int count, const struct sums *s, unsigned fx,
-                               struct fluid_extremes *top)
+                               int count, const struct cluster_sums *s, real *left, unsigned fx,
+                               double acceleration2[CLUSTER])
 {
-    real sum_x[GROUPS], sum_y[GROUPS], rate[GROUPS], mixing[GROUPS] = {0};
-    vsum_four(s->ax, sum_x);
-    vsum_four(s->ay, sum_y);
-    vsum_four(s->rate, rate);
-    if (fx & FX_DIFFUSION) vsum_four(s->mixing, mixing);
-    const double slope = PAIR_SLOPE / k->h, mix = 2 * k->delta * k->c0;
-    double ax[GROUPS], ay[GROUPS], ddens[GROUPS];
-    for (int g = 0; g < count; g++) {
-        const double full = 1 + p->dens[i + g], per_mass = slope / (k->rho0 * full);
-        ax[g] = per_mass * (double)sum_x[g] + k->gravity[0];
-        ay[g] = per_mass * (double)sum_y[g] + k->gravity[1];
-        ddens[g] = -slope * (full * (double)rate[g] + mix * (double)mixing[g]);
-    }
-    double highest = top->acceleration2;
-    for (int g = 0; g < count; g++) {
-        p->ax[i + g] = ax[g];
-        p->ay[i + g] = ay[g];
-        p->ddens[i + g] = ddens[g];
-        highest = max2(highest, ax[g] * ax[g] + ay[g] * ay[g]);
-    }
-    top->acceleration2 = highest;
-}
-
-SPHFSI_INLINE void crowd_store(const struct fluid_constants *k, struct particles *p, int32_t i,
-                               int count, const struct sums *s)
-{
-    real x[GROUPS], y[GROUPS], spread[GROUPS];
-    vsum_four(s->crowd_x, x);
-    vsum_four(s->crowd_y, y);
-    vsum_four(s->spread, spread);
-    for (int g = 0; g < count; g++) {
-        p->crowd_x[i + g] = -PAIR_SLOPE / k->h * (double)x[g];
-        p->crowd_y[i + g] = -PAIR_SLOPE / k->h * (double)y[g];
-        p->spread[i + g] = PAIR_SLOPE * (double)spread[g];
-    }
+    const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
+    const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
+    const four_double full = 1 + FOUR(p->dens, i);
+    const four_double ax = push * take_sum(s->ax, ROOM(left, 0), -1) + k->gravity[0];
+    const four_double ay = push * take_sum(s->ay, ROOM(left, 1), -1) + k->gravity[1];
+    four_double rate = full * take_sum(s->rate, ROOM(left, 2), 1);
+    if (fx & FX_DIFFUSION) rate = rate + mix * take_sum(s->mixing, ROOM(left, 3), -1);
+    store_four(p->ax + i, ax, count);
+    store_four(p->ay + i, ay, count);
+    store_four(p->ddens + i, -slope * full * rate, count);
+    const four_double a2 = ax * ax + ay * ay;
+    for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
+    if (!(fx & FX_SHIFTING)) return;
+    store_four(p->crowd_x + i, -slope * full * take_sum(s->crowd_x, ROOM(left, 4), -1), count);
+    store_four(p->crowd_y + i, -slope * full * take_sum(s->crowd_y, ROOM(left, 5), -1), count);
+    store_four(p->spread + i, slope * k->h * full * take_sum(s->spread, ROOM(left, 6), 1), count);
 }
 
 /* Receivers of the fluid from their lanes on. */
@@ -187,6 +107,7 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.v = vspread(own + LANE_V * CLUSTER);
     a.p = vspread(own + LANE_P * CLUSTER);
     a.dens = vspread(own + LANE_DENS * CLUSTER);
+    a.volume = vspread(own + LANE_VOLUME * CLUSTER);
     if (fx & FX_VISCOSITY) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
     if (fx & FX_ANTUONO) {
         a.slope_x = vspread(own + LANE_SLOPE_X * CLUSTER);
@@ -197,53 +118,66 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
 
 /* A cluster of `count` particles from i on. */
 SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, int32_t i,
-                                    int count, const real *own, const struct view see[KIND_COUNT],
+                                    int count, int32_t cluster, const struct view see[KIND_COUNT],
                                     const struct cell_sides *sides, const struct lane_constants *k,
-                                    unsigned fx, vreal *approach, struct fluid_extremes *top)
+                                    unsigned fx, const struct share *share, struct share_top *top)
 {
-    for (int r = 0; r < count; r += GROUPS) {
-        const struct receiver a = fluid_at(sides, own + r, k, fx);
-        const int here = count - r < GROUPS ? count - r : GROUPS;
-        struct sums s[PARTS] = {{.approach = *approach}};
-        sum_fluid(&see[KIND_FLUID], &a, k, fx, s);
-        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-            if (see[kind].n) sum_dummies(&see[kind], &a, k, fx, s);
-        sums_join(s);
-        *approach = s[0].approach;
-        if (here == GROUPS) /* a number that the compiler knows */
-            rates_store(&f->k, p, i + r, GROUPS, s, fx, top);
-        else
-            rates_store(&f->k, p, i + r, here, s, fx, top);
-        if (fx & FX_SHIFTING) crowd_store(&f->k, p, i + r, here, s);
-    }
+    const real *const own = cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster);
+    struct receiver a[ROWS];
+    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
+    struct cluster_sums s = {.approach = top->approach};
+    sum_fluid(&see[KIND_FLUID], a, k, fx, share, &s);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (see[kind].n) sum_dummies(&see[kind], a, k, fx, &s);
+    top->approach = s.approach;
+    real *const left = share->room + ((size_t)cluster - share->before) * room_stride(fx);
+    if (count == CLUSTER) /* a number that the compiler knows */
+        rates_store(&f->k, p, i, CLUSTER, &s, left, fx, top->acceleration2);
+    else
+        rates_store(&f->k, p, i, count, &s, left, fx, top->acceleration2);
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
                                  int32_t cell, const struct lane_constants *k, unsigned fx,
-                                 vreal *approach, struct fluid_extremes *top)
+                                 const struct share *share, struct share_top *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     struct sight *const sight = &f->sight[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);
-    bool around[KIND_COUNT];
-    for (int kind = 0; kind < KIND_COUNT; kind++) {
-        around[kind] = kind == KIND_FLUID || (f->near_dummies[cell] && f->n_near_fluid[kind]);
+    bool around[KIND_COUNT] = {false};
+    clusters_ahead_around(&sight->around[KIND_FLUID], &f->lanes[KIND_FLUID].boxes, c, KIND_FLUID,
+                          cell, f->k.h, share->range);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        around[kind] = f->near_dummies[cell] && f->n_near_fluid[kind];
         if (around[kind]) look_around(sight, f, c, (enum kind)kind, cell);
     }
-    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+    for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) { /* as they come ahead */
         const int32_t cluster = list->cluster[cell] + m;
         struct view see[KIND_COUNT];
-        for (int kind = 0; kind < KIND_COUNT; kind++)
+        see[KIND_FLUID] = look_ahead(sight, f);
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
             see[kind] = around[kind] ? look_at(sight, f, (enum kind)kind, KIND_FLUID, cluster)
                                      : (struct view){.n = 0};
         rates_of_cluster(f, p, list->start[cell] + m * CLUSTER, particles_in(list, cell, m),
-                         cluster_lanes(&f->lanes[KIND_FLUID], (size_t)cluster), see, &sides, k, fx,
-                         approach, top);
+                         cluster, see, &sides, k, fx, share, top);
     }
 }
 
-/* Cells that a thread takes at once. */
-enum { CELLS_AT_ONCE = 4 };
+/* A share of the active cells, first to end - 1. */
+SPHFSI_INLINE void rates_of_share(const struct fluid *f, struct particles *p, const struct cells *c,
+                                  int32_t first, int32_t end, const struct lane_constants *k,
+                                  unsigned fx, struct fluid_extremes *top)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct cluster_range range = clusters_of(list, first, end);
+    const struct share share = {range, (size_t)range.first - 1, f->sight[thread_index()].room};
+    struct share_top here = {.approach = {0}};
+    for (int32_t m = first; m < end; m++)
+        rates_of_cell(f, p, c, list->active[m], k, fx, &share, &here);
+    top->approach = max2(top->approach, (double)vtop(here.approach));
+    for (int r = 0; r < CLUSTER; r++)
+        top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
+}
 
 /* A share of the active cells. Stamped outside of any parallel region: the compiler turns the body of a
  * region into a function of its own before it can see that fx is a constant. */
@@ -257,11 +191,7 @@ typedef void SWEEP(share)(const struct fluid *f, struct particles *p, const stru
                                        const struct lane_constants *k, struct fluid_extremes *top) \
     {                                                                                              \
         const struct lane_constants constants = *k;                                                \
-        vreal approach = vset(0); /* over all receivers: the lanes are searched once a share */    \
-        for (int32_t m = first; m < end; m++)                                                      \
-            rates_of_cell(f, p, c, c->kind[KIND_FLUID].active[m], &constants, (set), &approach,    \
-                          top);                                                                    \
-        top->approach = max2(top->approach, (double)vtop(approach));                               \
+        rates_of_share(f, p, c, first, end, &constants, (set), top);                               \
     }
 #include "variants.def"
 VARIANT(any, f->effects &PAIR_EFFECTS)
@@ -271,15 +201,15 @@ static void all_shares(struct fluid *f, struct particles kinds[KIND_COUNT], cons
                        SWEEP(share) * share)
 {
     const int32_t n_active = c->kind[KIND_FLUID].n_active;
-    const int32_t shares = (n_active + CELLS_AT_ONCE - 1) / CELLS_AT_ONCE;
+    const int32_t shares = fluid_shares(n_active);
     const struct lane_constants k = constants_of_sweep(f);
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(f->threads) \
     reduction(max                                                 \
               : acceleration2, approach)
     for (int32_t m = 0; m < shares; m++) {
-        const int32_t first = m * CELLS_AT_ONCE;
-        const int32_t end = first + CELLS_AT_ONCE < n_active ? first + CELLS_AT_ONCE : n_active;
+        const int32_t first = fluid_share(n_active, m), end = fluid_share(n_active, m + 1);
+        if (first == end) continue;
         struct fluid_extremes top = {acceleration2, approach};
         share(f, &kinds[KIND_FLUID], c, first, end, &k, &top);
         acceleration2 = top.acceleration2;

@@ -8,6 +8,9 @@ _Static_assert((int)CLUSTER == (int)GROUP, "a group of lanes is a cluster");
  * where one is enough. */
 enum { PARTS = (int)CLUSTER * (int)GROUPS / (int)LANES };
 
+/* Vectors that the receivers of a cluster take. */
+enum { ROWS = (int)CLUSTER / (int)GROUPS };
+
 /* A field of the particles at b, in every group. */
 #define lane(b, field) vfour((b) + (field)*CLUSTER)
 
@@ -52,6 +55,16 @@ SPHFSI_INLINE struct view look_at(struct sight *sight, const struct fluid *f, en
                          near->seen, near->n};
 }
 
+/* What the next cluster of a cell of fluid sees of the fluid outside of its share and ahead. */
+SPHFSI_INLINE struct view look_ahead(struct sight *sight, const struct fluid *f)
+{
+    struct cluster_list *const near = &sight->near[KIND_FLUID];
+    const struct lanes *const lanes = &f->lanes[KIND_FLUID];
+    clusters_ahead_near(near, &sight->around[KIND_FLUID], &lanes->boxes);
+    return (struct view){(const real *)lanes->cluster, (size_t)(lanes->n * CLUSTER), near->seen,
+                         near->n};
+}
+
 /* Sides of the cells in units of h. */
 struct cell_sides {
     real x, y;
@@ -65,7 +78,7 @@ static struct cell_sides cell_sides_of(const struct fluid *f, const struct cells
 /* Particles a, one to each group of four lanes; with their places as seen from the centres of the three
  * columns and rows of cells around. */
 struct receiver {
-    vreal x[3], y[3], u, v, p, dens;
+    vreal x[3], y[3], u, v, p, dens, volume;
     vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
     vreal viscous;          /* -(1 + dens) times the constant `viscosity`, of its unit */
 };

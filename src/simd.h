@@ -42,12 +42,16 @@ enum {
     GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
 
-/* As many words as floats; and four doubles or floats, the particles of a group, whatever the registers. */
+/* As many words as floats; and four doubles or floats, the particles of a group, and eight floats or words,
+ * whatever the registers. */
 typedef uint32_t vword __attribute__((vector_size(SIMD_BYTES)));
 typedef double four_double __attribute__((vector_size(32)));
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
 typedef float four_float_at __attribute__((vector_size(16), aligned(4), may_alias));
+typedef float eight_float_at __attribute__((vector_size(32), aligned(4), may_alias));
+typedef uint32_t eight_word __attribute__((vector_size(32)));
+typedef uint32_t eight_word_at __attribute__((vector_size(32), aligned(4), may_alias));
 
 /* The same vectors at any address, and free to alias the arrays they are loaded from. */
 typedef float vfloat_at __attribute__((vector_size(SIMD_BYTES), aligned(4), may_alias));

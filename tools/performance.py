@@ -31,8 +31,9 @@ PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
 BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
-# Arithmetic of a pack of candidates in the loop with viscosity and diffusion, counted in the source.
-OPERATIONS = 37
+# Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides, counted in the
+# source.
+OPERATIONS = 46
 # And of a solid's pair in the default form, gradient, stress and forces together.
 SOLID_OPERATIONS = 56
 
@@ -184,15 +185,18 @@ def table(header, rows):
 
 
 def neighbour_words(rows):
-    """Clusters against a candidate tile and a neighbour list (bench/neighbours.c)."""
+    """Clusters in shares and without, against a tile and a neighbour list (bench/neighbours.c)."""
     found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
              if key[0] == "neighbours"}
     n = next(key[2] for key in rows if key[0] == "neighbours")
-    swept = {"clusters": found["cluster", "look and sweep"], "tile": found["tile", "copy and sweep"],
+    swept = {"clusters, pairs once": found["share", "look and sweep"],
+             "clusters": found["cluster", "look and sweep"], "tile": found["tile", "copy and sweep"],
              "list": found["list", "sweep"]}
     return (f"Where the neighbours come from, the bare laws alone over {n} particles, one thread: clusters "
-            f"that look for those near them {swept['clusters']:.1f} ns a particle "
-            f"({found['cluster', 'candidates']:.0f} candidates); a tile of candidates around each cell "
+            "that look for those near them, pairs within a share of the cells taken once, "
+            f"{swept['clusters, pairs once']:.1f} ns a particle ({found['share', 'pairs']:.0f} pairs); all "
+            f"pairs from both sides {swept['clusters']:.1f} ns ({found['cluster', 'pairs']:.0f} pairs); a "
+            "tile of candidates around each cell "
             f"{swept['tile']:.1f} ns with its copying; a neighbour list with a skin {swept['list']:.1f} ns, "
             f"{found['list', 'build']:.0f} ns each time that it is built and "
             f"{4 * found['list', 'entries']:.0f} bytes a particle. The fastest: "
@@ -231,12 +235,12 @@ def bench_tables(rows):
     rich = next((v for v in variants if v.startswith("dam_break (mixed")), None)
     if rich:
         n = sizes[-1]
-        met = value("fluid", rich, n, 1, "candidates")
+        met = value("fluid", rich, n, 1, "pairs")
         rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
         text.append(
             f"One core reaches {peak:.0f} thousand million lane operations a second in chains of fma. "
             f"The pair loop ({rich}, {n} particles) does {rate:.0f}, {100 * rate / peak:.0f} % of that: "
-            f"{met:.0f} candidates a particle with {OPERATIONS} operations each, a square root and a "
+            f"{met:.0f} pairs a particle with {OPERATIONS} operations each, a square root and a "
             "division among them.")
     slots = next((float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default") and key[4] == "slots"), None)

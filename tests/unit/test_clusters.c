@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * What a cluster sees, against brute force: every particle within reach of one of its own, once, also where
- * particles have strayed from their cells and through joined sides. */
+ * particles have strayed from their cells and through joined sides; and in shares each pair from one side. */
 #include "rig.h"
 #include "smoothing.h"
 #include "unity.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char scene[] = "dp = 1 cm\nend_time = 10\nprecision = double\n[numerics]\nskin = 0.5\n"
                             "[domain]\nlower = -0.3, -0.4\nupper = 0.4, 0.4\nperiodic = x\n"
@@ -72,6 +73,91 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
     }
 }
 
+/* Adds up for each particle whom it sees within reach itself and who sees it ahead, in shares of so many
+ * cells. Pairs in a share must not be looked at from both sides: that would count them twice. */
+static void count_shares(int32_t cells, int *met)
+{
+    static struct surroundings around;
+    static struct cluster_list near;
+    const struct fluid *const f = &rig.sim.fluid;
+    const struct cell_list *const list = &rig.sim.cells.kind[KIND_FLUID];
+    int64_t *const particle =
+        calloc((size_t)rig.sim.kind[KIND_FLUID].n, CLUSTER * sizeof *particle);
+    TEST_ASSERT_NOT_NULL(particle);
+    for (int32_t k = 0; k < list->n_active; k++) /* by place in the clusters */
+        for (int32_t m = 0; m < list->count[list->active[k]]; m++)
+            particle[list->cluster[list->active[k]] * CLUSTER + m] =
+                list->start[list->active[k]] + m;
+    for (int32_t first = 0; first < list->n_active; first += cells) {
+        const int32_t end = first + cells < list->n_active ? first + cells : list->n_active;
+        const struct cluster_range range = clusters_of(list, first, end);
+        for (int32_t k = first; k < end; k++) {
+            const int32_t cell = list->active[k];
+            clusters_ahead_around(&around, &f->lanes[KIND_FLUID].boxes, &rig.sim.cells, KIND_FLUID,
+                                  cell, f->k.h, range);
+            for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) {
+                clusters_ahead_near(&near, &around, &f->lanes[KIND_FLUID].boxes);
+                TEST_ASSERT_EQUAL_INT(list->cluster[cell] + m, seen_number(near.seen[0]));
+                for (int n = 0; n < near.n; n++) {
+                    const int32_t number = (int32_t)seen_number(near.seen[n]);
+                    const bool inside = number >= range.first && number < range.end;
+                    TEST_ASSERT_EQUAL(inside && n > 0, seen_ahead(near.seen[n]));
+                    for (int pair = 0; pair < CLUSTER * CLUSTER; pair++) {
+                        const int r = pair / CLUSTER, b = pair % CLUSTER;
+                        double at[2], other[2];
+                        place_seen(KIND_FLUID, near.seen[0], r, at);
+                        place_seen(KIND_FLUID, near.seen[n], b, other);
+                        if (at[0] > 100 || other[0] > 100) continue; /* no particle */
+                        if (hypot(at[0] - other[0], at[1] - other[1]) >= KERNEL_REACH * f->k.h)
+                            continue;
+                        met[particle[(list->cluster[cell] + m) * CLUSTER + r]]++;
+                        if (seen_ahead(near.seen[n])) met[particle[number * CLUSTER + b]]++;
+                    }
+                }
+            }
+        }
+    }
+    free(particle);
+}
+
+static void test_pairs_in_a_share_are_seen_once(void)
+{
+    static const int32_t cells[] = {1, 5, 64, 100000};
+    uint64_t seed = 5;
+    rig_open(&rig, scene, NULL);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] += 0.006 * noise(&seed);
+        p->y[i] += 0.006 * noise(&seed);
+    }
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    int *const met = calloc((size_t)p->n, sizeof *met);
+    TEST_ASSERT_NOT_NULL(met);
+    for (size_t k = 0; k < COUNT_OF(cells); k++) {
+        memset(met, 0, (size_t)p->n * sizeof *met);
+        count_shares(cells[k], met);
+        for (int64_t i = 0; i < p->n; i++)
+            TEST_ASSERT_EQUAL_INT(within_reach(KIND_FLUID, i), met[i]);
+    }
+    free(met);
+}
+
+/* Of any number of cells: all of them, once, in as many shares for 16 threads as for one. */
+static void test_shares_hold_all_cells(void)
+{
+    for (int32_t n = 1; n < 5000; n += n < 40 ? 1 : 37) {
+        const int32_t shares = fluid_shares(n);
+        TEST_ASSERT_EQUAL_INT(0, shares % SHARES);
+        TEST_ASSERT_EQUAL_INT(0, fluid_share(n, 0));
+        TEST_ASSERT_EQUAL_INT(n, fluid_share(n, shares));
+        for (int32_t m = 0; m < shares; m++) {
+            const int32_t cells = fluid_share(n, m + 1) - fluid_share(n, m);
+            TEST_ASSERT_TRUE(cells >= 0 && cells <= SHARE_CELLS);
+        }
+    }
+}
+
 /* Shaken, and then strayed by as much as cells allow for. */
 static void test_all_within_reach_are_seen(void)
 {
@@ -100,5 +186,7 @@ int main(void)
     rig_one_thread();
     UNITY_BEGIN();
     RUN_TEST(test_all_within_reach_are_seen);
+    RUN_TEST(test_pairs_in_a_share_are_seen_once);
+    RUN_TEST(test_shares_hold_all_cells);
     return UNITY_END();
 }

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT
+ * Sums over the pairs of the fluid. A pair of clusters in the same share of cells is taken once. Its
+ * receivers, of the cluster whose turn it is, have what it brings them in registers; what it brings its
+ * candidates is left in the share's room until their turn. A part of the sweeps' text (fluid_sweep.h), once
+ * for each precision. */
+
+/* Vectors of sums of a cluster's receivers. */
+typedef vreal of_cluster[ROWS][PARTS];
+
+/* What the receivers of a cluster sum over their candidates. */
+struct cluster_sums {
+    of_cluster ax, ay, rate, mixing, crowd_x, crowd_y, spread;
+    vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
+};
+
+SPHFSI_INLINE void keep_crowd(struct cluster_sums *s, int row, int part, const struct exchange *e)
+{
+    s->crowd_x[row][part] = s->crowd_x[row][part] + e->crowd_x;
+    s->crowd_y[row][part] = s->crowd_y[row][part] + e->crowd_y;
+    s->spread[row][part] = s->spread[row][part] + e->spread;
+}
+
+/* Adds what pairs bring their receivers. */
+SPHFSI_INLINE void keep(struct cluster_sums *s, int row, int part, const struct exchange *e,
+                        unsigned fx)
+{
+    s->ax[row][part] = s->ax[row][part] + e->ax;
+    s->ay[row][part] = s->ay[row][part] + e->ay;
+    s->rate[row][part] = s->rate[row][part] + e->rate;
+    if (fx & FX_DIFFUSION) s->mixing[row][part] = s->mixing[row][part] + e->mixing;
+    if (fx & FX_SHIFTING) keep_crowd(s, row, part, e);
+}
+
+/* What pairs of the receivers with candidates exchange; fx is a constant where the kernel is stamped. */
+SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t seen, const real *b,
+                                            const struct lane_constants *k, unsigned fx,
+                                            vreal *approach)
+{
+    struct exchange e;
+    struct pair q = pair_load(a, seen, b);
+    q.slope = q.slope * a->volume;
+    q.p = lane(b, LANE_P);
+    e.rate = fx_continuity(&q);
+    vreal stress = fx_pressure(a, &q), inv;
+    if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
+        q.dens = lane(b, LANE_DENS);
+        if (fx & FX_ANTUONO) {
+            q.slope_x = lane(b, LANE_SLOPE_X);
+            q.slope_y = lane(b, LANE_SLOPE_Y);
+        }
+        vreal both;
+        const vreal damping = pair_damping(a, &q, k, &both);
+        inv = damping * both;
+        if (fx & FX_VISCOSITY) stress = fx_viscosity(a, &q, damping, k, stress);
+        if (fx & FX_DIFFUSION) e.mixing = fx_diffusion(a, &q, inv, k, fx);
+    } else {
+        inv = vset(1) / (q.r2 + k->eta2);
+    }
+    if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
+    const vreal push = q.slope * stress;
+    e.ax = push * q.x;
+    e.ay = push * q.y;
+    if (fx & FX_LAMINAR) {
+        const vreal weight = fx_laminar(&q, inv, k);
+        e.ax = e.ax - weight * q.u;
+        e.ay = e.ay - weight * q.v;
+    }
+    if (fx & FX_SHIFTING) fx_crowd(&q, &e);
+    *approach = vmax(*approach, fx_approach(&q, inv));
+    return e;
+}
+
+/* Items of a cluster in the room of a share; and its m-th sum, `at` the first. */
+SPHFSI_INLINE size_t room_stride(unsigned fx) { return (size_t)pair_sums(fx) * CLUSTER * CLUSTER; }
+#define ROOM(at, m) ((at) + (m)*CLUSTER * CLUSTER)
+
+SPHFSI_INLINE void room_add(real *at, vreal more) { vstore(at, vload(at) + more); }
+
+/* Leaves in the room what pairs bring their candidates. */
+SPHFSI_INLINE void leave(real *at, const struct exchange *e, unsigned fx)
+{
+    room_add(ROOM(at, 0), e->ax);
+    room_add(ROOM(at, 1), e->ay);
+    room_add(ROOM(at, 2), e->rate);
+    if (fx & FX_DIFFUSION) room_add(ROOM(at, 3), e->mixing);
+    if (!(fx & FX_SHIFTING)) return;
+    room_add(ROOM(at, 4), e->crowd_x);
+    room_add(ROOM(at, 5), e->crowd_y);
+    room_add(ROOM(at, 6), e->spread);
+}
+
+/* Sums over the fluid that is seen. */
+SPHFSI_INLINE void sum_fluid(const struct view *see, const struct receiver a[ROWS],
+                             const struct lane_constants *k, unsigned fx, const struct share *share,
+                             struct cluster_sums *sums)
+{
+    EACH_SEEN(see, m, part) {
+        const uint32_t seen = see->seen[m];
+        const real *const b = candidates(see, seen, part);
+        const size_t place = (seen_number(seen) - share->before) * seen_ahead(seen);
+        real *const at = share->room + place * room_stride(fx) + part * LANES;
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_fluid(&a[row], seen, b, k, fx, &sums->approach);
+            keep(sums, row, part, &e, fx);
+            leave(at + row * GROUPS * CLUSTER, &e, fx);
+        }
+    }
+}
+
+/* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
+SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t seen, const real *b,
+                                            const struct lane_constants *k, unsigned fx,
+                                            vreal *approach)
+{
+    struct exchange e = {.mixing = {0}};
+    struct pair q = pair_load(a, seen, b);
+    q.slope = q.slope * a->volume;
+    q.p = lane(b, LANE_P);
+    e.rate = fx_continuity(&q);
+    const vreal inv = vset(1) / (q.r2 + k->eta2);
+    vreal stress = fx_pressure(a, &q);
+    if (fx & FX_ONE_SIDED)
+        stress = a->p + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, LANE_LIFT_X),
+                                     lane(b, LANE_LIFT_Y), k);
+    if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, LANE_NEAR), inv, k);
+    const vreal push = q.slope * stress;
+    e.ax = push * q.x;
+    e.ay = push * q.y;
+    if (fx & FX_NO_SLIP) {
+        const vreal weight = lane(b, LANE_STICKS) * fx_laminar(&q, inv, k);
+        e.ax = e.ax - weight * (a->u - lane(b, LANE_MIRROR_U));
+        e.ay = e.ay - weight * (a->v - lane(b, LANE_MIRROR_V));
+    }
+    if (fx & FX_SHIFTING) fx_crowd(&q, &e);
+    *approach = vmax(*approach, fx_approach(&q, inv));
+    return e;
+}
+
+/* Sums over walls or structures that are seen, which have a sweep of their own for what it brings them. */
+SPHFSI_INLINE void sum_dummies(const struct view *see, const struct receiver a[ROWS],
+                               const struct lane_constants *k, unsigned fx,
+                               struct cluster_sums *sums)
+{
+    EACH_SEEN(see, m, part) {
+        const uint32_t seen = see->seen[m];
+        const real *const b = candidates(see, seen, part);
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_dummy(&a[row], seen, b, k, fx, &sums->approach);
+            keep(sums, row, part, &e, fx & ~(unsigned)FX_DIFFUSION);
+        }
+    }
+}
+
+/* A sum of the particles of a cluster: their own as receivers, with `sign` times what those before them left
+ * for them; which leaves zeros for the next share. */
+SPHFSI_INLINE four_double take_sum(const of_cluster own, real *left, double sign)
+{
+    real sum[CLUSTER];
+    for (int row = 0; row < ROWS; row++) total(own[row], sum + row * GROUPS);
+    four_real *const by = (four_real *)(void *)left; /* [receiver] */
+    const four_real others = (by[0] + by[2]) + (by[1] + by[3]);
+    memset(left, 0, CLUSTER * CLUSTER * sizeof *left);
+    return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double) +
+           sign * __builtin_convertvector(others, four_double);
+}
