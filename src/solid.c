@@ -187,86 +187,112 @@ static void damping_stress(const struct solid *s, const struct solid_pack *pack,
     store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + P.yy, pack->lanes);
 }
 
-/* The rest of the variational form. With the energy E = sum over pairs of k_ab |e_ab|^2/2, where
- * k_ab = kappa E_ab V_a V_b W_0ab/X_ab^2 as in Eq. 17, e_ab also depends on F_a: dE/dF_a/V_a, the sum of
- * k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
-static void hourglass_stress(const struct solid *s, const struct solid_pack *pack,
-                             struct particles *p)
-{
-    const int64_t i = pack->i;
-    const struct vtensor2 U = load_gradient(p, i);
-    const vdouble xx = vload_double(&p->arm_xx[i]), xy = vload_double(&p->arm_xy[i]),
-                  yy = vload_double(&p->arm_yy[i]);
-    /* The term of F_a: its product with the sum of k_ab X_ab X_ab^T/2. */
-    struct vtensor2 sum = {U.xx * xx + U.xy * xy, U.xx * xy + U.xy * yy, U.yx * xx + U.yy * xy,
-                           U.yx * xy + U.yy * yy};
-    const vdouble ux = vload_double(&p->ux[i]), uy = vload_double(&p->uy[i]);
-    const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
-    for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
-        struct solid_pair q = {.j = i + slot->offset};
-        q.X = vload_double(slot->X);
-        q.Y = vload_double(slot->Y);
-        q.ux = ux - vload_double(&p->ux[q.j]);
-        q.uy = uy - vload_double(&p->uy[q.j]);
-        q.U_b = load_gradient(p, q.j);
-        vdouble ex, ey;
-        stretch_error(&q, &q.U_b, &ex, &ey);
-        const vdouble stiffness = vload_double(slot->hourglass);
-        ex = ex * stiffness;
-        ey = ey * stiffness;
-        sum.xx = vfma_double(ex, q.X, sum.xx);
-        sum.xy = vfma_double(ex, q.Y, sum.xy);
-        sum.yx = vfma_double(ey, q.X, sum.yx);
-        sum.yy = vfma_double(ey, q.Y, sum.yy);
-    }
-    const double half = 0.5 * s->body[pack->body].density;
-    store_lanes(&p->Pxx[i], vload_double(&p->Pxx[i]) + sum.xx * half, pack->lanes);
-    store_lanes(&p->Pxy[i], vload_double(&p->Pxy[i]) + sum.xy * half, pack->lanes);
-    store_lanes(&p->Pyx[i], vload_double(&p->Pyx[i]) + sum.yx * half, pack->lanes);
-    store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + sum.yy * half, pack->lanes);
-}
+/* What the loop over the slots of a pack sums; constants where it is inlined. */
+struct slot_laws {
+    bool stress, viscous, mixed, symmetric, hourglass, variational;
+};
 
-/* Sums of a pack; what is a bool is a constant where it is inlined. */
 SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
                                           const struct particles *p, const struct solid_receiver *a,
-                                          bool viscous, bool mixed, bool symmetric, bool hourglass,
-                                          bool variational)
+                                          struct slot_laws laws)
 {
     const struct solid_body *const body = &s->body[pack->body];
     const vdouble eta2 = vset_double(0.01 * body->h * body->h), zero = vset_double(0);
-    struct solid_sums sums = {zero, zero, zero, zero, zero, zero, zero, zero};
+    struct solid_sums sums = {zero, zero, zero,
+                              zero, zero, zero,
+                              zero, zero, {zero, zero, zero, zero}};
     const struct solid_slot *const end = s->slot + pack->first_slot + pack->n_slots;
     for (const struct solid_slot *slot = s->slot + pack->first_slot; slot < end; slot++) {
-        stress_force(slot, p, pack->i + slot->offset, &sums);
-        if (!viscous && !hourglass) continue;
+        if (laws.stress) stress_force(slot, p, pack->i + slot->offset, &sums);
+        if (!laws.viscous && !laws.hourglass) continue;
         struct solid_pair q = pair_of(slot, p, pack->i, a);
-        if (hourglass || symmetric) q.U_b = load_gradient(p, q.j);
-        if (viscous) {
+        if (laws.hourglass || laws.symmetric) q.U_b = load_gradient(p, q.j);
+        if (laws.viscous) {
             vdouble Pi = viscous_pressure(&q, p, a, eta2);
-            if (mixed) Pi = Pi * mean_viscosity(&q, p, pack->i, body);
-            viscous_force(&q, Pi, symmetric, &sums);
+            if (laws.mixed) Pi = Pi * mean_viscosity(&q, p, pack->i, body);
+            viscous_force(&q, Pi, laws.symmetric, &sums);
         }
-        if (hourglass) hourglass_force(&q, a, variational, &sums);
+        if (laws.hourglass && laws.variational) hourglass_variational(&q, a, &sums);
+        if (laws.hourglass && !laws.variational) hourglass_printed(&q, a, &sums);
     }
     return sums;
 }
 
-/* Eq. 13a: own part of the stress, P_a times the sum of G_ab, which vanishes inside a lattice; and the
- * viscous force turned by J F^-T. */
-SPHFSI_INLINE void finish_sums(const struct solid_body *body, const struct particles *p, int64_t i,
-                               const struct solid_receiver *a, const struct solid_sums *s,
-                               vdouble acc[2])
+/* What a body has beside its stress. */
+static struct slot_laws pair_laws(const struct solid_body *body)
+{
+    return (struct slot_laws){.viscous = body->viscosity > 0 || body->mixed,
+                              .mixed = body->mixed,
+                              .symmetric = body->symmetric,
+                              .hourglass = body->kappa > 0,
+                              .variational = body->variational};
+}
+
+/* Acceleration by the forces of pairs: the viscous one turned by J F^-T, and that of hourglass control. */
+SPHFSI_INLINE void pairs_acceleration(const struct solid_body *body, const struct solid_receiver *a,
+                                      const struct solid_sums *s, vdouble acc[2])
 {
     const struct vtensor2 cof = vtensor2_cof(deformation(a->U));
+    const double viscosity = (body->mixed ? 1 : body->viscosity) * (body->symmetric ? 0.5 : 1);
+    acc[0] = s->ax + (cof.xx * s->viscous_x + cof.xy * s->viscous_y + s->turned_x) * viscosity;
+    acc[1] = s->ay + (cof.yx * s->viscous_x + cof.yy * s->viscous_y + s->turned_y) * viscosity;
+}
+
+/* Of a body with the variational form: it adds to the stress, which has to be whole before neighbours sum
+ * it, so that pairs have a pass of their own. */
+static void pairs_of_pack(const struct solid *s, const struct solid_pack *pack, struct particles *p)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const int64_t i = pack->i;
+    const struct solid_receiver a = receiver_of(p, i);
+    const struct slot_laws laws = pair_laws(body);
+    struct solid_sums sums;
+    /* The default is stamped; the others are decided as they go. */
+    if (laws.viscous && laws.symmetric && !laws.mixed)
+        sums = sum_slots(s, pack, p, &a, (struct slot_laws){false, true, false, true, true, true});
+    else
+        sums = sum_slots(s, pack, p, &a, laws);
+    vdouble acc[2];
+    pairs_acceleration(body, &a, &sums, acc);
+    store_lanes(&p->pairs_x[i], acc[0], pack->lanes);
+    store_lanes(&p->pairs_y[i], acc[1], pack->lanes);
+    const double half = 0.5 * body->density;
+    store_lanes(&p->Pxx[i], vload_double(&p->Pxx[i]) + sums.pull.xx * half, pack->lanes);
+    store_lanes(&p->Pxy[i], vload_double(&p->Pxy[i]) + sums.pull.xy * half, pack->lanes);
+    store_lanes(&p->Pyx[i], vload_double(&p->Pyx[i]) + sums.pull.yx * half, pack->lanes);
+    store_lanes(&p->Pyy[i], vload_double(&p->Pyy[i]) + sums.pull.yy * half, pack->lanes);
+}
+
+/* Acceleration by stress and the forces of pairs. */
+static void own_acceleration(const struct solid *s, const struct solid_pack *pack,
+                             const struct particles *p, vdouble acc[2])
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const int64_t i = pack->i;
+    const struct solid_receiver a = receiver_of(p, i);
+    struct slot_laws laws = pair_laws(body);
+    laws.stress = true;
+    struct solid_sums sums;
+    if (laws.variational) {
+        sums = sum_slots(s, pack, p, &a, (struct slot_laws){.stress = true});
+        acc[0] = vload_double(&p->pairs_x[i]);
+        acc[1] = vload_double(&p->pairs_y[i]);
+    } else {
+        /* The paper's combination is stamped. */
+        if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
+            sums = sum_slots(s, pack, p, &a,
+                             (struct slot_laws){true, true, false, false, true, false});
+        else
+            sums = sum_slots(s, pack, p, &a, laws);
+        pairs_acceleration(body, &a, &sums, acc);
+    }
+    /* Eq. 13a: the own part of the stress is P_a times the sum of G_ab, which vanishes inside a lattice. */
     const vdouble Gx = vload_double(&p->Gx[i]), Gy = vload_double(&p->Gy[i]);
     const vdouble own_x = vfma_double(vload_double(&p->Pxx[i]), Gx, vload_double(&p->Pxy[i]) * Gy);
     const vdouble own_y = vfma_double(vload_double(&p->Pyx[i]), Gx, vload_double(&p->Pyy[i]) * Gy);
     const double inv_density = 1 / body->density;
-    const double viscosity = (body->mixed ? 1 : body->viscosity) * (body->symmetric ? 0.5 : 1);
-    acc[0] = (s->stress_x + own_x) * inv_density + s->ax +
-             (cof.xx * s->viscous_x + cof.xy * s->viscous_y + s->turned_x) * viscosity;
-    acc[1] = (s->stress_y + own_y) * inv_density + s->ay +
-             (cof.yx * s->viscous_x + cof.yy * s->viscous_y + s->turned_y) * viscosity;
+    acc[0] = (sums.stress_x + own_x) * inv_density + acc[0];
+    acc[1] = (sums.stress_y + own_y) * inv_density + acc[1];
 }
 
 static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
@@ -274,20 +300,8 @@ static void forces_of_pack(const struct solid *s, const struct solid_pack *pack,
 {
     const struct solid_body *const body = &s->body[pack->body];
     const int64_t i = pack->i;
-    const struct solid_receiver a = receiver_of(p, i);
-    const bool viscous = body->viscosity > 0 || body->mixed, hourglass = body->kappa > 0;
-    const bool stamped = viscous && hourglass && !body->mixed;
-    struct solid_sums sums;
-    /* The default and the paper's combination are stamped; the others are decided as they go. */
-    if (stamped && body->symmetric && body->variational)
-        sums = sum_slots(s, pack, p, &a, true, false, true, true, true);
-    else if (stamped && !body->symmetric && !body->variational)
-        sums = sum_slots(s, pack, p, &a, true, false, false, true, false);
-    else
-        sums = sum_slots(s, pack, p, &a, viscous, body->mixed, body->symmetric, hourglass,
-                         body->variational);
     vdouble acc[2];
-    finish_sums(body, p, i, &a, &sums, acc);
+    own_acceleration(s, pack, p, acc);
     if (s->coupled) {
         acc[0] = acc[0] + vload_double(&p->fx[i]) * (1 / body->mass);
         acc[1] = acc[1] + vload_double(&p->fy[i]) * (1 / body->mass);
@@ -316,7 +330,7 @@ static void stress_loop(const struct solid *s, struct particles *p)
     if (s->variational) {
 #pragma omp for schedule(static) nowait
         for (int64_t k = 0; k < s->n_packs; k++)
-            if (s->body[s->pack[k].body].variational) hourglass_stress(s, &s->pack[k], p);
+            if (s->body[s->pack[k].body].variational) pairs_of_pack(s, &s->pack[k], p);
         meet(s->meeting);
     }
 }
@@ -439,13 +453,13 @@ static vdouble hourglass_energy(const struct solid *s, const struct solid_pack *
         vdouble ex, ey;
         hourglass_error(&q, &a, &ex, &ey);
         if (s->body[pack->body].variational) {
-            sum = sum + vload_double(slot->hourglass) * (ex * ex + ey * ey);
+            sum = sum + 0.5 * vload_double(slot->half_k) * (ex * ex + ey * ey);
             continue;
         }
         const vdouble x2 = q.x * q.x + q.y * q.y, x = vsqrt_double(x2),
                       X = vsqrt_double(q.X * q.X + q.Y * q.Y);
         const vdouble stretch = ((2.0 * q.X + q.ux) * q.ux + (2.0 * q.Y + q.uy) * q.uy) / (x + X);
-        sum = sum - vload_double(slot->hourglass) * (ex * q.x + ey * q.y) / x * stretch;
+        sum = sum - vload_double(slot->half_k) * (ex * q.x + ey * q.y) / x * stretch;
     }
     return sum * (0.25 * s->body[pack->body].mass);
 }

@@ -33,7 +33,7 @@ struct solid_slot {
         Gy[LANES_DOUBLE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
     double Hx[LANES_DOUBLE], Hy[LANES_DOUBLE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
     double X[LANES_DOUBLE], Y[LANES_DOUBLE];   /* X_ab, m */
-    double hourglass[LANES_DOUBLE];            /* kappa E_ab V_b W_0ab/(X_ab^2 rho0), 1/s^2 */
+    double half_k[LANES_DOUBLE];               /* kappa E_ab V_b W_0ab/(2 X_ab^2 rho0), 1/s^2 */
     int64_t offset;
 } __attribute__((aligned(64)));
 
@@ -80,10 +80,12 @@ struct solid {
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
                       struct particles *p, struct diag *d) SPHFSI_CHECKED;
 
-/* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b). */
+/* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b); with the variational
+ * form, in which hourglass control has a part in the stress, the viscous and the hourglass force as well. */
 void solid_stress(const struct solid *s, struct particles *p);
 
-/* Total acceleration (Eq. 21b) into sx, sy from stresses that are up to date; zero where clamped. */
+/* Total acceleration (Eq. 21b) into sx, sy from what solid_stress has found for the same displacements and
+ * velocities; zero where clamped. */
 void solid_forces(const struct solid *s, struct particles *p);
 
 /* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With

@@ -53,6 +53,7 @@ struct solid_sums {
     vdouble viscous_x, viscous_y; /* of Pi_ab G_ab, still to be turned by J F^-T of a */
     vdouble turned_x, turned_y;   /* of Pi_ab (J F^-T)_b H_ab, in the symmetric form */
     vdouble ax, ay;               /* m/s^2 */
+    struct vtensor2 pull;         /* of k_ab e_ab X_ab^T, in the variational form, m^2/s^2 */
 };
 
 /* Eq. 13a, the neighbours' part: P_b L_b^-1 V_b grad_0 W. */
@@ -101,39 +102,43 @@ SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vdouble Pi, bool sy
     s->viscous_y = vfma_double(Pi, vload_double(q->slot->Gy), s->viscous_y);
 }
 
-/* F X_ab/2 - u_ab for the sum F of displacement gradients. */
-SPHFSI_INLINE void stretch_error(const struct solid_pair *q, const struct vtensor2 *F, vdouble *ex,
-                                 vdouble *ey)
-{
-    const vdouble X = q->X * 0.5, Y = q->Y * 0.5;
-    *ex = vfma_double(F->xx, X, vfma_double(F->xy, Y, -q->ux));
-    *ey = vfma_double(F->yx, X, vfma_double(F->yy, Y, -q->uy));
-}
-
-/* Eqs. 15-16: e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
+/* Eqs. 15-16: twice e_ab = (F_a + F_b) X_ab/2 - x_ab, in displacements. */
 SPHFSI_INLINE void hourglass_error(const struct solid_pair *q, const struct solid_receiver *a,
                                    vdouble *ex, vdouble *ey)
 {
     const struct vtensor2 F = {a->U.xx + q->U_b.xx, a->U.xy + q->U_b.xy, a->U.yx + q->U_b.yx,
                                a->U.yy + q->U_b.yy};
-    stretch_error(q, &F, ex, ey);
+    *ex = vfma_double(F.xx, q->X, vfma_double(F.xy, q->Y, -(q->ux + q->ux)));
+    *ey = vfma_double(F.yx, q->X, vfma_double(F.yy, q->Y, -(q->uy + q->uy)));
 }
 
-/* Over the mass of a: Eq. 17 as printed, a force along x_ab; or the direct part -dE/du_a of the
- * variational form, the sum of k_ab e_ab: opposite to the bit for b. */
-SPHFSI_INLINE void hourglass_force(const struct solid_pair *q, const struct solid_receiver *a,
-                                   bool variational, struct solid_sums *s)
+/* With the energy E = sum over pairs of k_ab |e_ab|^2/2, k_ab = kappa E_ab V_a V_b W_0ab/X_ab^2 as in Eq. 17:
+ * over the mass of a the sum of k_ab e_ab is -dE/du_a, opposite to the bit for b; and as e_ab depends on F_a
+ * too, dE/dF_a/V_a, the sum of k_ab e_ab X_ab^T/(2 V_a), adds to P_a. */
+SPHFSI_INLINE void hourglass_variational(const struct solid_pair *q, const struct solid_receiver *a,
+                                         struct solid_sums *s)
 {
     vdouble ex, ey;
     hourglass_error(q, a, &ex, &ey);
-    const vdouble stiffness = vload_double(q->slot->hourglass);
-    if (variational) {
-        s->ax = vfma_double(stiffness, ex, s->ax);
-        s->ay = vfma_double(stiffness, ey, s->ay);
-        return;
-    }
-    const vdouble along =
-        stiffness * vfma_double(ex, q->x, ey * q->y) / vfma_double(q->x, q->x, q->y * q->y);
+    const vdouble half_k = vload_double(q->slot->half_k);
+    ex = ex * half_k;
+    ey = ey * half_k;
+    s->ax = s->ax + ex;
+    s->ay = s->ay + ey;
+    s->pull.xx = vfma_double(ex, q->X, s->pull.xx);
+    s->pull.xy = vfma_double(ex, q->Y, s->pull.xy);
+    s->pull.yx = vfma_double(ey, q->X, s->pull.yx);
+    s->pull.yy = vfma_double(ey, q->Y, s->pull.yy);
+}
+
+/* Over the mass of a: Eq. 17 as printed, a force along x_ab. */
+SPHFSI_INLINE void hourglass_printed(const struct solid_pair *q, const struct solid_receiver *a,
+                                     struct solid_sums *s)
+{
+    vdouble ex, ey;
+    hourglass_error(q, a, &ex, &ey);
+    const vdouble along = vload_double(q->slot->half_k) * vfma_double(ex, q->x, ey * q->y) /
+                          vfma_double(q->x, q->x, q->y * q->y);
     s->ax = vfma_double(along, q->x, s->ax);
     s->ay = vfma_double(along, q->y, s->ay);
 }

@@ -55,11 +55,11 @@ static void answer(const struct solid *s, struct particles *p, double *const fie
          * opposite field. */
         set_field(field, base, p->sx, p->sy, p->n, -factor);
         keep(other, p->sx, p->sy, p->n);
-        if (s->kelvin_voigt) solid_stress(s, p);
+        solid_stress(s, p);
         solid_forces(s, p);
         set_field(field, base, other[0], other[1], p->n, factor);
         keep(other, p->sx, p->sy, p->n);
-        if (s->kelvin_voigt) solid_stress(s, p);
+        solid_stress(s, p);
     } else {
         set_field(field, base, p->sx, p->sy, p->n, factor);
         solid_stress(s, p);

@@ -198,7 +198,7 @@ static void slot_set(struct solid_slot *slot, int lane, const struct solid *s,
     slot->Hy[lane] = -H[1];
     slot->X[lane] = X;
     slot->Y[lane] = Y;
-    slot->hourglass[lane] = a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
+    slot->half_k[lane] = 0.5 * a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
 }
 
 static int compare_slot(const void *a, const void *b)
@@ -326,30 +326,19 @@ static enum err all_moments(struct solid *s, const struct bucket_grid *g, const 
     return ERR_OK;
 }
 
-/* Sums over the neighbours that do not change: of the gradient weights, and for hourglass control of what
- * the term of F_a in Eq. 15 makes. */
+/* Sums of the gradient weights over the neighbours, which do not change. */
 static void sum_weights(const struct solid *s, struct particles *p)
 {
     for (int64_t k = 0; k < s->n_packs; k++) {
         const struct solid_pack *const pack = &s->pack[k];
         for (int l = 0; l < pack->lanes; l++) {
-            double Gx = 0, Gy = 0, xx = 0, xy = 0, yy = 0;
+            double Gx = 0, Gy = 0;
             for (int m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
-                const struct solid_slot *const slot = &s->slot[m];
-                const double half = 0.5 * slot->hourglass[l], X = slot->X[l], Y = slot->Y[l];
-                Gx += slot->Gx[l];
-                Gy += slot->Gy[l];
-                xx += half * X * X;
-                xy += half * X * Y;
-                yy += half * Y * Y;
+                Gx += s->slot[m].Gx[l];
+                Gy += s->slot[m].Gy[l];
             }
-            const int64_t i = pack->i + l;
-            p->Gx[i] = Gx;
-            p->Gy[i] = Gy;
-            if (!p->arm_xx) continue;
-            p->arm_xx[i] = xx;
-            p->arm_xy[i] = xy;
-            p->arm_yy[i] = yy;
+            p->Gx[pack->i + l] = Gx;
+            p->Gy[pack->i + l] = Gy;
         }
     }
 }

@@ -34,8 +34,8 @@ STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
 # Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides, counted in the
 # source.
 OPERATIONS = 46
-# And of a solid's pair in the default form, gradient, stress and forces together.
-SOLID_OPERATIONS = 56
+# And of a solid's pair in the default form, its three loops together.
+SOLID_OPERATIONS = 48
 
 
 def arguments():
