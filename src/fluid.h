@@ -112,10 +112,11 @@ SPHFSI_INLINE int32_t fluid_share(int32_t n, int32_t m)
     return (int32_t)((int64_t)n * m / fluid_shares(n));
 }
 
-/* Sums over pairs that an evaluation takes, in this order: force (2), rate, mixing, crowding (2), spread. */
+/* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and of what shifting needs; and how many are taken. */
+enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_MIXING, SUM_CROWD_X, SUM_CROWD_Y, SUM_SPREAD, SUMS };
 SPHFSI_INLINE int pair_sums(unsigned effects)
 {
-    return effects & FX_SHIFTING ? 7 : effects & FX_DIFFUSION ? 4 : 3;
+    return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
 }
 
 /* What the particles of a cell, and of a cluster, may see: a thread's room to work in. */

@@ -70,23 +70,23 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t s
     return e;
 }
 
-/* Items of a cluster in the room of a share; and its m-th sum, `at` the first. */
+/* Items of a cluster in the room of a share; and where one of its sums lies, `at` the first. */
 SPHFSI_INLINE size_t room_stride(unsigned fx) { return (size_t)pair_sums(fx) * CLUSTER * CLUSTER; }
-#define ROOM(at, m) ((at) + (m)*CLUSTER * CLUSTER)
+#define ROOM(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
 SPHFSI_INLINE void room_add(real *at, vreal more) { vstore(at, vload(at) + more); }
 
 /* Leaves in the room what pairs bring their candidates. */
 SPHFSI_INLINE void leave(real *at, const struct exchange *e, unsigned fx)
 {
-    room_add(ROOM(at, 0), e->ax);
-    room_add(ROOM(at, 1), e->ay);
-    room_add(ROOM(at, 2), e->rate);
-    if (fx & FX_DIFFUSION) room_add(ROOM(at, 3), e->mixing);
+    room_add(ROOM(at, SUM_X), e->ax);
+    room_add(ROOM(at, SUM_Y), e->ay);
+    room_add(ROOM(at, SUM_RATE), e->rate);
+    if (fx & FX_DIFFUSION) room_add(ROOM(at, SUM_MIXING), e->mixing);
     if (!(fx & FX_SHIFTING)) return;
-    room_add(ROOM(at, 4), e->crowd_x);
-    room_add(ROOM(at, 5), e->crowd_y);
-    room_add(ROOM(at, 6), e->spread);
+    room_add(ROOM(at, SUM_CROWD_X), e->crowd_x);
+    room_add(ROOM(at, SUM_CROWD_Y), e->crowd_y);
+    room_add(ROOM(at, SUM_SPREAD), e->spread);
 }
 
 /* Sums over the fluid that is seen. */

@@ -83,19 +83,22 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
     const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
     const four_double full = 1 + FOUR(p->dens, i);
-    const four_double ax = push * take_sum(s->ax, ROOM(left, 0), -1) + k->gravity[0];
-    const four_double ay = push * take_sum(s->ay, ROOM(left, 1), -1) + k->gravity[1];
-    four_double rate = full * take_sum(s->rate, ROOM(left, 2), 1);
-    if (fx & FX_DIFFUSION) rate = rate + mix * take_sum(s->mixing, ROOM(left, 3), -1);
+    const four_double ax = push * take_sum(s->ax, ROOM(left, SUM_X), -1) + k->gravity[0];
+    const four_double ay = push * take_sum(s->ay, ROOM(left, SUM_Y), -1) + k->gravity[1];
+    four_double rate = full * take_sum(s->rate, ROOM(left, SUM_RATE), 1);
+    if (fx & FX_DIFFUSION) rate = rate + mix * take_sum(s->mixing, ROOM(left, SUM_MIXING), -1);
     store_four(p->ax + i, ax, count);
     store_four(p->ay + i, ay, count);
     store_four(p->ddens + i, -slope * full * rate, count);
     const four_double a2 = ax * ax + ay * ay;
     for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
     if (!(fx & FX_SHIFTING)) return;
-    store_four(p->crowd_x + i, -slope * full * take_sum(s->crowd_x, ROOM(left, 4), -1), count);
-    store_four(p->crowd_y + i, -slope * full * take_sum(s->crowd_y, ROOM(left, 5), -1), count);
-    store_four(p->spread + i, slope * k->h * full * take_sum(s->spread, ROOM(left, 6), 1), count);
+    store_four(p->crowd_x + i, -slope * full * take_sum(s->crowd_x, ROOM(left, SUM_CROWD_X), -1),
+               count);
+    store_four(p->crowd_y + i, -slope * full * take_sum(s->crowd_y, ROOM(left, SUM_CROWD_Y), -1),
+               count);
+    store_four(p->spread + i, slope * k->h * full * take_sum(s->spread, ROOM(left, SUM_SPREAD), 1),
+               count);
 }
 
 /* Receivers of the fluid from their lanes on. */
