@@ -283,12 +283,13 @@ static void share_receivers(const struct cluster_list *near, size_t before, int3
     const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
     vfloat me[FIELDS], more[3];
     for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
-    const vfloat x = me[X], y = me[Y];
+    vfloat x[3], y[3];
+    for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * side[0];
+    for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * side[1];
     for (int k = 0; k < near->n; k++) {
         const uint32_t seen = near->seen[k];
         const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
-        me[X] = x - ((float)seen_column(seen) - 1) * side[0];
-        me[Y] = y - ((float)seen_row(seen) - 1) * side[1];
+        me[X] = x[seen_column(seen)], me[Y] = y[seen_row(seen)];
         pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
               vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
               vfour_float(b + P * CLUSTER), me[VOLUME] * vfour_float(b + VOLUME * CLUSTER), more);

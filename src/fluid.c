@@ -66,17 +66,19 @@ static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *
     return ERR_OK;
 }
 
+/* One piece of memory for all threads, of which each gets its part to touch first. */
 static enum err sight_create(struct fluid *f, struct arena *a, int64_t clusters, struct diag *d)
 {
     const int64_t most = SHARE_CELLS * (CELL_CAPACITY / CLUSTER);
-    const size_t sums = (size_t)pair_sums(f->effects) * CLUSTER * CLUSTER;
+    const size_t places = 1 + (size_t)(clusters < most ? clusters : most);
+    const size_t size =
+        places * (size_t)pair_sums(f->effects) * CLUSTER * CLUSTER * f->sweeps->lane_size;
+    f->thread_bytes = size + sizeof *f->sight;
     f->sight = arena_alloc(a, (size_t)f->threads, sizeof *f->sight, "clusters in sight", d);
-    for (int t = 0; f->sight && t < f->threads; t++) {
-        f->sight[t].room = arena_alloc(a, (size_t)(1 + (clusters < most ? clusters : most)),
-                                       sums * f->sweeps->lane_size, "sums over pairs", d);
-        if (!f->sight[t].room) return ERR_MEMORY;
-    }
-    return f->sight ? ERR_OK : ERR_MEMORY;
+    unsigned char *const left = arena_alloc(a, (size_t)f->threads, size, "sums over pairs", d);
+    if (!f->sight || !left) return ERR_MEMORY;
+    for (int t = 0; t < f->threads; t++) f->sight[t].left = left + (size_t)t * size;
+    return ERR_OK;
 }
 
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,

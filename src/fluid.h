@@ -98,7 +98,7 @@ extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 /* The fluid's active cells are swept in shares: a pair within one is taken once for both of its particles.
  * At most so many cells, and multiples of so many shares, so that threads have equally many. The number of
  * threads must not matter: the order of sums follows from the shares. */
-enum { SHARE_CELLS = 64, SHARES = 16 };
+enum { SHARE_CELLS = 64, SHARES = 24 };
 
 /* The shares of n active cells. */
 SPHFSI_INLINE int32_t fluid_shares(int32_t n)
@@ -119,13 +119,13 @@ SPHFSI_INLINE int pair_sums(unsigned effects)
     return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
 }
 
-/* What the particles of a cell, and of a cluster, may see: a thread's room to work in. */
+/* What the particles of a cell, and of a cluster, may see: of a thread. */
 struct sight {
     struct surroundings around[KIND_COUNT];
     struct cluster_list near[KIND_COUNT];
-    /* [1 + clusters of a share][sums][receiver][candidate]: what receivers before them brought the clusters
-     * as candidates; zeros between evaluations, but for the first, which is what nobody asks for. */
-    void *room;
+    /* [1 + clusters of a share][sums][receiver][candidate]: what receivers before them have left for the
+     * clusters as candidates; zeros between evaluations, but for the first, which is what nobody asks for. */
+    void *left;
 };
 
 struct fluid {
@@ -141,6 +141,7 @@ struct fluid {
     bool *near_dummies; /* [cells]: whether walls or structures are in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct sight *sight;      /* [threads] */
+    size_t thread_bytes;      /* memory of each thread */
     int threads;
     struct fluid_extremes extremes;
 };

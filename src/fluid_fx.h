@@ -30,10 +30,10 @@ struct lane_constants {
     vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
-/* Eq. 4a: sum of V_b v_ab . grad W. */
+/* Eq. 4a: a pair's term of the sum of V_b v_ab . grad W. */
 SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope * q->vx; }
 
-/* Eq. 4b and 21a, pressure: V_b (P_a + P_b), still to be multiplied by the slope and 1/rho_a. */
+/* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the slope of the pair. */
 SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
 {
     return a->p + q->p;

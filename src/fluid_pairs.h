@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sums over the pairs of the fluid. A pair of clusters in the same share of cells is taken once. Its
  * receivers, of the cluster whose turn it is, have what it brings them in registers; what it brings its
- * candidates is left in the share's room until their turn. A part of the sweeps' text (fluid_sweep.h), once
+ * candidates is left for their turn. A part of the sweeps' text (fluid_sweep.h), once
  * for each precision. */
 
 /* Vectors of sums of a cluster's receivers. */
@@ -70,26 +70,26 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t s
     return e;
 }
 
-/* Items of a cluster in the room of a share; and where one of its sums lies, `at` the first. */
-SPHFSI_INLINE size_t room_stride(unsigned fx) { return (size_t)pair_sums(fx) * CLUSTER * CLUSTER; }
-#define ROOM(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
+/* Items that are left for a cluster; and where one of the sums lies, `at` the first. */
+SPHFSI_INLINE size_t left_stride(unsigned fx) { return (size_t)pair_sums(fx) * CLUSTER * CLUSTER; }
+#define LEFT(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
-SPHFSI_INLINE void room_add(real *at, vreal more) { vstore(at, vload(at) + more); }
+SPHFSI_INLINE void leave_sum(real *at, vreal more) { vstore(at, vload(at) + more); }
 
-/* Leaves in the room what pairs bring their candidates. */
+/* Leaves what pairs bring their candidates. */
 SPHFSI_INLINE void leave(real *at, const struct exchange *e, unsigned fx)
 {
-    room_add(ROOM(at, SUM_X), e->ax);
-    room_add(ROOM(at, SUM_Y), e->ay);
-    room_add(ROOM(at, SUM_RATE), e->rate);
-    if (fx & FX_DIFFUSION) room_add(ROOM(at, SUM_MIXING), e->mixing);
+    leave_sum(LEFT(at, SUM_X), e->ax);
+    leave_sum(LEFT(at, SUM_Y), e->ay);
+    leave_sum(LEFT(at, SUM_RATE), e->rate);
+    if (fx & FX_DIFFUSION) leave_sum(LEFT(at, SUM_MIXING), e->mixing);
     if (!(fx & FX_SHIFTING)) return;
-    room_add(ROOM(at, SUM_CROWD_X), e->crowd_x);
-    room_add(ROOM(at, SUM_CROWD_Y), e->crowd_y);
-    room_add(ROOM(at, SUM_SPREAD), e->spread);
+    leave_sum(LEFT(at, SUM_CROWD_X), e->crowd_x);
+    leave_sum(LEFT(at, SUM_CROWD_Y), e->crowd_y);
+    leave_sum(LEFT(at, SUM_SPREAD), e->spread);
 }
 
-/* Sums over the fluid that is seen. */
+/* Sums over the fluid that is seen. What is not ahead leaves it at the first place, where nobody looks. */
 SPHFSI_INLINE void sum_fluid(const struct view *see, const struct receiver a[ROWS],
                              const struct lane_constants *k, unsigned fx, const struct share *share,
                              struct cluster_sums *sums)
@@ -97,8 +97,8 @@ SPHFSI_INLINE void sum_fluid(const struct view *see, const struct receiver a[ROW
     EACH_SEEN(see, m, part) {
         const uint32_t seen = see->seen[m];
         const real *const b = candidates(see, seen, part);
-        const size_t place = (seen_number(seen) - share->before) * seen_ahead(seen);
-        real *const at = share->room + place * room_stride(fx) + part * LANES;
+        const size_t place = (seen_number(seen) + 1 - share->first) * seen_ahead(seen);
+        real *const at = share->left + place * left_stride(fx) + part * LANES;
         for (int row = 0; row < ROWS; row++) {
             const struct exchange e = pair_of_fluid(&a[row], seen, b, k, fx, &sums->approach);
             keep(sums, row, part, &e, fx);
@@ -151,15 +151,19 @@ SPHFSI_INLINE void sum_dummies(const struct view *see, const struct receiver a[R
     }
 }
 
-/* A sum of the particles of a cluster: their own as receivers, with `sign` times what those before them left
- * for them; which leaves zeros for the next share. */
-SPHFSI_INLINE four_double take_sum(const of_cluster own, real *left, double sign)
+/* A sum of the particles of a cluster as receivers. */
+SPHFSI_INLINE four_double own_sum(const of_cluster own)
 {
     real sum[CLUSTER];
     for (int row = 0; row < ROWS; row++) total(own[row], sum + row * GROUPS);
-    four_real *const by = (four_real *)(void *)left; /* [receiver] */
-    const four_real others = (by[0] + by[2]) + (by[1] + by[3]);
-    memset(left, 0, CLUSTER * CLUSTER * sizeof *left);
-    return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double) +
-           sign * __builtin_convertvector(others, four_double);
+    return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double);
+}
+
+/* The same sum of what those before them have left for them; which leaves zeros for the next share. */
+SPHFSI_INLINE four_double take_left(real *at)
+{
+    four_real *const by = (four_real *)(void *)at; /* [receiver] */
+    const four_real sum = (by[0] + by[2]) + (by[1] + by[3]);
+    memset(at, 0, CLUSTER * CLUSTER * sizeof *at);
+    return __builtin_convertvector(sum, four_double);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The sweeps of the fluid, one text for both precisions: fluid_mixed.c and fluid_double.c define
- *   real, vreal, four_real, LANES, GROUPS, SWEEP(name), the verbs vset vfma vmin vmax vabs vsqrt vtop vfour
- *   vspread vsum_four
+ *   real, vreal, four_real, LANES, GROUPS, SWEEP(name), the verbs vset vload vstore vfma vmin vmax vabs
+ *   vsqrt vtop vfour vspread vsum_four
  * and include it. Four particles of a cell that lie close together, a cluster, look at the clusters near
  * them. What a thread writes belongs to its share of the cells, and shares do not depend on the number of
  * threads, so that the bits do not; and each lane of a group of four sums its own candidates, so that they do
@@ -54,8 +54,8 @@ SPHFSI_INLINE bool seen_at_all(real weight) { return (double)weight > 1e-12; }
 /* The part of the fluid that a thread takes at once. */
 struct share {
     struct cluster_range range;
-    size_t before; /* the number whose place in the room is the first */
-    real *room;    /* sight.room */
+    size_t first; /* cluster: the second place of what is left is its own */
+    real *left;   /* sight.left */
 };
 
 /* Largest values over a share: the lanes are searched once. */
@@ -83,22 +83,23 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
     const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
     const four_double full = 1 + FOUR(p->dens, i);
-    const four_double ax = push * take_sum(s->ax, ROOM(left, SUM_X), -1) + k->gravity[0];
-    const four_double ay = push * take_sum(s->ay, ROOM(left, SUM_Y), -1) + k->gravity[1];
-    four_double rate = full * take_sum(s->rate, ROOM(left, SUM_RATE), 1);
-    if (fx & FX_DIFFUSION) rate = rate + mix * take_sum(s->mixing, ROOM(left, SUM_MIXING), -1);
+    const four_double ax = push * (own_sum(s->ax) - take_left(LEFT(left, SUM_X))) + k->gravity[0];
+    const four_double ay = push * (own_sum(s->ay) - take_left(LEFT(left, SUM_Y))) + k->gravity[1];
+    four_double rate = full * (own_sum(s->rate) + take_left(LEFT(left, SUM_RATE)));
+    if (fx & FX_DIFFUSION)
+        rate = rate + mix * (own_sum(s->mixing) - take_left(LEFT(left, SUM_MIXING)));
     store_four(p->ax + i, ax, count);
     store_four(p->ay + i, ay, count);
     store_four(p->ddens + i, -slope * full * rate, count);
     const four_double a2 = ax * ax + ay * ay;
     for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
     if (!(fx & FX_SHIFTING)) return;
-    store_four(p->crowd_x + i, -slope * full * take_sum(s->crowd_x, ROOM(left, SUM_CROWD_X), -1),
-               count);
-    store_four(p->crowd_y + i, -slope * full * take_sum(s->crowd_y, ROOM(left, SUM_CROWD_Y), -1),
-               count);
-    store_four(p->spread + i, slope * k->h * full * take_sum(s->spread, ROOM(left, SUM_SPREAD), 1),
-               count);
+    const four_double crowd_x = own_sum(s->crowd_x) - take_left(LEFT(left, SUM_CROWD_X));
+    const four_double crowd_y = own_sum(s->crowd_y) - take_left(LEFT(left, SUM_CROWD_Y));
+    const four_double spread = own_sum(s->spread) + take_left(LEFT(left, SUM_SPREAD));
+    store_four(p->crowd_x + i, -slope * full * crowd_x, count);
+    store_four(p->crowd_y + i, -slope * full * crowd_y, count);
+    store_four(p->spread + i, slope * k->h * full * spread, count);
 }
 
 /* Receivers of the fluid from their lanes on. */
@@ -133,7 +134,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (see[kind].n) sum_dummies(&see[kind], a, k, fx, &s);
     top->approach = s.approach;
-    real *const left = share->room + ((size_t)cluster - share->before) * room_stride(fx);
+    real *const left = share->left + ((size_t)cluster + 1 - share->first) * left_stride(fx);
     if (count == CLUSTER) /* a number that the compiler knows */
         rates_store(&f->k, p, i, CLUSTER, &s, left, fx, top->acceleration2);
     else
@@ -173,7 +174,7 @@ SPHFSI_INLINE void rates_of_share(const struct fluid *f, struct particles *p, co
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const struct cluster_range range = clusters_of(list, first, end);
-    const struct share share = {range, (size_t)range.first - 1, f->sight[thread_index()].room};
+    const struct share share = {range, (size_t)range.first, f->sight[thread_index()].left};
     struct share_top here = {.approach = {0}};
     for (int32_t m = first; m < end; m++)
         rates_of_cell(f, p, c, list->active[m], k, fx, &share, &here);

@@ -89,7 +89,7 @@ struct pair {
     vreal r2;      /* |xi_ab|^2 */
     vreal u, v;    /* v_ab, m/s */
     vreal vx;      /* v_ab . xi_ab, m/s */
-    vreal slope;   /* V_b/h^2 t^3 */
+    vreal slope;   /* V_b/h^2 t^3; in the sums of the fluid times V_a/h^2 */
     vreal p, dens; /* of b */
     vreal slope_x, slope_y;
 };

@@ -315,7 +315,9 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     const double looks = end / s->scene->output.ledger_interval;
     f.seconds = (f.evaluations + looks) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
     f.seconds /= 1 + thread_efficiency * (threads - 1);
-    f.memory = (double)(s->arena.bytes + s->scene->arena.bytes) / (scale * scale);
+    /* Opened for one thread. */
+    const double shared = (double)(s->arena.bytes + s->scene->arena.bytes - s->fluid.thread_bytes);
+    f.memory = shared / (scale * scale) + threads * (double)s->fluid.thread_bytes;
     f.disk = disk_bytes(s, scale);
     return f;
 }

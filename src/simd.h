@@ -42,9 +42,8 @@ enum {
     GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
 
-/* As many words as floats; and four doubles or floats, the particles of a group, and eight floats or words,
+/* Four doubles or floats, the particles of a group, and eight floats or words,
  * whatever the registers. */
-typedef uint32_t vword __attribute__((vector_size(SIMD_BYTES)));
 typedef double four_double __attribute__((vector_size(32)));
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
@@ -288,16 +287,6 @@ SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
                                   : (a[0] + a[2 % LANES_DOUBLE]) + (a[1] + a[3 % LANES_DOUBLE]);
 }
 #endif
-
-/* Writes first, first + step, ... over the lanes of a vector of words. */
-SPHFSI_INLINE void vstore_ramp(uint32_t *out, uint32_t first, uint32_t step)
-{
-    static const uint32_t places[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
-    vword ramp;
-    memcpy(&ramp, places, sizeof ramp);
-    ramp = ramp * step + first;
-    memcpy(out, &ramp, sizeof ramp);
-}
 
 /* Appends to `out` the items whose lane of a is below the limit, in order; returns how many. Writes
  * LANES_FLOAT items whatever there are. */
