@@ -47,8 +47,9 @@ void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
  * A zeroed struct arena is a valid empty one. */
 struct arena {
     struct arena_block *blocks;
-    size_t bytes; /* handed out so far */
-    size_t limit; /* refuse beyond this many bytes; 0: no limit */
+    size_t bytes;  /* handed out so far */
+    size_t pieces; /* handed out so far */
+    size_t limit;  /* refuse beyond this many bytes; 0: no limit */
 };
 
 /* Zeroed memory for count items of the given size, or NULL with the sizes in d. Never NULL for

@@ -84,6 +84,17 @@ static void test_pieces_are_zero_aligned_and_have_margins(void)
     }
 }
 
+/* Arrays of a loop that began at the same line of a page would share few lines of the first cache. */
+static void test_large_pieces_begin_at_different_lines(void)
+{
+    enum { PIECES = 20 };
+    size_t line[PIECES];
+    for (int k = 0; k < PIECES; k++) {
+        line[k] = (uintptr_t)arena_alloc(&arena, 1 << 20, 1, "piece", &diag) % 4096 / ARENA_ALIGN;
+        for (int m = 0; m < k; m++) TEST_ASSERT_NOT_EQUAL(line[m], line[k]);
+    }
+}
+
 static void test_the_limit_refuses_and_says_what(void)
 {
     arena.limit = 1000;
@@ -170,6 +181,7 @@ static void test_the_clock_goes_forward(void)
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_large_pieces_begin_at_different_lines);
     RUN_TEST(test_exit_status_of_errors);
     RUN_TEST(test_the_first_failure_stays);
     RUN_TEST(test_long_sentences_are_cut);
