@@ -227,15 +227,20 @@ static void fill_clusters(void)
     }
 }
 
+/* Particles of a cluster from the r-th on, one to each group, and where the cells around see them. */
+SPHFSI_INLINE void receivers_of(int32_t cluster, int r, vfloat me[FIELDS], vfloat x[3], vfloat y[3])
+{
+    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
+    for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
+    for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * (float)grid.side[0];
+    for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * (float)grid.side[1];
+}
+
 /* The receivers of a cluster from the r-th on. */
 static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t cluster, int r)
 {
-    const float side[2] = {(float)grid.side[0], (float)grid.side[1]};
-    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
-    vfloat me[FIELDS], sum[3] = {{0}, {0}, {0}}, x[3], y[3];
-    for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
-    for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * side[0];
-    for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * side[1];
+    vfloat me[FIELDS], x[3], y[3], sum[3] = {{0}, {0}, {0}};
+    receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t seen = near->seen[k];
         const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
@@ -279,13 +284,8 @@ static float room[1 + SHARE_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER
 static void share_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
                             vfloat sum[3])
 {
-    const float side[2] = {(float)grid.side[0], (float)grid.side[1]};
-    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
-    vfloat me[FIELDS], more[3];
-    for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
-    vfloat x[3], y[3];
-    for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * side[0];
-    for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * side[1];
+    vfloat me[FIELDS], x[3], y[3], more[3];
+    receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t seen = near->seen[k];
         const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;

@@ -31,15 +31,22 @@ SPHFSI_INLINE void keep(struct cluster_sums *s, int row, int part, const struct 
     if (fx & FX_SHIFTING) keep_crowd(s, row, part, e);
 }
 
+/* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the candidates. */
+SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t seen, const real *b)
+{
+    struct pair q = pair_load(a, seen, b);
+    q.slope = q.slope * a->volume;
+    q.p = lane(b, LANE_P);
+    return q;
+}
+
 /* What pairs of the receivers with candidates exchange; fx is a constant where the kernel is stamped. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t seen, const real *b,
                                             const struct lane_constants *k, unsigned fx,
                                             vreal *approach)
 {
     struct exchange e;
-    struct pair q = pair_load(a, seen, b);
-    q.slope = q.slope * a->volume;
-    q.p = lane(b, LANE_P);
+    struct pair q = pair_between(a, seen, b);
     e.rate = fx_continuity(&q);
     vreal stress = fx_pressure(a, &q), inv;
     if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
@@ -74,6 +81,12 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t s
 SPHFSI_INLINE size_t left_stride(unsigned fx) { return (size_t)pair_sums(fx) * CLUSTER * CLUSTER; }
 #define LEFT(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
+/* The place of a cluster of the share in what is left, behind that of those nobody asks for. */
+SPHFSI_INLINE size_t left_place(const struct share *share, size_t cluster)
+{
+    return cluster + 1 - (size_t)share->range.first;
+}
+
 SPHFSI_INLINE void leave_sum(real *at, vreal more) { vstore(at, vload(at) + more); }
 
 /* Leaves what pairs bring their candidates. */
@@ -97,7 +110,7 @@ SPHFSI_INLINE void sum_fluid(const struct view *see, const struct receiver a[ROW
     EACH_SEEN(see, m, part) {
         const uint32_t seen = see->seen[m];
         const real *const b = candidates(see, seen, part);
-        const size_t place = (seen_number(seen) + 1 - share->first) * seen_ahead(seen);
+        const size_t place = left_place(share, seen_number(seen)) * seen_ahead(seen);
         real *const at = share->left + place * left_stride(fx) + part * LANES;
         for (int row = 0; row < ROWS; row++) {
             const struct exchange e = pair_of_fluid(&a[row], seen, b, k, fx, &sums->approach);
@@ -112,10 +125,8 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t s
                                             const struct lane_constants *k, unsigned fx,
                                             vreal *approach)
 {
-    struct exchange e = {.mixing = {0}};
-    struct pair q = pair_load(a, seen, b);
-    q.slope = q.slope * a->volume;
-    q.p = lane(b, LANE_P);
+    struct exchange e;
+    struct pair q = pair_between(a, seen, b);
     e.rate = fx_continuity(&q);
     const vreal inv = vset(1) / (q.r2 + k->eta2);
     vreal stress = fx_pressure(a, &q);

@@ -54,8 +54,7 @@ SPHFSI_INLINE bool seen_at_all(real weight) { return (double)weight > 1e-12; }
 /* The part of the fluid that a thread takes at once. */
 struct share {
     struct cluster_range range;
-    size_t first; /* cluster: the second place of what is left is its own */
-    real *left;   /* sight.left */
+    real *left; /* sight.left */
 };
 
 /* Largest values over a share: the lanes are searched once. */
@@ -134,7 +133,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (see[kind].n) sum_dummies(&see[kind], a, k, fx, &s);
     top->approach = s.approach;
-    real *const left = share->left + ((size_t)cluster + 1 - share->first) * left_stride(fx);
+    real *const left = share->left + left_place(share, (size_t)cluster) * left_stride(fx);
     if (count == CLUSTER) /* a number that the compiler knows */
         rates_store(&f->k, p, i, CLUSTER, &s, left, fx, top->acceleration2);
     else
@@ -173,8 +172,7 @@ SPHFSI_INLINE void rates_of_share(const struct fluid *f, struct particles *p, co
                                   unsigned fx, struct fluid_extremes *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
-    const struct cluster_range range = clusters_of(list, first, end);
-    const struct share share = {range, (size_t)range.first, f->sight[thread_index()].left};
+    const struct share share = {clusters_of(list, first, end), f->sight[thread_index()].left};
     struct share_top here = {.approach = {0}};
     for (int32_t m = first; m < end; m++)
         rates_of_cell(f, p, c, list->active[m], k, fx, &share, &here);

@@ -45,24 +45,27 @@ SPHFSI_INLINE void look_around(struct sight *sight, const struct fluid *f, const
     clusters_around(&sight->around[kind], &f->lanes[kind].boxes, c, kind, cell, f->k.h);
 }
 
+SPHFSI_INLINE struct view view_of(const struct lanes *lanes, const struct cluster_list *near)
+{
+    return (struct view){(const real *)lanes->cluster, (size_t)(lanes->n * CLUSTER), near->seen,
+                         near->n};
+}
+
 /* What the cluster `own` of one kind sees of another, around whose cell it was looked. */
 SPHFSI_INLINE struct view look_at(struct sight *sight, const struct fluid *f, enum kind kind,
                                   enum kind own, int32_t cluster)
 {
     struct cluster_list *const near = &sight->near[kind];
     clusters_near(near, &sight->around[kind], &f->lanes[own].boxes, cluster);
-    return (struct view){(const real *)f->lanes[kind].cluster, (size_t)(f->lanes[kind].n * CLUSTER),
-                         near->seen, near->n};
+    return view_of(&f->lanes[kind], near);
 }
 
 /* What the next cluster of a cell of fluid sees of the fluid outside of its share and ahead. */
 SPHFSI_INLINE struct view look_ahead(struct sight *sight, const struct fluid *f)
 {
     struct cluster_list *const near = &sight->near[KIND_FLUID];
-    const struct lanes *const lanes = &f->lanes[KIND_FLUID];
-    clusters_ahead_near(near, &sight->around[KIND_FLUID], &lanes->boxes);
-    return (struct view){(const real *)lanes->cluster, (size_t)(lanes->n * CLUSTER), near->seen,
-                         near->n};
+    clusters_ahead_near(near, &sight->around[KIND_FLUID], &f->lanes[KIND_FLUID].boxes);
+    return view_of(&f->lanes[KIND_FLUID], near);
 }
 
 /* Sides of the cells in units of h. */

@@ -59,11 +59,10 @@ static void answer(const struct solid *s, struct particles *p, double *const fie
         solid_forces(s, p);
         set_field(field, base, other[0], other[1], p->n, factor);
         keep(other, p->sx, p->sy, p->n);
-        solid_stress(s, p);
     } else {
         set_field(field, base, p->sx, p->sy, p->n, factor);
-        solid_stress(s, p);
     }
+    solid_stress(s, p);
     solid_forces(s, p);
     for (int64_t i = 0; i < p->n; i++) {
         p->sx[i] -= both_signs ? other[0][i] : rest[0][i];
