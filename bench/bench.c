@@ -326,16 +326,18 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
 }
 
 /* A swinging plate, 20 particles across. */
-static void bench_solid(struct bench *b, bool paper, int threads)
+static void bench_solid(struct bench *b, const char *form, const char *precision, int threads)
 {
     enum { STEPS = 200 };
-    char text[1024];
+    char text[1024], variant[64];
     struct sim x;
+    snprintf(variant, sizeof variant, "%s (%s)", form, precision);
     snprintf(text, sizeof text,
-             "dp = 1 mm\nend_time = 1\n"
+             "dp = 1 mm\nend_time = 1\nprecision = %s\n"
              "[solid plate]\nshape = box 0, 0, 0.22, 0.02\nclamp = box 0, 0, 0.02, 0.02\n"
              "density = 1000\nyoung = 2e6\npoisson = 0.3975\nvelocity = 0, 0.5*x/(0.22 m)\n%s",
-             paper ? "gradient = linear\nhourglass_form = printed\n" : "");
+             precision,
+             strcmp(form, "paper") == 0 ? "gradient = linear\nhourglass_form = printed\n" : "");
     if (!sim_open(&x, text)) return;
     struct particles *const p = &x.s.kind[KIND_SOLID];
     for (int r = -1; r < b->reps; r++) {
@@ -343,14 +345,12 @@ static void bench_solid(struct bench *b, bool paper, int threads)
         solid_advance(&x.s.solid, p, x.s.dt_solid, STEPS, false);
         if (r >= 0) b->sample[0][r] = 1e9 * (wall_clock() - start) / STEPS / (double)p->n;
     }
-    print_row(b, "solid", paper ? "paper" : "default", p->n, threads, "step", "ns/particle/step",
-              b->sample[0]);
+    print_row(b, "solid", variant, p->n, threads, "step", "ns/particle/step", b->sample[0]);
     const struct solid *const s = &x.s.solid;
     double slots = 0;
-    for (int64_t k = 0; k < s->n_packs; k++) slots += s->pack[k].n_slots * LANES_DOUBLE;
+    for (int64_t k = 0; k < s->n_packs; k++) slots += s->pack[k].n_slots * s->sweeps->lanes;
     for (int r = 0; r < b->reps; r++) b->sample[0][r] = slots / (double)p->n;
-    print_row(b, "solid", paper ? "paper" : "default", p->n, threads, "slots", "1/particle",
-              b->sample[0]);
+    print_row(b, "solid", variant, p->n, threads, "slots", "1/particle", b->sample[0]);
     sim_close(&x);
 }
 
@@ -360,8 +360,9 @@ static void bench_all(struct bench *b, int threads, double largest)
     bench_fma(b, threads, "float", run_float, LANES_FLOAT);
     bench_fma(b, threads, "double", run_double, LANES_DOUBLE);
     bench_copy(b, threads);
-    bench_solid(b, false, threads);
-    bench_solid(b, true, threads);
+    bench_solid(b, "default", "mixed", threads);
+    bench_solid(b, "paper", "mixed", threads);
+    bench_solid(b, "default", "double", threads);
     for (double n = 1e4; n <= largest; n *= 10) {
         for (int rich = 0; rich < 2; rich++) {
             bench_fluid(b, n, rich, "mixed", threads);

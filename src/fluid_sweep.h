@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The sweeps of the fluid, one text for both precisions: fluid_mixed.c and fluid_double.c define
- *   real, vreal, four_real, LANES, GROUPS, SWEEP(name), the verbs vset vload vstore vfma vmin vmax vabs
- *   vsqrt vtop vfour vspread vsum_four
- * and include it. Four particles of a cell that lie close together, a cluster, look at the clusters near
- * them. What a thread writes belongs to its share of the cells, and shares do not depend on the number of
- * threads, so that the bits do not; and each lane of a group of four sums its own candidates, so that they do
- * not depend on how many groups a vector holds. */
+ * The sweeps of the fluid, one text for both precisions: fluid_mixed.c and fluid_double.c include it after
+ * the words of real_float.h and real_double.h. Four particles of a cell that lie close together, a cluster,
+ * look at the clusters near them. What a thread writes belongs to its share of the cells, and shares do not
+ * depend on the number of threads, so that the bits do not; and each lane of a group of four sums its own
+ * candidates, so that they do not depend on how many groups a vector holds. */
 
 #include <math.h>
 #include <string.h>

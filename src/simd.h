@@ -63,6 +63,24 @@ SPHFSI_INLINE void vstore_double(double *p, vdouble a) { *(vdouble_at *)p = (vdo
 SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 
+/* Writes the first lanes as doubles. */
+typedef float half_float __attribute__((vector_size(SIMD_BYTES / 2)));
+SPHFSI_INLINE void vwiden_double(double *to, vdouble a, int lanes)
+{
+    if (lanes == LANES_DOUBLE)
+        vstore_double(to, a);
+    else
+        for (int l = 0; l < lanes; l++) to[l] = a[l];
+}
+SPHFSI_INLINE void vwiden_float(double *to, vfloat a, int lanes)
+{
+    half_float half[2];
+    memcpy(half, &a, sizeof a);
+    for (int k = 0; k < 2 && lanes > 0; k++, to += LANES_DOUBLE, lanes -= LANES_DOUBLE)
+        vwiden_double(to, __builtin_convertvector(half[k], vdouble),
+                      lanes < LANES_DOUBLE ? lanes : LANES_DOUBLE);
+}
+
 /* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a : b. */
 #ifdef SIMD_AVX2
 #ifdef SIMD_AVX512

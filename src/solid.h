@@ -26,16 +26,44 @@ struct solid_body {
     bool mixed;       /* joined to a body of another viscosity: pairs take the mean of both */
 };
 
-/* One reference neighbour of each particle of a pack: of lane l the particle `offset` + i + l, with
- * weights that are zero where that lane has no such neighbour. */
-struct solid_slot {
-    double Gx[LANES_DOUBLE],
-        Gy[LANES_DOUBLE]; /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
-    double Hx[LANES_DOUBLE], Hy[LANES_DOUBLE]; /* -G_ba, 1/m: the weight of P_b in the force on a */
-    double X[LANES_DOUBLE], Y[LANES_DOUBLE];   /* X_ab, m */
-    double half_k[LANES_DOUBLE];               /* kappa E_ab V_b W_0ab/(2 X_ab^2 rho0), 1/s^2 */
-    int64_t offset;
-} __attribute__((aligned(64)));
+/* What the sweeps take of a particle: arrays of the solid's own, of float in mixed and double in double
+ * precision. */
+enum solid_lane {
+    S_UX, /* displacement, m: in mixed precision its leading digits, */
+    S_UY,
+    S_LOW_X, /* and what they leave: differences of neighbours keep theirs. Mixed only */
+    S_LOW_Y,
+    S_VX, /* m/s */
+    S_VY,
+    S_UXX, /* displacement gradient, 1 */
+    S_UXY,
+    S_UYX,
+    S_UYY,
+    S_PXX, /* first Piola-Kirchhoff stress, with the share of a variational hourglass force, Pa */
+    S_PXY,
+    S_PYX,
+    S_PYY,
+    S_GX, /* sum of the gradient weights of its neighbours, 1/m */
+    S_GY,
+    S_PAIRS_X, /* acceleration by hourglass and viscous force, m/s^2; variational only */
+    S_PAIRS_Y,
+    S_DRAG, /* rho0 alpha_s c_s h of its body, Pa s; of joined bodies */
+    SOLID_LANES
+};
+
+/* One reference neighbour of each particle of a pack, a slot: of lane l the particle `offset` + i + l, with
+ * weights that are zero where that lane has no such neighbour. A slot has of each weight as many as a pack
+ * has lanes, one weight after the other. */
+enum solid_weight {
+    W_GX, /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    W_GY,
+    W_HX, /* -G_ba, 1/m: the weight of P_b in the force on a */
+    W_HY,
+    W_X, /* X_ab, m */
+    W_Y,
+    W_HALF_K, /* kappa E_ab V_b W_0ab/(2 X_ab^2 rho0), 1/s^2 */
+    SOLID_WEIGHTS
+};
 
 /* Particles i .. i + lanes - 1 of one body, which have their neighbours in common slots. Packs of equal
  * surroundings share their slots: on a lattice all of the interior needs one set. */
@@ -43,6 +71,27 @@ struct solid_pack {
     int32_t i, lanes, body;
     int32_t first_slot, n_slots;
 };
+
+struct solid;
+
+/* Takes the packs from `first` to before `last`. */
+typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
+
+/* The sweeps of one precision. */
+struct solid_sweeps {
+    int lanes;           /* particles of a full pack */
+    size_t size;         /* bytes of a number */
+    solid_sweep *look;   /* takes displacement and velocity from p */
+    solid_sweep *stress; /* gradient, and stress but of bodies with the variational form */
+    solid_sweep
+        *pairs; /* of bodies with the variational form: hourglass and viscous force, and stress */
+    solid_sweep *damping; /* adds the stress of Kelvin and Voigt */
+    solid_sweep *forces;  /* acceleration by neighbours into sx, sy of p */
+    solid_sweep *show;    /* gradient and stress into p */
+    /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
+    void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
+};
+extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
 
 struct contact;
 struct drive;
@@ -53,8 +102,11 @@ struct solid {
     double dp; /* the smallest spacing of any body */
     int64_t n_packs, n_slots;
     int threads; /* that its loops use */
+    const struct solid_sweeps *sweeps;
+    void *lane[SOLID_LANES]; /* each [n] */
     struct solid_pack *pack;
-    struct solid_slot *slot;
+    void *weight;            /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
+    int64_t *offset;         /* [n_slots] */
     bool coupled;            /* meets fluid */
     bool variational;        /* some body has its hourglass force from an energy */
     bool kelvin_voigt;       /* some body has a damping_time */

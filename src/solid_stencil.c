@@ -8,7 +8,13 @@
 #include "solid_stencil.h"
 
 /* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
-enum { MAX_NEIGHBOURS = 96, MAX_SLOTS = MAX_NEIGHBOURS * LANES_DOUBLE };
+enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
+
+/* A slot in the making. */
+struct draft {
+    double weight[SOLID_WEIGHTS][MAX_LANES];
+    int64_t offset;
+};
 
 struct bucket_grid {
     double lower[2], side;
@@ -86,15 +92,15 @@ static int neighbours_of(const struct solid *s, const struct bucket_grid *g,
 }
 
 /* The slot of a pack for neighbours at this offset, made if there is none. */
-static struct solid_slot *slot_for(struct solid_slot *slots, int *n, int64_t offset)
+static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
 {
     for (int k = 0; k < *n; k++)
         if (slots[k].offset == offset) return &slots[k];
-    struct solid_slot *const slot = &slots[(*n)++];
+    struct draft *const slot = &slots[(*n)++];
     memset(slot, 0, sizeof *slot);
     slot->offset = offset;
     /* Lanes without this neighbour divide by their distance all the same: it must not vanish. */
-    for (int l = 0; l < LANES_DOUBLE; l++) slot->X[l] = 1e6;
+    for (int l = 0; l < MAX_LANES; l++) slot->weight[W_X][l] = 1e6;
     return slot;
 }
 
@@ -181,9 +187,8 @@ static void gradient_weight(const struct solid_body *own, const struct gradient_
 }
 
 /* Fills one lane of a slot with the constants of the pair (i, j). */
-static void slot_set(struct solid_slot *slot, int lane, const struct solid *s,
-                     const struct particles *p, const struct gradient_moments *moments, int64_t i,
-                     int64_t j)
+static void slot_set(struct draft *slot, int lane, const struct solid *s, const struct particles *p,
+                     const struct gradient_moments *moments, int64_t i, int64_t j)
 {
     const struct solid_body *const a = &s->body[p->body[i]], *const b = &s->body[p->body[j]];
     const double X = reference_distance(p->X[i], p->X[j], a->dp),
@@ -192,26 +197,26 @@ static void slot_set(struct solid_slot *slot, int lane, const struct solid *s,
     double G[2], H[2];
     gradient_weight(a, &moments[i], X, Y, G);
     gradient_weight(b, &moments[j], -X, -Y, H);
-    slot->Gx[lane] = G[0];
-    slot->Gy[lane] = G[1];
-    slot->Hx[lane] = -H[0];
-    slot->Hy[lane] = -H[1];
-    slot->X[lane] = X;
-    slot->Y[lane] = Y;
-    slot->half_k[lane] = 0.5 * a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
+    slot->weight[W_GX][lane] = G[0];
+    slot->weight[W_GY][lane] = G[1];
+    slot->weight[W_HX][lane] = -H[0];
+    slot->weight[W_HY][lane] = -H[1];
+    slot->weight[W_X][lane] = X;
+    slot->weight[W_Y][lane] = Y;
+    slot->weight[W_HALF_K][lane] =
+        0.5 * a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
 }
 
 static int compare_slot(const void *a, const void *b)
 {
-    const int64_t x = ((const struct solid_slot *)a)->offset,
-                  y = ((const struct solid_slot *)b)->offset;
+    const int64_t x = ((const struct draft *)a)->offset, y = ((const struct draft *)b)->offset;
     return (x > y) - (x < y);
 }
 
 /* The slots of one pack, in ascending order of neighbours. */
 static int pack_slots(const struct solid *s, const struct bucket_grid *g, const struct particles *p,
                       const struct gradient_moments *moments, const struct solid_pack *pack,
-                      struct solid_slot *slots)
+                      struct draft *slots)
 {
     int32_t found[MAX_NEIGHBOURS];
     int n = 0;
@@ -231,7 +236,7 @@ struct slot_sets {
     size_t size;   /* a power of two */
 };
 
-static uint64_t slots_hash(const struct solid_slot *slots, int n)
+static uint64_t slots_hash(const struct draft *slots, int n)
 {
     const unsigned char *bytes = (const unsigned char *)slots;
     uint64_t h = 0xcbf29ce484222325u;
@@ -240,8 +245,8 @@ static uint64_t slots_hash(const struct solid_slot *slots, int n)
 }
 
 /* Finds an equal set or stores this one. */
-static void share_slots(struct solid *s, struct slot_sets *sets, int32_t pack_index,
-                        const struct solid_slot *slots, int n)
+static void share_slots(struct solid *s, struct slot_sets *sets, struct draft *all,
+                        int32_t pack_index, const struct draft *slots, int n)
 {
     struct solid_pack *const pack = &s->pack[pack_index];
     pack->n_slots = n;
@@ -249,14 +254,14 @@ static void share_slots(struct solid *s, struct slot_sets *sets, int32_t pack_in
     for (; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
         const struct solid_pack *const other = &s->pack[sets->pack[k]];
         if (other->body == pack->body && other->n_slots == n &&
-            memcmp(&s->slot[other->first_slot], slots, (size_t)n * sizeof *slots) == 0) {
+            memcmp(&all[other->first_slot], slots, (size_t)n * sizeof *slots) == 0) {
             pack->first_slot = other->first_slot;
             return;
         }
     }
     sets->pack[k] = pack_index;
     pack->first_slot = (int32_t)s->n_slots;
-    memcpy(&s->slot[s->n_slots], slots, (size_t)n * sizeof *slots);
+    memcpy(&all[s->n_slots], slots, (size_t)n * sizeof *slots);
     s->n_slots += n;
 }
 
@@ -265,11 +270,29 @@ static void cut_packs(struct solid *s, const struct particles *p)
     for (int64_t i = 0; i < p->n;) {
         struct solid_pack *const pack = &s->pack[s->n_packs++];
         *pack = (struct solid_pack){.i = (int32_t)i, .body = p->body[i]};
-        while (pack->lanes < LANES_DOUBLE && i < p->n && p->body[i] == pack->body) {
+        while (pack->lanes < s->sweeps->lanes && i < p->n && p->body[i] == pack->body) {
             pack->lanes++;
             i++;
         }
     }
+}
+
+/* The slots as the sweeps take them. */
+static enum err keep_slots(struct solid *s, struct arena *a, const struct draft *all,
+                           struct diag *d)
+{
+    const size_t lanes = (size_t)s->sweeps->lanes, n = (size_t)s->n_slots;
+    s->offset = arena_alloc(a, n, sizeof *s->offset, "slots of the solid", d);
+    s->weight = arena_alloc(a, n * lanes * SOLID_WEIGHTS, s->sweeps->size, "slots of the solid", d);
+    if (!s->offset || !s->weight) return ERR_MEMORY;
+    for (size_t m = 0; m < n; m++) {
+        s->offset[m] = all[m].offset;
+        for (size_t w = 0; w < SOLID_WEIGHTS; w++)
+            for (size_t l = 0; l < lanes; l++)
+                solid_set(s, s->weight, (int64_t)((m * SOLID_WEIGHTS + w) * lanes + l),
+                          all[m].weight[w][l]);
+    }
+    return ERR_OK;
 }
 
 /* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
@@ -280,24 +303,20 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
     struct slot_sets sets = {.size = 1};
     while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
     sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
-    struct solid_slot *const work =
+    struct draft *const work =
         arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
     if (!sets.pack || !work) return ERR_MEMORY;
     int64_t total = 0;
-    for (int64_t k = 0; k < s->n_packs; k++) {
+    for (int64_t k = 0; k < s->n_packs; k++)
         total += pack_slots(s, g, p, moments, &s->pack[k], work);
-    }
-    s->slot = arena_alloc(scratch, (size_t)total, sizeof *s->slot, "slots of the solid", d);
-    if (!s->slot) return ERR_MEMORY;
+    struct draft *const all =
+        arena_alloc(scratch, (size_t)total, sizeof *all, "slots of the solid", d);
+    if (!all) return ERR_MEMORY;
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
     for (int64_t k = 0; k < s->n_packs; k++)
-        share_slots(s, &sets, (int32_t)k, work, pack_slots(s, g, p, moments, &s->pack[k], work));
-
-    const struct solid_slot *const all = s->slot;
-    s->slot = arena_alloc(a, (size_t)s->n_slots, sizeof *s->slot, "slots of the solid", d);
-    if (!s->slot) return ERR_MEMORY;
-    memcpy(s->slot, all, (size_t)s->n_slots * sizeof *s->slot);
-    return ERR_OK;
+        share_slots(s, &sets, all, (int32_t)k, work,
+                    pack_slots(s, g, p, moments, &s->pack[k], work));
+    return keep_slots(s, a, all, d);
 }
 
 /* Moments of every particle, and the neighbours' number checked on the way. */
@@ -327,23 +346,25 @@ static enum err all_moments(struct solid *s, const struct bucket_grid *g, const 
 }
 
 /* Sums of the gradient weights over the neighbours, which do not change. */
-static void sum_weights(const struct solid *s, struct particles *p)
+static void sum_weights(const struct solid *s)
 {
+    const int lanes = s->sweeps->lanes;
     for (int64_t k = 0; k < s->n_packs; k++) {
         const struct solid_pack *const pack = &s->pack[k];
         for (int l = 0; l < pack->lanes; l++) {
             double Gx = 0, Gy = 0;
-            for (int m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
-                Gx += s->slot[m].Gx[l];
-                Gy += s->slot[m].Gy[l];
+            for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
+                Gx += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GX) * lanes + l);
+                Gy += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GY) * lanes + l);
             }
-            p->Gx[pack->i + l] = Gx;
-            p->Gy[pack->i + l] = Gy;
+            solid_set(s, s->lane[S_GX], pack->i + l, Gx);
+            solid_set(s, s->lane[S_GY], pack->i + l, Gy);
         }
     }
 }
 
-enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles *p, struct diag *d)
+enum err solid_stencil_create(struct solid *s, struct arena *a, const struct particles *p,
+                              struct diag *d)
 {
     s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
     if (!s->pack) return ERR_MEMORY;
@@ -359,6 +380,6 @@ enum err solid_stencil_create(struct solid *s, struct arena *a, struct particles
     if (!e) e = all_moments(s, &grid, p, moments, d);
     if (!e) e = store_slots(s, a, &scratch, &grid, p, moments, d);
     arena_free(&scratch);
-    if (!e) sum_weights(s, p);
+    if (!e) sum_weights(s);
     return e;
 }

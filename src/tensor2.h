@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * 2x2 tensors, hand-inlined, over any arithmetic type T (double or a lane type): the struct and its
- * routines are stamped once for each. */
+ * 2x2 tensors, hand-inlined, over any arithmetic type T: the struct and its routines are stamped for double
+ * and for lanes of `real`, which is double where the file has not taken real_float.h. */
 #ifndef SPHFSI_TENSOR2_H
 #define SPHFSI_TENSOR2_H
 
-#include "simd.h"
+#ifndef real
+#include "real_double.h"
+#endif
 
 #define TENSOR2(T, name)                                                            \
     struct name {                                                                   \
@@ -30,6 +32,6 @@
     }
 
 TENSOR2(double, tensor2)
-TENSOR2(vdouble, vtensor2)
+TENSOR2(vreal, vtensor2)
 
 #endif

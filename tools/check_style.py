@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # An include points to a lower floor, or stays on its own. A new file in src/ is added here, unless
 # its name continues a listed one after an underscore: case_lines is part of case.
 FLOORS = [
-    "base meeting simd tensor2 errors",
+    "base meeting simd real tensor2 errors",
     "fields groups particles morton cells clusters smoothing eos",
     "params presets evidence effects rules phases quantities pointdata case expr units geometry motion scene",
     "fluid variants solid material contact drive interface",

@@ -52,7 +52,8 @@ def bench_rows(value, sizes, shares, speed):
                                                                      "fluid"), 45, "ns")
     add("pair sweep, bare, one thread", value("fluid", "bare (mixed)", small, 1, "fluid"), 30, "ns")
     add("the same in double precision", value("fluid", "bare (double)", small, 1, "fluid"), 80, "ns")
-    add("solid, one thread", value("solid", "default", None, 1, "step"), 50, "ns a particle and step")
+    add("solid, one thread", value("solid", "default (mixed)", None, 1, "step"), 50,
+        "ns a particle and step")
     add(f"memory, {large} particles", value("fluid", "dam_break (mixed)", large, 1, "memory"), 250,
         "bytes a fluid particle")
     costs = [value("fluid", "dam_break (mixed)", n, 1, "all") for n in sizes]

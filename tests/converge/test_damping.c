@@ -15,7 +15,7 @@ void tearDown(void) { rig_close(&rig); }
 
 static void open(const char *text, const char *set, const char *another)
 {
-    rig_open(&rig, text, set, another, NULL);
+    rig_open(&rig, text, "precision=double", set, another, NULL);
     p = &rig.sim.kind[KIND_SOLID];
 }
 

@@ -23,7 +23,7 @@ void tearDown(void) { rig_close(&rig); }
 
 static void open(const char *text, const char *gradient, const char *set)
 {
-    rig_open(&rig, text, gradient, set, NULL);
+    rig_open(&rig, text, "precision=double", gradient, set, NULL);
     p = &rig.sim.kind[KIND_SOLID];
 }
 

@@ -141,7 +141,7 @@ static struct sums sums(void)
 static void test_collision(void)
 {
     RIG_OPEN_SOLID(BLOCKS "shape = box 0.05, 0.01, 0.09, 0.05\nvelocity = -1, 0\n",
-                   "a.velocity=1, 0.2");
+                   "a.velocity=1, 0.2", "precision=double");
     const struct sums before = sums();
     double most = 0, drift = 0, leak = 0;
     while (rig.sim.state.time < 0.05) {

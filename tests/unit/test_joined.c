@@ -51,8 +51,8 @@ static void test_two_halves_are_one_body(void)
         {"left.law=svk", "left.viscosity_form=symmetric"},
     };
     for (size_t k = 0; k < COUNT_OF(sets); k++) {
-        rig_open(&whole, ONE, sets[k][0], sets[k][1], NULL);
-        rig_open(&rig, TWO, sets[k][0], sets[k][1], NULL);
+        rig_open(&whole, ONE, "precision=double", sets[k][0], sets[k][1], NULL);
+        rig_open(&rig, TWO, "precision=double", sets[k][0], sets[k][1], NULL);
         /* Power iteration from other random numbers: within its one percent. */
         assert_near(0.01, 1, rig.sim.dt_solid / whole.sim.dt_solid, "stable step");
         struct particles *const p = &rig.sim.kind[KIND_SOLID], *const q =
@@ -105,7 +105,7 @@ static void test_bodies_within_reach_are_not_bonded(void)
 static void test_momentum_across_the_interface(void)
 {
     rig_open(&rig, TWO, "right.density=2700", "right.young=4e7", "right.artificial_viscosity=0.5",
-             "left.viscosity_form=symmetric", NULL);
+             "left.viscosity_form=symmetric", "precision=double", NULL);
     struct particles *const p = &rig.sim.kind[KIND_SOLID];
     disturb(p);
     solid_stress(&rig.sim.solid, p);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Stress laws: numbers by hand, small strains, objectivity, energy, what happens across the plane. */
-#include "material.h"
+#include "material_energy.h"
 
 #include "rig.h"
 #include "unity.h"

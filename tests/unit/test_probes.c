@@ -19,7 +19,7 @@ static char text[4096];
 static void open_with(const char *more, const char *set)
 {
     snprintf(text, sizeof text, "%s%s", tiny_case, more);
-    rig_open(&rig, text, set, NULL);
+    rig_open(&rig, text, "precision=double", set, NULL);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, probes_create(&probes, &rig.sim, &arena, &rig.diag),
                                   rig.diag.text);
 }
