@@ -3,8 +3,9 @@
 those of a program that it is compiled out of, to 1 %; the state is the same to the bit. Nor does a wall
 cost anything that no fluid reaches.
 
-Instructions are those within simulation_step, counted by valgrind: a number that every run repeats; bytes
-are those of the run's arena.
+Instructions are those within simulation_step, counted by valgrind: a number that every run repeats. Without
+those of the allocator, which the threads' library calls at each parallel region: they depend on what has been
+freed before. Bytes are those of the run's arena.
 
   test_absence.py           all effects that no scene here uses, left out together (two programs), and
                             docs/absence.md, which must have a row for every effect
@@ -63,19 +64,40 @@ def build(name, left_out):
     return target / "sphfsi"
 
 
+ALLOCATOR = re.compile(r"malloc|calloc|realloc|free|unlink_chunk|mem_align")
+
+
+def instructions(path):
+    """Of all functions in callgrind's file but the allocator's."""
+    names, name, total, inclusive = {}, "", 0, False
+    for line in Path(path).read_text().splitlines():
+        function = re.match(r"fn=\((\d+)\)(?: (.*))?", line)
+        if function:
+            name = names.setdefault(function[1], function[2])
+        elif line.startswith("calls="):
+            inclusive = True  # the next line is the cost of what is called, which is counted there
+        elif re.match(r"[+*\-\d]", line):
+            if not inclusive and not ALLOCATOR.search(name):
+                total += int(line.split()[1])
+            inclusive = False
+        elif line.startswith("cfn=("):
+            called = re.match(r"cfn=\((\d+)\)(?: (.*))?", line)
+            names.setdefault(called[1], called[2])
+    return total
+
+
 def measure(program, scene):
     """Instructions a step, bytes, state and effects."""
     with tempfile.TemporaryDirectory() as top:
-        case = Path(top) / "scene.cfg"
+        case, counts = Path(top) / "scene.cfg", Path(top) / "counts"
         case.write_text(scene)
         result = subprocess.run(
-            ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null",
+            ["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}",
              "--toggle-collect=simulation_step", str(program), str(case), "--quiet", "--threads", "1",
              "--out", f"{top}/run", "--until", repr(STEPS * STEP)], capture_output=True, text=True)
-        found = re.search(r"Collected : (\d+)", result.stderr)
-        assert result.returncode == 0 and found, result.stderr + result.stdout
+        assert result.returncode == 0 and counts.exists(), result.stderr + result.stdout
         summary = json.loads(Path(top, "run/summary.json").read_text())
-        steps = int(found.group(1)) / summary["steps"]
+        steps = instructions(counts) / summary["steps"]
         assert steps > 1000, f"{program} {case}: nothing was counted"
         return steps, summary["memory_bytes"], summary["state_hash"], set(summary["effects"])
 
