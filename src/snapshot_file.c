@@ -90,20 +90,21 @@ static int64_t chunk_rows(const struct column *c, int64_t n)
                                      : POINT_CHUNK_MOST;
 }
 
-/* Rows of a chunk of an open dataset; 0: it cannot be told. */
-static int64_t rows_of_chunk(hid_t set)
+/* Rows and columns of the chunks of an open dataset. */
+static bool size_of_chunk(hid_t set, hsize_t size[2])
 {
-    hsize_t size[2] = {0, 0};
+    size[0] = size[1] = 1;
     const hid_t how = H5Dget_create_plist(set);
     const bool ok = how >= 0 && H5Pget_chunk(how, 2, size) > 0;
     if (how >= 0) H5Pclose(how);
-    return ok ? (int64_t)size[0] : 0;
+    return ok;
 }
 
-/* How a dataset of snapshots of about n points lies in its file. */
+/* How a dataset of snapshots of about n points lies in its file. Each component has chunks of its own: bytes
+ * of one kind beside each other pack better than those of two or three in turn. */
 static hid_t layout_of(const struct snapshot_layout *layout, const struct column *c, int64_t n)
 {
-    const hsize_t chunk[2] = {(hsize_t)chunk_rows(c, n), (hsize_t)c->width};
+    const hsize_t chunk[2] = {(hsize_t)chunk_rows(c, n), 1};
     const hid_t how = H5Pcreate(H5P_DATASET_CREATE);
     if (how >= 0) H5Pset_chunk(how, c->width > 1 ? 2 : 1, chunk);
     if (how >= 0 && c->growth != BY_STEP && layout->deflate > 0) {
@@ -308,10 +309,11 @@ struct chunk_buffer {
     size_t size;
 };
 
-/* Copies the chunk that begins at a row as it lies in the file, without unpacking it. */
-static bool copy_chunk(hid_t source, hid_t target, int64_t row, struct chunk_buffer *b)
+/* Copies the chunk that begins at a row and a column as it lies in the file, without unpacking it. */
+static bool copy_chunk(hid_t source, hid_t target, hsize_t row, hsize_t column,
+                       struct chunk_buffer *b)
 {
-    const hsize_t at[2] = {(hsize_t)row, 0};
+    const hsize_t at[2] = {row, column};
     hsize_t bytes = 0;
     uint32_t filters = 0;
     if (H5Dget_chunk_storage_size(source, at, &bytes) < 0) return false;
@@ -330,13 +332,17 @@ static bool copy_chunk(hid_t source, hid_t target, int64_t row, struct chunk_buf
 static bool copy_rows(hid_t source, hid_t target, int64_t width, int64_t until,
                       struct chunk_buffer *b)
 {
-    const int64_t at = count_rows(target), chunk = rows_of_chunk(source);
     const hsize_t size[2] = {(hsize_t)until, (hsize_t)width};
-    if (at < 0 || count_rows(source) < until || chunk < 1 || rows_of_chunk(target) != chunk)
+    const int64_t at = count_rows(target);
+    hsize_t chunk[2], own[2];
+    if (at < 0 || count_rows(source) < until || !size_of_chunk(source, chunk) ||
+        !size_of_chunk(target, own) || memcmp(chunk, own, sizeof own) != 0)
         return false;
     bool ok = at >= until || H5Dset_extent(target, size) >= 0;
-    for (int64_t row = at - at % chunk; ok && at < until && row < until; row += chunk)
-        ok = copy_chunk(source, target, row, b);
+    for (hsize_t row = (hsize_t)at - (hsize_t)at % chunk[0]; at < until && row < size[0];
+         row += chunk[0])
+        for (hsize_t column = 0; ok && column < size[1]; column += chunk[1])
+            ok = copy_chunk(source, target, row, column, b);
     return ok;
 }
 
