@@ -63,6 +63,16 @@ SPHFSI_INLINE void vstore_double(double *p, vdouble a) { *(vdouble_at *)p = (vdo
 SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 
+/* Keeps what was loaded in a register, where there are enough of them: gcc would rather load it again for
+ * each use, and loads at odd addresses are what the solid's loops wait for. */
+#if defined SIMD_AVX512
+#define vhold(a) __asm__("" : "+v"(a))
+#elif defined SIMD_NEON
+#define vhold(a) __asm__("" : "+w"(a))
+#else
+#define vhold(a) ((void)0)
+#endif
+
 /* Writes the first lanes as doubles. */
 typedef float half_float __attribute__((vector_size(SIMD_BYTES / 2)));
 SPHFSI_INLINE void vwiden_double(double *to, vdouble a, int lanes)

@@ -81,6 +81,8 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid *s, const real *slot,
     struct solid_pair q = {.slot = slot, .j = j};
     q.X = weight_of(slot, W_X);
     q.Y = weight_of(slot, W_Y);
+    vhold(q.X);
+    vhold(q.Y);
     q.u = displacement_between(s, &a->at, j);
     q.x = q.X + q.u.x;
     q.y = q.Y + q.u.y;
@@ -130,7 +132,9 @@ SPHFSI_INLINE void viscous_force(const struct solid_pair *q, vreal Pi, bool symm
                                  struct solid_sums *s)
 {
     if (symmetric) {
-        const vreal Hx = weight_of(q->slot, W_HX), Hy = weight_of(q->slot, W_HY);
+        vreal Hx = weight_of(q->slot, W_HX), Hy = weight_of(q->slot, W_HY);
+        vhold(Hx);
+        vhold(Hy);
         const struct vtensor2 *const U = &q->U_b;
         /* The cofactor of I + U times H. */
         const vreal x = vfma(-U->yx, Hy, vfma(U->yy, Hx, Hx));
@@ -160,7 +164,8 @@ SPHFSI_INLINE void hourglass_variational(const struct solid_pair *q, const struc
 {
     vreal ex, ey;
     hourglass_error(q, a, &ex, &ey);
-    const vreal half_k = weight_of(q->slot, W_HALF_K);
+    vreal half_k = weight_of(q->slot, W_HALF_K);
+    vhold(half_k);
     ex = ex * half_k;
     ey = ey * half_k;
     s->ax = s->ax + ex;
