@@ -182,7 +182,8 @@ enum err explain_session(struct session *x, int threads, const struct sphfsi_opt
     char precision[SCENE_NAME], integrator[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
     param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
-    session_say(o, "integrator %s, precision %s, kernel of the fluid: %s", integrator, precision,
-                s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none");
+    session_say(o, "integrator %s, precision %s, kernel of the fluid: %s, of the solid: %s",
+                integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none",
+                s->solid.sweeps ? s->solid.sweeps->name : "none");
     return say_trial(s, threads, o, d);
 }

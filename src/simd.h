@@ -73,22 +73,30 @@ SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 #define vhold(a) ((void)0)
 #endif
 
-/* Writes the first lanes as doubles. */
-typedef float half_float __attribute__((vector_size(SIMD_BYTES / 2)));
-SPHFSI_INLINE void vwiden_double(double *to, vdouble a, int lanes)
+/* vput(p, a, n): writes the first n lanes. vwiden(p, a, n): as doubles. */
+SPHFSI_INLINE void vput_float(float *p, vfloat a, int n)
 {
-    if (lanes == LANES_DOUBLE)
-        vstore_double(to, a);
+    if (n == LANES_FLOAT)
+        vstore_float(p, a);
     else
-        for (int l = 0; l < lanes; l++) to[l] = a[l];
+        for (int l = 0; l < n; l++) p[l] = a[l];
 }
-SPHFSI_INLINE void vwiden_float(double *to, vfloat a, int lanes)
+SPHFSI_INLINE void vput_double(double *p, vdouble a, int n)
 {
+    if (n == LANES_DOUBLE)
+        vstore_double(p, a);
+    else
+        for (int l = 0; l < n; l++) p[l] = a[l];
+}
+SPHFSI_INLINE void vwiden_double(double *p, vdouble a, int n) { vput_double(p, a, n); }
+SPHFSI_INLINE void vwiden_float(double *p, vfloat a, int n)
+{
+    typedef float half_float __attribute__((vector_size(SIMD_BYTES / 2)));
     half_float half[2];
     memcpy(half, &a, sizeof a);
-    for (int k = 0; k < 2 && lanes > 0; k++, to += LANES_DOUBLE, lanes -= LANES_DOUBLE)
-        vwiden_double(to, __builtin_convertvector(half[k], vdouble),
-                      lanes < LANES_DOUBLE ? lanes : LANES_DOUBLE);
+    for (int k = 0; k < 2 && n > 0; k++, p += LANES_DOUBLE, n -= LANES_DOUBLE)
+        vput_double(p, __builtin_convertvector(half[k], vdouble),
+                    n < LANES_DOUBLE ? n : LANES_DOUBLE);
 }
 
 /* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a : b. */

@@ -77,14 +77,15 @@ struct solid;
 /* Takes the packs from `first` to before `last`. */
 typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
 
-/* The sweeps of one precision. */
+/* The sweeps of one precision. Bodies with the variational form have their pairs apart: the hourglass force
+ * and the viscous force, and the stress, to which the first adds. */
 struct solid_sweeps {
-    int lanes;           /* particles of a full pack */
-    size_t size;         /* bytes of a number */
-    solid_sweep *look;   /* takes displacement and velocity from p */
-    solid_sweep *stress; /* gradient, and stress but of bodies with the variational form */
-    solid_sweep
-        *pairs; /* of bodies with the variational form: hourglass and viscous force, and stress */
+    const char *name;
+    int lanes;            /* particles of a full pack */
+    size_t size;          /* bytes of a number */
+    solid_sweep *look;    /* takes displacement and velocity from p */
+    solid_sweep *stress;  /* gradient, and stress but of variational bodies */
+    solid_sweep *pairs;   /* forces of pairs and stress of variational bodies */
     solid_sweep *damping; /* adds the stress of Kelvin and Voigt */
     solid_sweep *forces;  /* acceleration by neighbours into sx, sy of p */
     solid_sweep *show;    /* gradient and stress into p */

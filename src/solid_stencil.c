@@ -230,38 +230,91 @@ static int pack_slots(const struct solid *s, const struct bucket_grid *g, const 
     return n;
 }
 
+/* Slots as the sweeps take them. */
+struct slots {
+    int64_t *offset;
+    char *weight;
+};
+
+/* Bytes of the weights of a slot. */
+static size_t slot_bytes(const struct solid *s)
+{
+    return SOLID_WEIGHTS * (size_t)s->sweeps->lanes * s->sweeps->size;
+}
+
+static enum err create_slots(struct slots *t, const struct solid *s, struct arena *a, int64_t n,
+                             struct diag *d)
+{
+    t->offset = arena_alloc(a, (size_t)n, sizeof *t->offset, "slots of the solid", d);
+    t->weight = arena_alloc(a, (size_t)n, slot_bytes(s), "slots of the solid", d);
+    return t->offset && t->weight ? ERR_OK : ERR_MEMORY;
+}
+
+static void copy_slots(struct slots *to, int64_t at, const struct slots *from, int64_t n,
+                       const struct solid *s)
+{
+    memcpy(&to->offset[at], from->offset, (size_t)n * sizeof *to->offset);
+    memcpy(&to->weight[(size_t)at * slot_bytes(s)], from->weight, (size_t)n * slot_bytes(s));
+}
+
+static void take_drafts(struct slots *to, const struct solid *s, const struct draft *drafts, int n)
+{
+    const int lanes = s->sweeps->lanes;
+    for (int m = 0; m < n; m++) {
+        to->offset[m] = drafts[m].offset;
+        for (int w = 0; w < SOLID_WEIGHTS; w++)
+            for (int l = 0; l < lanes; l++)
+                solid_set(s, to->weight, (m * SOLID_WEIGHTS + w) * lanes + l,
+                          drafts[m].weight[w][l]);
+    }
+}
+
 /* Sets of slots that were stored already, by hash. */
 struct slot_sets {
     int32_t *pack; /* [size] a pack with this set, -1: free */
     size_t size;   /* a power of two */
+    struct slots all;
 };
 
-static uint64_t slots_hash(const struct draft *slots, int n)
+static uint64_t hash_bytes(uint64_t h, const void *data, size_t n)
 {
-    const unsigned char *bytes = (const unsigned char *)slots;
-    uint64_t h = 0xcbf29ce484222325u;
-    for (size_t k = 0; k < (size_t)n * sizeof *slots; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
+    const unsigned char *const bytes = data;
+    for (size_t k = 0; k < n; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
     return h;
 }
 
+static uint64_t slots_hash(const struct solid *s, const struct slots *t, int n)
+{
+    const uint64_t h = hash_bytes(0xcbf29ce484222325u, t->offset, (size_t)n * sizeof *t->offset);
+    return hash_bytes(h, t->weight, (size_t)n * slot_bytes(s));
+}
+
+static bool equal_slots(const struct solid *s, const struct slots *all, int64_t at,
+                        const struct slots *t, int n)
+{
+    return memcmp(&all->offset[at], t->offset, (size_t)n * sizeof *t->offset) == 0 &&
+           memcmp(&all->weight[(size_t)at * slot_bytes(s)], t->weight, (size_t)n * slot_bytes(s)) ==
+               0;
+}
+
 /* Finds an equal set or stores this one. */
-static void share_slots(struct solid *s, struct slot_sets *sets, struct draft *all,
-                        int32_t pack_index, const struct draft *slots, int n)
+static void share_slots(struct solid *s, struct slot_sets *sets, int32_t pack_index,
+                        const struct slots *slots, int n)
 {
     struct solid_pack *const pack = &s->pack[pack_index];
     pack->n_slots = n;
-    size_t k = slots_hash(slots, n) & (sets->size - 1);
+    size_t k = slots_hash(s, slots, n) & (sets->size - 1);
     for (; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
         const struct solid_pack *const other = &s->pack[sets->pack[k]];
         if (other->body == pack->body && other->n_slots == n &&
-            memcmp(&all[other->first_slot], slots, (size_t)n * sizeof *slots) == 0) {
+            equal_slots(s, &sets->all, other->first_slot, slots, n)) {
             pack->first_slot = other->first_slot;
             return;
         }
     }
     sets->pack[k] = pack_index;
     pack->first_slot = (int32_t)s->n_slots;
-    memcpy(&all[s->n_slots], slots, (size_t)n * sizeof *slots);
+    copy_slots(&sets->all, s->n_slots, slots, n, s);
     s->n_slots += n;
 }
 
@@ -277,30 +330,13 @@ static void cut_packs(struct solid *s, const struct particles *p)
     }
 }
 
-/* The slots as the sweeps take them. */
-static enum err keep_slots(struct solid *s, struct arena *a, const struct draft *all,
-                           struct diag *d)
-{
-    const size_t lanes = (size_t)s->sweeps->lanes, n = (size_t)s->n_slots;
-    s->offset = arena_alloc(a, n, sizeof *s->offset, "slots of the solid", d);
-    s->weight = arena_alloc(a, n * lanes * SOLID_WEIGHTS, s->sweeps->size, "slots of the solid", d);
-    if (!s->offset || !s->weight) return ERR_MEMORY;
-    for (size_t m = 0; m < n; m++) {
-        s->offset[m] = all[m].offset;
-        for (size_t w = 0; w < SOLID_WEIGHTS; w++)
-            for (size_t l = 0; l < lanes; l++)
-                solid_set(s, s->weight, (int64_t)((m * SOLID_WEIGHTS + w) * lanes + l),
-                          all[m].weight[w][l]);
-    }
-    return ERR_OK;
-}
-
 /* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
 static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
                             const struct bucket_grid *g, const struct particles *p,
                             const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
+    struct slots own, kept;
     while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
     sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
     struct draft *const work =
@@ -309,14 +345,19 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
     int64_t total = 0;
     for (int64_t k = 0; k < s->n_packs; k++)
         total += pack_slots(s, g, p, moments, &s->pack[k], work);
-    struct draft *const all =
-        arena_alloc(scratch, (size_t)total, sizeof *all, "slots of the solid", d);
-    if (!all) return ERR_MEMORY;
+    TRY(create_slots(&own, s, scratch, MAX_SLOTS, d));
+    TRY(create_slots(&sets.all, s, scratch, total, d));
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
-    for (int64_t k = 0; k < s->n_packs; k++)
-        share_slots(s, &sets, all, (int32_t)k, work,
-                    pack_slots(s, g, p, moments, &s->pack[k], work));
-    return keep_slots(s, a, all, d);
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const int n = pack_slots(s, g, p, moments, &s->pack[k], work);
+        take_drafts(&own, s, work, n);
+        share_slots(s, &sets, (int32_t)k, &own, n);
+    }
+    TRY(create_slots(&kept, s, a, s->n_slots, d));
+    copy_slots(&kept, 0, &sets.all, s->n_slots, s);
+    s->offset = kept.offset;
+    s->weight = kept.weight;
+    return ERR_OK;
 }
 
 /* Moments of every particle, and the neighbours' number checked on the way. */

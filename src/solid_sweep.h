@@ -2,8 +2,6 @@
  * The sweeps of the solid, one text for both precisions: solid_mixed.c and solid_double.c include it after
  * the words of real_float.h and real_double.h. A pack of particles goes through its slots, one neighbour for
  * each lane at a time; every particle is written by its own pack alone. */
-#include <string.h>
-
 #include "material.h"
 #include "solid.h"
 #include "solid_fx.h"
@@ -12,12 +10,7 @@
 SPHFSI_INLINE void keep_lanes(const struct solid *s, int lane, const struct solid_pack *pack,
                               vreal value)
 {
-    real *const to = (real *)s->lane[lane] + pack->i;
-    if (pack->lanes == LANES) {
-        vstore(to, value);
-        return;
-    }
-    for (int l = 0; l < pack->lanes; l++) to[l] = value[l];
+    vput((real *)s->lane[lane] + pack->i, value, pack->lanes);
 }
 
 SPHFSI_INLINE void keep_tensor(const struct solid *s, int lane, const struct solid_pack *pack,
@@ -280,6 +273,7 @@ static void hourglass(const struct solid *s, const struct solid_pack *pack, doub
 }
 
 const struct solid_sweeps SWEEP(solid_sweeps) = {
+    .name = SWEEP_LABEL,
     .lanes = LANES,
     .size = sizeof(real),
     .look = look,

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * The solid in mixed against double precision: what float pairs cost, that it does not grow with strain going
- * down or displacement going up, and that both find the same step. */
+ * Pairs of the solid in float against double: what float costs, that it does not grow with strain going
+ * down or displacement going up, how it grows as a body turns, that both find the same step, and where it
+ * is taken. */
 #include "rig.h"
+#include "solid_stencil.h"
 #include "unity.h"
 
 #include <math.h>
@@ -12,7 +14,8 @@ static const char bar[] =
     "[solid bar]\nshape = box 0, 0, 0.3, 0.06\nclamp = box 0, 0, 0.02, 0.06\n"
     "density = 1100\nyoung = 2e6\npoisson = 0.4\nvelocity = 0, 20 s^-1*max(x, 0)\n";
 
-static const char *const precisions[] = {"precision=double", "precision=mixed"};
+static const char *const precisions[] = {"numerics.solid_precision=double",
+                                         "numerics.solid_precision=single"};
 static struct rig rig;
 static struct particles *p;
 
@@ -133,11 +136,95 @@ static void test_the_same_step(void)
     }
 }
 
+/* A gradient has as much as the angle of a turn, of which float keeps 1e-7: stresses are off by that times
+ * Young's modulus, and by kappa = 50 times as much of the hourglass error. */
+static void test_turned_bodies(void)
+{
+    for (double angle = 0.01; angle < 4; angle *= 4) {
+        double P[2][MOST] = {{0}}, top = 0;
+        for (int k = 0; k < 2; k++) {
+            RIG_OPEN_SOLID(bar, precisions[k]);
+            for (int64_t i = 0; i < p->n; i++) {
+                const double x = (1 + 1e-6) * p->X[i], y = p->Y[i];
+                p->ux[i] = cos(angle) * x - sin(angle) * y - p->X[i];
+                p->uy[i] = sin(angle) * x + cos(angle) * y - p->Y[i];
+            }
+            solid_stress(&rig.sim.solid, p);
+            for (int64_t i = 0; i < p->n; i++) P[k][i] = p->Pxx[i];
+        }
+        for (int64_t i = 0; i < p->n; i++) top = fmax(top, fabs(P[1][i] - P[0][i]));
+        printf("turned by %.2f rad: stress off by %.2g E\n", angle, top / 2e6);
+        TEST_ASSERT_TRUE(top > 0);
+        assert_at_most(2e-6 * angle * 2e6, top, "stress of a turned body");
+    }
+}
+
+/* Float where every body is held at rest and damped; what is joined to a held body is held. */
+static void test_where_float_is_taken(void)
+{
+#define BLOCK "[solid block]\ndensity = 1100\nyoung = 2e6\npoisson = 0.4\n"
+    static const char free_block[] = BLOCK "shape = box 0.4, 0, 0.5, 0.06\n";
+    static const char joined[] = BLOCK "shape = box 0.3, 0, 0.4, 0.06\njoined = bar\n";
+    static const char moved[] = "clamp_motion = way\n[motion way]\nkind = sine\n"
+                                "amplitude = 1 mm, 0\nperiod = 1 s\n";
+    const struct {
+        const char *more, *set;
+        bool single;
+    } cases[] = {
+        {"", NULL, true},
+        {"", "bar.artificial_viscosity=0.009", false},
+        {"", "bar.artificial_viscosity=0.01", true},
+        {"", "precision=double", false},
+        {free_block, NULL, false},
+        {joined, NULL, true},
+        {joined, "block.artificial_viscosity=0", false},
+        {moved, NULL, false},
+        {moved, "numerics.solid_precision=single", true},
+        {"", "numerics.solid_precision=double", false},
+    };
+    for (size_t k = 0; k < COUNT_OF(cases); k++) {
+        char text[1024];
+        snprintf(text, sizeof text, "%s%s", bar, cases[k].more);
+        RIG_OPEN_SOLID(text, cases[k].set);
+        const struct solid_sweeps *const expected =
+            cases[k].single ? &solid_sweeps_mixed : &solid_sweeps_double;
+        snprintf(text, sizeof text, "row %zu: %s", k, rig.sim.solid.sweeps->name);
+        TEST_ASSERT_TRUE_MESSAGE(rig.sim.solid.sweeps == expected, text);
+    }
+}
+
+/* What the sweeps work on is what the particles have, those of a clamp that moves among them, after each
+ * step. */
+static void test_lanes_follow_the_particles(void)
+{
+    static const char moved[] = "clamp_motion = way\n[motion way]\nkind = sine\n"
+                                "amplitude = 5 cm, 3 cm\nperiod = 1 ms\n";
+    char text[1024];
+    snprintf(text, sizeof text, "%s%s", bar, moved);
+    RIG_OPEN_SOLID(text, precisions[1], "integrator=leapfrog");
+    const struct solid *const s = &rig.sim.solid;
+    for (int step = 0; step < 5; step++) {
+        solid_advance(&rig.sim.solid, p, 1e-5, 1, true);
+        for (int64_t i = 0; i < p->n; i++) {
+            const double x = solid_get(s, s->lane[S_UX], i) + solid_get(s, s->lane[S_LOW_X], i),
+                         y = solid_get(s, s->lane[S_UY], i) + solid_get(s, s->lane[S_LOW_Y], i);
+            assert_near(1e-14 * (1e-3 + fabs(p->ux[i])), p->ux[i], x, "ux");
+            assert_near(1e-14 * (1e-3 + fabs(p->uy[i])), p->uy[i], y, "uy");
+            TEST_ASSERT_TRUE(solid_get(s, s->lane[S_VX], i) == (double)(float)p->vx[i]);
+            TEST_ASSERT_TRUE(solid_get(s, s->lane[S_VY], i) == (double)(float)p->vy[i]);
+        }
+    }
+    TEST_ASSERT_TRUE(fabs(p->ux[0]) > 1e-3);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_same_oscillation);
     RUN_TEST(test_small_strains_and_long_ways);
+    RUN_TEST(test_turned_bodies);
     RUN_TEST(test_the_same_step);
+    RUN_TEST(test_where_float_is_taken);
+    RUN_TEST(test_lanes_follow_the_particles);
     return UNITY_END();
 }

@@ -4,7 +4,7 @@
  *
  * Tolerances: F to 1e-12 (sums of some 20 terms of order 1, coordinates known to 1e-14 of dp), stress
  * to 1e-12 of Young's modulus, and accelerations to 1e-12 of the largest sum of the sizes of the terms
- * of a particle, which the round-off of its sum is relative to. Mixed precision: the same sums in float,
+ * of a particle, which the round-off of its sum is relative to. With pairs in float: the same sums,
  * 1e-6. */
 #include "twin_solid.h"
 
@@ -20,7 +20,7 @@ static const char scene[] =
     "[solid plug]\nshape = circle 0.25, 0.02, 0.045\n"
     "density = 2700\nyoung = 5e6\npoisson = 0.25\ngradient = linear\n";
 
-static const char *text = scene, *precision = "precision=double";
+static const char *text = scene, *precision = "numerics.solid_precision=double";
 static double tolerance = 1e-12;
 static struct rig rig;
 static struct twin_solid twin;
@@ -187,7 +187,7 @@ int main(void)
 {
     UNITY_BEGIN();
     run_all();
-    precision = "precision=mixed";
+    precision = "numerics.solid_precision=single";
     tolerance = 1e-6;
     run_all();
     return UNITY_END();

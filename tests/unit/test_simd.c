@@ -213,10 +213,40 @@ static void test_kept_below(void)
     }
 }
 
+/* The first n lanes and no more, as they are and as doubles. */
+static void test_some_of_the_lanes(void)
+{
+    float a[LANES_FLOAT], out[LANES_FLOAT + 1];
+    double b[LANES_DOUBLE], wide[LANES_FLOAT + 1], own[LANES_DOUBLE + 1];
+    for (int l = 0; l < LANES_FLOAT; l++) a[l] = (float)at(l);
+    for (int l = 0; l < LANES_DOUBLE; l++) b[l] = at(l);
+    for (int n = 0; n <= LANES_FLOAT; n++) {
+        for (int l = 0; l <= LANES_FLOAT; l++) out[l] = 77, wide[l] = 77;
+        vput_float(out, vload_float(a), n);
+        vwiden_float(wide, vload_float(a), n);
+        for (int l = 0; l <= LANES_FLOAT; l++) {
+            TEST_ASSERT_TRUE(same_float(out[l], l < n ? a[l] : 77));
+            TEST_ASSERT_TRUE(same_double(wide[l], l < n ? (double)a[l] : 77));
+        }
+    }
+    for (int n = 0; n <= LANES_DOUBLE; n++) {
+        for (int wider = 0; wider < 2; wider++) {
+            for (int l = 0; l <= LANES_DOUBLE; l++) own[l] = 77;
+            if (wider)
+                vwiden_double(own, vload_double(b), n);
+            else
+                vput_double(own, vload_double(b), n);
+            for (int l = 0; l <= LANES_DOUBLE; l++)
+                TEST_ASSERT_TRUE(same_double(own[l], l < n ? b[l] : 77));
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_float_verbs);
+    RUN_TEST(test_some_of_the_lanes);
     RUN_TEST(test_double_verbs);
     RUN_TEST(test_min_and_max_of_nan_and_zeros);
     RUN_TEST(test_fma_rounds_once);
