@@ -148,6 +148,15 @@ void thread_use(int n)
 #endif
 }
 
+int thread_team(void)
+{
+#ifdef _OPENMP
+    return omp_get_num_threads();
+#else
+    return 1;
+#endif
+}
+
 int thread_index(void)
 {
 #ifdef _OPENMP

@@ -66,9 +66,11 @@ void arena_fail_after(long n);
 /* Seconds of the monotonic clock. */
 double wall_clock(void);
 
-/* Threads a parallel region will use, 1 without OpenMP; asks for n of them. Index of the calling thread. */
+/* Threads a parallel region will use, 1 without OpenMP; asks for n of them. Threads of the region a call
+ * is in, and the index of the calling one. */
 int thread_count(void);
 void thread_use(int n);
+int thread_team(void);
 int thread_index(void);
 
 SPHFSI_INLINE double min2(double a, double b) { return a < b ? a : b; }

@@ -5,9 +5,6 @@
 #define SPHFSI_MEETING_H
 
 #include <sched.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #include "base.h"
 
@@ -27,22 +24,13 @@ SPHFSI_INLINE void relax(void)
 #endif
 }
 
-/* Returns when all threads of the region have come, with what each has written before. A thread whose
+/* Returns when the word, which counts up, has come to a value, with what was written before. A thread whose
  * partners do not run gives its core away instead of spinning on. */
-SPHFSI_INLINE void meet(struct meeting *m)
+SPHFSI_INLINE void wait_for(const uint32_t *word, uint32_t value)
 {
-#ifdef _OPENMP
     enum { SPINS = 4000 };
-    const uint32_t threads = (uint32_t)omp_get_num_threads();
-    if (threads == 1) return;
-    const uint32_t turn = __atomic_load_n(&m->turn, __ATOMIC_RELAXED);
-    if (__atomic_add_fetch(&m->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
-        __atomic_store_n(&m->arrived, 0, __ATOMIC_RELAXED);
-        __atomic_store_n(&m->turn, turn + 1, __ATOMIC_RELEASE);
-        return;
-    }
     int spins = 0;
-    while (__atomic_load_n(&m->turn, __ATOMIC_ACQUIRE) == turn) {
+    while ((int32_t)(__atomic_load_n(word, __ATOMIC_ACQUIRE) - value) < 0) {
         if (spins < SPINS) {
             spins++;
             relax();
@@ -50,9 +38,20 @@ SPHFSI_INLINE void meet(struct meeting *m)
             sched_yield();
         }
     }
-#else
-    (void)m;
-#endif
+}
+
+/* Returns when all threads of the region have come, with what each has written before. */
+SPHFSI_INLINE void meet(struct meeting *m)
+{
+    const uint32_t threads = (uint32_t)thread_team();
+    if (threads == 1) return;
+    const uint32_t turn = __atomic_load_n(&m->turn, __ATOMIC_RELAXED);
+    if (__atomic_add_fetch(&m->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
+        __atomic_store_n(&m->arrived, 0, __ATOMIC_RELAXED);
+        __atomic_store_n(&m->turn, turn + 1, __ATOMIC_RELEASE);
+    } else {
+        wait_for(&m->turn, turn + 1);
+    }
 }
 
 #endif

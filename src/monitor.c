@@ -135,6 +135,12 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+bool monitor_looks_at_strain(const struct simulation *s)
+{
+    const bool now = !(s->effects & FX_FLUID) || s->state.steps % LOOK_INTERVAL == 0;
+    return s->effects & FX_SOLID && now;
+}
+
 /* det F of every particle, from displacement gradients as of the last stress evaluation. */
 static struct finding smallest_det(const struct particles *p)
 {
@@ -188,7 +194,7 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "solid's surface: bodies have gone into each other; a larger stiffness or a "
             "smaller gap in [contact] may help",
             s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
-    if (s->state.steps % LOOK_INTERVAL && s->effects & FX_FLUID) return ERR_OK;
+    if (!monitor_looks_at_strain(s)) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);
     if (!(det.value > 0))

@@ -31,6 +31,9 @@ enum err monitor_crossing(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 /* Number of fluid particles that stand inside of a wall or solid, and the first of them or -1. */
 int64_t monitor_crossed(const struct simulation *s, int64_t *first);
 
+/* Whether the check after this step takes the solid's gradients, which have to be shown for it. */
+bool monitor_looks_at_strain(const struct simulation *s);
+
 /* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time, quantity
  * and likely cause; warns once where trouble is near. */
 enum err monitor_check(struct simulation *s, struct diag *d) SPHFSI_CHECKED;

@@ -440,6 +440,13 @@ static void take_work(struct simulation *s)
     s->solid.work = 0;
 }
 
+/* Gradients of the solid for those who look at them after this step: the guards, and the search of the
+ * step. */
+static void show_strain(struct simulation *s)
+{
+    if (monitor_looks_at_strain(s)) solid_show(&s->solid, &s->kind[KIND_SOLID]);
+}
+
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 {
     s->solid.time = s->state.time;
@@ -448,6 +455,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         take_work(s);
         if (s->effects & FX_MOTION) move_walls(s, s->state.time);
         find_speed(s);
+        show_strain(s);
         TRY(monitor_check(s, d));
         timestep_recheck_solid(s);
         return ERR_OK;
@@ -463,13 +471,13 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     /* So that the state does not depend on whether anybody looks at it between two steps. */
     if (s->effects & FX_SHIFTING) clock = shift_fluid(s, clock);
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
+    show_strain(s);
     const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
     take_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
-    if (!e && (s->effects & FX_SOLID) && s->state.steps % LOOK_INTERVAL == 0)
-        timestep_recheck_solid(s);
+    if (!e && monitor_looks_at_strain(s)) timestep_recheck_solid(s);
     clock = phase_add(s, PHASE_update, clock);
     if (e) return e;
     use_room(s, speed2_before);

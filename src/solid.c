@@ -9,6 +9,8 @@
 #include "interface.h"
 #include "meeting.h"
 #include "smoothing.h"
+#include "solid_lanes.h"
+#include "solid_parts.h"
 #include "solid_stencil.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
@@ -119,44 +121,6 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     return &solid_sweeps_mixed;
 }
 
-/* Whether the scene calls for a lane. */
-static bool lane_needed(const struct solid *s, int lane)
-{
-    bool mixed = false;
-    for (int k = 0; k < s->n_bodies; k++) mixed |= s->body[k].mixed;
-    switch (lane) {
-    case S_PAIRS_X:
-    case S_PAIRS_Y: return s->variational;
-    case S_DRAG: return mixed;
-    case S_LOW_X:
-    case S_LOW_Y: return s->sweeps->size < sizeof(double);
-    default: return true;
-    }
-}
-
-/* In double precision the sweeps work on the fields themselves, where there are such. */
-static enum err create_lanes(struct solid *s, struct arena *a, const struct particles *p,
-                             struct diag *d)
-{
-    double *const field[SOLID_LANES] = {
-        [S_UX] = p->ux,   [S_UY] = p->uy,   [S_VX] = p->vx,   [S_VY] = p->vy,
-        [S_UXX] = p->Uxx, [S_UXY] = p->Uxy, [S_UYX] = p->Uyx, [S_UYY] = p->Uyy,
-        [S_PXX] = p->Pxx, [S_PXY] = p->Pxy, [S_PYX] = p->Pyx, [S_PYY] = p->Pyy,
-    };
-    for (int k = 0; k < SOLID_LANES; k++) {
-        if (!lane_needed(s, k)) continue;
-        s->lane[k] = field[k];
-        if (field[k] && s->sweeps->size == sizeof(double)) continue;
-        s->lane[k] = arena_alloc(a, (size_t)p->n, s->sweeps->size, "lanes of the solid", d);
-        if (!s->lane[k]) return ERR_MEMORY;
-    }
-    for (int64_t i = 0; s->lane[S_DRAG] && i < p->n; i++) {
-        const struct solid_body *const b = &s->body[p->body[i]];
-        solid_set(s, s->lane[S_DRAG], i, b->density * b->viscosity);
-    }
-    return ERR_OK;
-}
-
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
                       struct particles *p, struct diag *d)
 {
@@ -178,7 +142,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     }
     join_bodies(s, scene);
     s->sweeps = choose_sweeps(s, scene, p, d);
-    TRY(create_lanes(s, a, p, d));
+    TRY(solid_lanes_create(s, a, p, d));
     TRY(solid_stencil_create(s, a, p, d));
     for (int k = 0; k < s->n_bodies; k++)
         if (scene->solid[k].joined[0] && !s->body[k].touches)
@@ -194,29 +158,52 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->meeting = arena_alloc(a, 1, sizeof *s->meeting, "meeting point of the threads", d);
     if (!s->meeting) return ERR_MEMORY;
     s->threads = useful_threads(p->n);
-    return ERR_OK;
+    return solid_parts_create(s, a, p, d);
 }
 
-/* A sweep over all packs, for use inside a parallel region: each thread takes its share. */
-static void share(const struct solid *s, struct particles *p, solid_sweep *sweep)
+/* What a thread of a parallel region steps: its share of the packs of all, or a part of its own. */
+struct share {
+    const struct solid *s;
+    struct particles *p;
+    int64_t first, last;     /* its packs */
+    struct solid_part *part; /* NULL: threads share the arrays */
+};
+
+static struct share share_of(const struct solid *s, struct particles *p)
 {
-#pragma omp for schedule(static) nowait
-    for (int t = 0; t < s->threads; t++)
-        sweep(s, p, s->n_packs * t / s->threads, s->n_packs * (t + 1) / s->threads);
+    const int64_t threads = thread_team(), me = thread_index();
+    return (struct share){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads, NULL};
 }
 
-/* The same, and all threads together at its end. */
-static void sweep_all(const struct solid *s, struct particles *p, solid_sweep *sweep)
+static struct share share_of_part(struct solid_part *part)
 {
-    share(s, p, sweep);
-    meet(s->meeting);
+    return (struct share){&part->solid, &part->p, 0, part->solid.n_packs, part};
 }
 
-static void stress_sweeps(const struct solid *s, struct particles *p)
+static void sweep(const struct share *own, solid_sweep *f)
 {
-    sweep_all(s, p, s->sweeps->stress);
-    if (s->variational) sweep_all(s, p, s->sweeps->pairs);
-    if (s->kelvin_voigt) sweep_all(s, p, s->sweeps->damping);
+    f(own->s, own->p, own->first, own->last);
+}
+
+/* All threads together: each has what the others have found. */
+static void together(const struct share *own, unsigned found)
+{
+    if (own->part)
+        solid_part_hand_over(own->part, found);
+    else
+        meet(own->s->meeting);
+}
+
+static void stress_sweeps(const struct share *own)
+{
+    const struct solid *const s = own->s;
+    sweep(own, s->sweeps->stress);
+    if (s->variational) {
+        together(own, HAND_GRADIENT);
+        sweep(own, s->sweeps->pairs);
+    }
+    if (s->kelvin_voigt) sweep(own, s->sweeps->damping);
+    together(own, s->variational ? HAND_STRESS : HAND_GRADIENT | HAND_STRESS);
 }
 
 /* What acts on each particle beside its neighbours; clamped ones do not move. */
@@ -243,10 +230,11 @@ static void add_own_forces(const struct solid *s, struct particles *p, int64_t f
     }
 }
 
-static void force_sweeps(const struct solid *s, struct particles *p)
+static void force_sweeps(const struct share *own)
 {
-    share(s, p, s->sweeps->forces);
-    sweep_all(s, p, add_own_forces);
+    sweep(own, own->s->sweeps->forces);
+    sweep(own, add_own_forces);
+    if (!own->part) meet(own->s->meeting);
 }
 
 /* What acts on the solid from outside, each a pass of its own. */
@@ -265,31 +253,32 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
 }
 
 /* Kick and drift; what the sweeps take of both is taken at once. */
-static void move(const struct solid *s, struct particles *p, double kick, double drift)
+static void move(const struct share *own, double kick, double drift)
 {
-#pragma omp for schedule(static) nowait
-    for (int t = 0; t < s->threads; t++) {
-        const int64_t first = s->n_packs * t / s->threads, last = s->n_packs * (t + 1) / s->threads;
-        const int64_t end = last < s->n_packs ? s->pack[last].i : p->n;
+    const struct solid *const s = own->s;
+    const struct particles *const p = own->p;
+    const int64_t end = own->last < s->n_packs ? s->pack[own->last].i : p->n;
 #pragma omp simd
-        for (int64_t i = first < last ? s->pack[first].i : end; i < end; i++) {
-            p->vx[i] += kick * p->sx[i];
-            p->vy[i] += kick * p->sy[i];
-            p->ux[i] += drift * p->vx[i];
-            p->uy[i] += drift * p->vy[i];
-        }
-        s->sweeps->look(s, p, first, last);
+    for (int64_t i = own->first < own->last ? s->pack[own->first].i : end; i < end; i++) {
+        p->vx[i] += kick * p->sx[i];
+        p->vy[i] += kick * p->sy[i];
+        p->ux[i] += drift * p->vx[i];
+        p->uy[i] += drift * p->vy[i];
     }
-    meet(s->meeting);
+    sweep(own, s->sweeps->look);
+    together(own, HAND_PLACE);
 }
 
-void solid_stress(const struct solid *s, struct particles *p)
+void solid_stress(struct solid *s, struct particles *p)
 {
+    s->in_parts = false;
 #pragma omp parallel num_threads(s->threads)
     {
-        sweep_all(s, p, s->sweeps->look);
-        stress_sweeps(s, p);
-        share(s, p, s->sweeps->show);
+        const struct share own = share_of(s, p);
+        sweep(&own, s->sweeps->look);
+        together(&own, HAND_PLACE);
+        stress_sweeps(&own);
+        sweep(&own, s->sweeps->show);
     }
 }
 
@@ -297,7 +286,8 @@ void solid_forces(const struct solid *s, struct particles *p)
 {
 #pragma omp parallel num_threads(s->threads)
     {
-        force_sweeps(s, p);
+        const struct share own = share_of(s, p);
+        force_sweeps(&own);
         outer_forces(s, p, s->time);
     }
 }
@@ -315,12 +305,14 @@ void solid_place_driven(const struct solid *s, struct particles *p, double time)
 }
 
 /* Between the sub-steps: all threads together. */
-static void place_driven(const struct solid *s, struct particles *p, double time)
+static void place_driven(const struct share *own, double time)
 {
+    const struct solid *const s = own->s;
     if (!s->drive) return;
 #pragma omp single
-    drive_place(s->drive, p, time);
-    sweep_all(s, p, s->sweeps->look);
+    drive_place(s->drive, own->p, time);
+    sweep(own, s->sweeps->look);
+    together(own, HAND_PLACE);
 }
 
 static void book_work(struct solid *s, const struct particles *p, double dt)
@@ -330,28 +322,64 @@ static void book_work(struct solid *s, const struct particles *p, double dt)
     solid_book_work(s, p, p->vx, p->vy, dt);
 }
 
+/* The sub-steps of solid_advance by one of its threads; s is the whole. */
+static void substeps(struct solid *s, const struct share *own, double dt, int n, bool centred)
+{
+    struct particles *const p = own->p;
+    const double first = centred ? 0.5 * dt : 0;
+    if (s->impedance > 0) interface_return(p, n * dt);
+    move(own, 0, first);
+    if (centred) place_driven(own, s->time + first);
+    for (int k = 0; k < n; k++) {
+        stress_sweeps(own);
+        force_sweeps(own);
+        outer_forces(s, p, s->time + k * dt + first);
+        book_work(s, p, dt);
+        const double drift = k + 1 < n ? dt : dt - first;
+        move(own, dt, s->impedance > 0 ? 0 : drift);
+        if (s->impedance > 0) {
+            interface_answer(s, p, dt);
+            move(own, 0, drift);
+        }
+        place_driven(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
+    }
+}
+
+/* Whether each thread of a region can step its part by itself: there is one for each, nothing from outside
+ * looks at the whole in between, and there are sub-steps enough to outweigh the copies. */
+static bool steps_parts(const struct solid *s, int n)
+{
+    enum { WORTH_COPYING = 4 };
+    return s->part && n >= WORTH_COPYING && !s->contact && !s->drive && !s->push[0] &&
+           !(s->impedance > 0) && thread_team() == s->threads;
+}
+
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
-    const double first = centred ? 0.5 * dt : 0;
+    bool in_parts = false;
 #pragma omp parallel num_threads(s->threads)
     {
-        if (s->impedance > 0) interface_return(p, n * dt);
-        move(s, p, 0, first);
-        if (centred) place_driven(s, p, s->time + first);
-        for (int k = 0; k < n; k++) {
-            stress_sweeps(s, p);
-            force_sweeps(s, p);
-            outer_forces(s, p, s->time + k * dt + first);
-            book_work(s, p, dt);
-            const double drift = k + 1 < n ? dt : dt - first;
-            move(s, p, dt, s->impedance > 0 ? 0 : drift);
-            if (s->impedance > 0) {
-                interface_answer(s, p, dt);
-                move(s, p, 0, drift);
-            }
-            place_driven(s, p, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
+        if (steps_parts(s, n)) {
+            struct solid_part *const part = &s->part[thread_index()];
+            const struct share own = share_of_part(part);
+            solid_part_take(part, p);
+            substeps(s, &own, dt, n, centred);
+            solid_part_give(part, p);
+#pragma omp master
+            in_parts = true;
+        } else {
+            const struct share own = share_of(s, p);
+            substeps(s, &own, dt, n, centred);
         }
-        share(s, p, s->sweeps->show);
     }
+    s->in_parts = in_parts;
     s->time += n * dt;
+}
+
+void solid_show(const struct solid *s, struct particles *p)
+{
+    if (s->in_parts)
+        for (int k = 0; k < s->threads; k++) solid_part_show(&s->part[k], p);
+    else
+        s->sweeps->show(s, p, 0, s->n_packs);
 }

@@ -96,6 +96,7 @@ extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
 
 struct contact;
 struct drive;
+struct solid_part;
 
 struct solid {
     int n_bodies;
@@ -117,6 +118,8 @@ struct solid {
     double lone_step;        /* the same as if there were no contact, s */
     double paper_step;       /* Eq. 29, s */
     struct meeting *meeting; /* of the threads between two loops */
+    struct solid_part *part; /* [threads], each stepped by a thread; NULL: not cut */
+    bool in_parts;           /* the last evaluation was theirs */
     double *scratch[4];      /* room for the search of the step */
     double time; /* of the displacements, s: walls that are touched stand where they are then */
     /* What acts from outside, each NULL where there is none. */
@@ -135,15 +138,19 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
 
 /* Displacement gradient and first Piola-Kirchhoff stress of every particle (Eqs. 9-13b); with the variational
  * form, in which hourglass control has a part in the stress, the viscous and the hourglass force as well. */
-void solid_stress(const struct solid *s, struct particles *p);
+void solid_stress(struct solid *s, struct particles *p);
 
 /* Total acceleration (Eq. 21b) into sx, sy from what solid_stress has found for the same displacements and
  * velocities; zero where clamped. */
 void solid_forces(const struct solid *s, struct particles *p);
 
 /* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With
- * `centred`: half drift, kick, half drift, which is second order in time. */
+ * `centred`: half drift, kick, half drift, which is second order in time. Gradients and stresses of p
+ * stay as they were until solid_show. */
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
+
+/* Gradients and stresses of the last evaluation into p. */
+void solid_show(const struct solid *s, struct particles *p);
 
 /* Books the work of what pushes from outside over a kick of dt with the last forces, from the velocities
  * before it. */

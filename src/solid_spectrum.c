@@ -52,7 +52,7 @@ static void set_field(double *const field[2], double *const base[2], const doubl
 /* What the operator answers to the direction in (sx, sy), scaled to `amplitude` at most, that the field
  * departs from its base with; in (sx, sy) again, as the difference from the answer to the base alone. Returns
  * by how much the answer is larger. */
-static double answer(const struct solid *s, struct particles *p, double *const field[2],
+static double answer(struct solid *s, struct particles *p, double *const field[2],
                      double *const base[2], double amplitude, bool both_signs)
 {
     const double factor = amplitude / largest(p->sx, p->sy, p->n);
@@ -83,7 +83,7 @@ static double answer(const struct solid *s, struct particles *p, double *const f
 /* Largest factor by which the answer of the operator exceeds a small change of the field, displacement
  * or velocity; `amplitude` keeps it in the linear range. Power iteration approaches from below: 0.3 %
  * are missing after so many rounds at kappa = 50; one percent is added. */
-static double largest_factor(const struct solid *s, struct particles *p, double *const field[2],
+static double largest_factor(struct solid *s, struct particles *p, double *const field[2],
                              double *const base[2], double amplitude, bool both_signs)
 {
     enum { ROUNDS = 60 };

@@ -2,7 +2,7 @@
  * The solid as a body: rigid motions, balances of momentum, energy, clamps, bodies beside each other; in
  * double, and with pairs in float. */
 #include "rig.h"
-#include "solid_stencil.h"
+#include "solid_lanes.h"
 #include "unity.h"
 
 #include <math.h>
