@@ -81,20 +81,27 @@ static void lanes_of_cell(const struct fluid *f, const struct particles *p, cons
     cluster_box(&lanes->boxes, first + (size_t)full, out, rest);
 }
 
-/* Pressure by the equation of state, then lanes. */
+/* Pressure by the equation of state, then lanes, of some cells in a row. */
+static void lanes_of_row(const struct fluid *f, const struct particles *p, const struct cells *c,
+                         int32_t from, int32_t to)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const double rho0 = f->k.rho0, c0 = f->k.c0;
+    const int64_t end = list->start[list->active[to - 1]] + list->count[list->active[to - 1]];
+#pragma omp simd
+    for (int64_t i = list->start[list->active[from]]; i < end; i++)
+        p->p[i] = eos_pressure(p->dens[i], rho0, c0);
+    for (int32_t k = from; k < to; k++) lanes_of_cell(f, p, c, list->active[k]);
+}
+
 static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                          const struct cells *c)
 {
-    const struct cell_list *list = &c->kind[KIND_FLUID];
-    struct particles *const p = &kinds[KIND_FLUID];
-    const double rho0 = f->k.rho0, c0 = f->k.c0;
-#pragma omp parallel num_threads(f->threads)
-    {
-#pragma omp for simd schedule(static)
-        for (int64_t i = 0; i < p->n; i++) p->p[i] = eos_pressure(p->dens[i], rho0, c0);
-#pragma omp for schedule(static)
-        for (int32_t k = 0; k < list->n_active; k++) lanes_of_cell(f, p, c, list->active[k]);
-    }
+    enum { ROW = 16 }; /* what a row reads stays in the first cache */
+    const int32_t n = c->kind[KIND_FLUID].n_active;
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < n; k += ROW)
+        lanes_of_row(f, &kinds[KIND_FLUID], c, k, k + ROW < n ? k + ROW : n);
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,

@@ -33,11 +33,14 @@ static void update_fluid(struct particles *p, double dt, double dt_old, double d
         p->y[i] += dt * p->vy_half[i];
         p->vx[i] = p->vx_half[i] + half * p->ax[i];
         p->vy[i] = p->vy_half[i] + half * p->ay[i];
-        const double now = p->ddens[i];
-        p->dens[i] += dt * extrapolated_rate(now, p->ddens_old[i], p->ddens_older[i], r, r_old);
-        p->ddens_older[i] = p->ddens_old[i];
-        p->ddens_old[i] = now;
+        p->dens[i] +=
+            dt * extrapolated_rate(p->ddens[i], p->ddens_old[i], p->ddens_older[i], r, r_old);
     }
+    /* The rates grow older by changing arrays; the next evaluation overwrites the oldest. */
+    double *const oldest = p->ddens_older;
+    p->ddens_older = p->ddens_old;
+    p->ddens_old = p->ddens;
+    p->ddens = oldest;
 }
 
 /* The structure feels, over its sub-steps, just the impulse that the fluid was given: the fluid's kick goes
