@@ -40,7 +40,7 @@ static const struct column {
 enum {
     STEP_CHUNK = 128,
     POINT_CHUNK_LEAST = 64,
-    POINT_CHUNK_MOST = 1 << 16,
+    POINT_CHUNK_MOST = 1 << 20,
     METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
 };
 
@@ -79,15 +79,14 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 
 /* --- one dataset --- */
 
-/* Rows of a chunk of a dataset: those of a snapshot, as long as that is not too much at a time. A chunk
- * that two snapshots share is packed twice. */
+/* Rows of a chunk of a dataset: those of a snapshot, or of an equal part of one that is too much at a time.
+ * A chunk that two snapshots share is packed twice. */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;
     const int64_t rows = n + (c->growth == BY_POINT_AND_ONE);
-    return rows < POINT_CHUNK_LEAST  ? POINT_CHUNK_LEAST
-           : rows < POINT_CHUNK_MOST ? rows
-                                     : POINT_CHUNK_MOST;
+    const int64_t parts = (rows + POINT_CHUNK_MOST - 1) / POINT_CHUNK_MOST;
+    return rows < POINT_CHUNK_LEAST ? POINT_CHUNK_LEAST : (rows + parts - 1) / parts;
 }
 
 /* Rows and columns of the chunks of an open dataset. */
