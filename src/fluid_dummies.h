@@ -308,7 +308,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
-#pragma omp parallel for schedule(dynamic, 8) num_threads(f->threads)
+#pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
         if (f->effects & SURFACE_EFFECTS)
