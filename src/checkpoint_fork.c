@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 /* A motion must go on where the wall stands: a jump would tear through the fluid. */
 static enum err check_motion(const struct simulation *s, double place[2], int wall, struct diag *d)
@@ -38,6 +39,35 @@ static enum err fork_walls(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Clamps are those of this case. One without a motion holds its particles where they are; one with a motion
+ * has to go on from there. `free` is what this case has. */
+static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    double *const ux = s->solid.scratch[1], *const uy = s->solid.scratch[2];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->free[i] = free[i];
+        ux[i] = p->ux[i];
+        uy[i] = p->uy[i];
+        if (free[i] != 0) continue;
+        p->vx[i] = p->vy[i] = 0;
+        if (p->wx) p->wx[i] = p->wy[i] = p->ax[i] = p->ay[i] = 0;
+    }
+    solid_place_driven(&s->solid, p, s->state.time);
+    for (int64_t i = 0; i < p->n; i++) {
+        if (hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
+        const struct scene_solid *const b = &s->scene->solid[p->body[i]];
+        return diag_fail(
+            d, ERR_INPUT,
+            "fork: the clamp of [solid %s] stands at a displacement of (%.6g, %.6g) m in the "
+            "checkpoint, at %.6g s; [motion %s] has (%.6g, %.6g) m there, and would make it jump: "
+            "a "
+            "motion goes on where the one before it ended",
+            b->common.name, ux[i], uy[i], s->state.time, b->clamp_motion, p->ux[i], p->uy[i]);
+    }
+    return ERR_OK;
+}
+
 static enum err sort_anew(struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
@@ -55,7 +85,11 @@ static enum err sort_anew(struct simulation *s, struct diag *d)
 
 enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
 {
+    const struct particles *const solid = &s->kind[KIND_SOLID];
+    double *const free = s->solid.scratch[0];
+    if (s->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
     TRY(checkpoint_load(m, s, true, d));
+    if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
     if (s->effects & FX_FLUID) {
         TRY(fork_walls(s, d));
         TRY(sort_anew(s, d));

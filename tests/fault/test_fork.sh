@@ -68,6 +68,35 @@ expect 0 'fork from' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/moving" "${go[
 expect 1 'would make it jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" "${go[@]}" \
     --set push.start=0
 
+# --- fork: a clamp that stops holds where it stands, on any number of threads; one that would jump ---
+cat >"$dir/still.cfg" <<'CASE'
+dp = 1 cm
+end_time = 4 ms
+[solid bar]
+shape = box 0, 0, 1.5, 0.08
+clamp = box 0, 0, 0.1, 0.08
+density = 1100
+young = 2e6
+poisson = 0.4
+[output]
+probe_interval = 1 ms
+[probe base]
+body = bar
+point = 0.05, 0.04
+CASE
+sed 's/^density/clamp_motion = lift\n&/; $a [motion lift]\nvelocity = 0, 1' "$dir/still.cfg" \
+    >"$dir/lifted.cfg"
+expect 0 'simulated' "$dir/lifted.cfg" --threads 1 --until 0.002 --out "$dir/lifted"
+for n in 1 2; do
+    expect 0 'fork from' "$dir/still.cfg" --fork "$dir/lifted" --threads $n --out "$dir/still$n"
+done
+[ "$(hash "$dir/still1")" = "$(hash "$dir/still2")" ] || fail "a fork's bits depend on threads"
+[ "$(sed -n 2p "$dir/still1/probes.csv" | cut -d, -f2-)" = \
+    "$(tail -n 1 "$dir/still1/probes.csv" | cut -d, -f2-)" ] || fail "the clamp lets go in a fork"
+expect 0 'fork from' "$dir/lifted.cfg" --fork "$dir/lifted" --threads 2 --out "$dir/on"
+expect 1 'clamp of .solid bar. stands at.*would make it jump' "$dir/lifted.cfg" \
+    --fork "$dir/lifted" --out "$dir/none" --set 'lift.velocity=0, 2'
+
 # --- fork: what the state is made of may not change ---
 for set in dp=5mm integrator=verlet water.sound_speed=30 gate.density=1200 numerics.h_over_dp=1.4 \
     'tank.shape=box -0.05, 0, 0, 0.15'; do
