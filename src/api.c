@@ -158,6 +158,8 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
         const struct field_info *f = &field_table[k];
         const void *data = strcmp(f->name, name) == 0 ? field_array(p, f) : NULL;
         if (!data) continue;
+        if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
+            solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
         *view = (struct sphfsi_view){data, p->n, type_of(f), f->unit, f->meaning};
         return SPHFSI_OK;
     }

@@ -378,8 +378,11 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
 
 void solid_show(const struct solid *s, struct particles *p)
 {
-    if (s->in_parts)
-        for (int k = 0; k < s->threads; k++) solid_part_show(&s->part[k], p);
-    else
-        s->sweeps->show(s, p, 0, s->n_packs);
+#pragma omp parallel num_threads(s->threads)
+    {
+        const struct share own = share_of(s, p);
+        if (!s->in_parts) sweep(&own, s->sweeps->show);
+#pragma omp for schedule(static)
+        for (int k = 0; k < (s->in_parts ? s->threads : 0); k++) solid_part_show(&s->part[k], p);
+    }
 }

@@ -145,11 +145,11 @@ void solid_stress(struct solid *s, struct particles *p);
 void solid_forces(const struct solid *s, struct particles *p);
 
 /* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With
- * `centred`: half drift, kick, half drift, which is second order in time. Gradients and stresses of p
- * stay as they were until solid_show. */
+ * `centred`: half drift, kick, half drift, which is second order in time. Gradients, stresses and
+ * accelerations of p and the lanes are not those of the last sub-step before solid_show and solid_stress. */
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
 
-/* Gradients and stresses of the last evaluation into p. */
+/* Gradients, stresses and accelerations of the last evaluation into p. */
 void solid_show(const struct solid *s, struct particles *p);
 
 /* Books the work of what pushes from outside over a kick of dt with the last forces, from the velocities
@@ -165,8 +165,7 @@ double solid_step_of(double omega2, double damping);
 
 /* Largest frequency and damping rate of the operator linearised about the present deformation, by power
  * iteration on the force routine, and the stable step that follows, s. Leaves u and v as they were. */
-double solid_stable_step(const struct solid *s, struct particles *p, double *omega,
-                         double *damping);
+double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping);
 
 /* The same about the undeformed state, kept in s. */
 void solid_find_step(struct solid *s, struct particles *p);
@@ -183,7 +182,7 @@ void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, d
 double solid_von_mises(const double sigma[4]);
 
 /* Strain energy and energy of the hourglass force of a body, or of all (SOLID_ALL), J/m; smallest
- * det F. */
+ * det F. From what solid_stress has found. */
 enum { SOLID_ALL = -1 };
 void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
                   double *hourglass, double *det_low);

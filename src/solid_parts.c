@@ -45,12 +45,13 @@ struct cut {
     int64_t first, end, own_first, own_end;
 };
 
+/* Both parts of a pair take the same difference, so that each is in the other's reach or neither. */
 static struct cut cut_of(const struct spot *spot, int64_t n, double reach, int part, int parts)
 {
     struct cut c = {.own_first = n * part / parts, .own_end = n * (part + 1) / parts};
-    const double low = spot[c.own_first].at - reach, high = spot[c.own_end - 1].at + reach;
-    for (c.first = c.own_first; c.first > 0 && spot[c.first - 1].at >= low;) c.first--;
-    for (c.end = c.own_end; c.end < n && spot[c.end].at <= high;) c.end++;
+    const double low = spot[c.own_first].at, high = spot[c.own_end - 1].at;
+    for (c.first = c.own_first; c.first > 0 && low - spot[c.first - 1].at <= reach;) c.first--;
+    for (c.end = c.own_end; c.end < n && spot[c.end].at - high <= reach;) c.end++;
     return c;
 }
 
@@ -109,7 +110,7 @@ static void find_runs(struct solid_part *part, const struct plan *plan, const in
     }
 }
 
-/* The particles of a part, with what does not change. Copies do not move by themselves. */
+/* The particles of a part, with what does not change. Copies are never free: what moves them is told. */
 static enum err create_particles(struct solid_part *part, const struct plan *plan,
                                  const struct cut *c, const int32_t *global)
 {
@@ -117,10 +118,7 @@ static enum err create_particles(struct solid_part *part, const struct plan *pla
     struct particles *const p = &part->p;
     TRY(particles_create(p, plan->arena, size_of(c), groups, "parts of the solid", plan->d));
     p->n = size_of(c);
-    for (int64_t k = 0; k < p->n; k++) {
-        p->body[k] = plan->p->body[global[k]];
-        p->free[k] = plan->own[global[k]] ? plan->p->free[global[k]] : 0;
-    }
+    for (int64_t k = 0; k < p->n; k++) p->body[k] = plan->p->body[global[k]];
     return ERR_OK;
 }
 
@@ -254,7 +252,7 @@ enum err solid_parts_create(struct solid *s, struct arena *a, const struct parti
 
 #define STATE_FIELDS(p) (p)->ux, (p)->uy, (p)->vx, (p)->vy
 #define SHOWN_FIELDS(p) \
-    (p)->Uxx, (p)->Uxy, (p)->Uyx, (p)->Uyy, (p)->Pxx, (p)->Pxy, (p)->Pyx, (p)->Pyy
+    (p)->Uxx, (p)->Uxy, (p)->Uyx, (p)->Uyy, (p)->Pxx, (p)->Pxy, (p)->Pyx, (p)->Pyy, (p)->sx, (p)->sy
 
 void solid_part_take(struct solid_part *part, const struct particles *whole)
 {
@@ -264,6 +262,9 @@ void solid_part_take(struct solid_part *part, const struct particles *whole)
     for (int f = 0; f < (int)COUNT_OF(from) && from[f]; f++)
         for (const struct part_run *r = part->run; r < part->run + part->n_runs; r++)
             memcpy(&to[f][r->here], &from[f][r->there], (size_t)r->n * sizeof(double));
+    for (const struct part_run *r = part->run; r < part->run + part->n_runs; r++)
+        if (r->own)
+            memcpy(&p->free[r->here], &whole->free[r->there], (size_t)r->n * sizeof(double));
 }
 
 /* Fields of the part's own particles into those of the whole. */

@@ -17,12 +17,12 @@ struct part_run {
 struct part_message;
 
 struct solid_part {
+    _Alignas(64) uint32_t told; /* messages to each so far */
+    int n_runs, n_others;       /* other parts that are within reach */
     struct solid solid;
     struct particles p;
     struct part_run *run;
-    int n_runs, n_others; /* other parts that are within reach */
     struct part_message **out, **in;
-    uint32_t told; /* messages to each so far */
 };
 
 /* What is handed over. */
@@ -36,7 +36,8 @@ enum hand {
 enum err solid_parts_create(struct solid *s, struct arena *a, const struct particles *p,
                             struct diag *d) SPHFSI_CHECKED;
 
-/* Takes state and forces from the whole; gives the state of its own back; gives gradients and stresses. */
+/* Takes state and forces from the whole; gives the state of its own back; gives what the last evaluation has
+ * found of it: gradients, stresses and accelerations. */
 void solid_part_take(struct solid_part *part, const struct particles *whole);
 void solid_part_give(const struct solid_part *part, const struct particles *whole);
 void solid_part_show(struct solid_part *part, const struct particles *whole);

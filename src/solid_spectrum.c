@@ -106,10 +106,11 @@ double solid_step_of(double omega2, double damping)
     return (sqrt(damping * damping + 4 * omega2) - damping) / omega2;
 }
 
-double solid_stable_step(const struct solid *s, struct particles *p, double *omega, double *damping)
+double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping)
 {
     /* Without the fluid's force and gravity, which do not depend on the field, and without contact, which
      * has bounds of its own. */
+    s->in_parts = false; /* the fields of p will be of the last trial */
     struct solid bare = *s;
     struct solid_body body[s->n_bodies];
     memcpy(body, s->body, sizeof body);
