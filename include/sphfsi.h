@@ -140,8 +140,8 @@ SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
 
 /** Looks at a field by its name: x, y (m), vx, vy (m/s), id, body, and where the kind has them dens
- * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m), and further ones. p is brought up to date with the
- * positions. SPHFSI_INPUT: no such field of this kind in this scene. */
+ * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m), and further ones. p and ddens (1/s) are brought up to
+ * date with the positions. SPHFSI_INPUT: no such field of this kind in this scene. */
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 

@@ -153,7 +153,7 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
     struct diag d = {.code = ERR_OK};
     struct simulation *const sim = &s->session.simulation;
     const struct particles *p = (unsigned)kind < KIND_COUNT ? &sim->kind[kind] : NULL;
-    if (p && strcmp(name, "p") == 0) simulation_refresh(sim);
+    if (p && (strcmp(name, "p") == 0 || strcmp(name, "ddens") == 0)) simulation_refresh(sim);
     for (int k = 0; p && k < field_count; k++) {
         const struct field_info *f = &field_table[k];
         const void *data = strcmp(f->name, name) == 0 ? field_array(p, f) : NULL;

@@ -75,6 +75,22 @@ static void pressure_is_up_to_date(void)
     TEST_ASSERT_DOUBLE_WITHIN(30, 1000 * 9.81 * 0.095, most);
 }
 
+/* The default integrator exchanges its arrays of rates after each step. */
+static void rates_are_up_to_date(void)
+{
+    struct sphfsi_view rate;
+    double seen[100];
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(s, 1));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "ddens", &rate));
+    TEST_ASSERT_TRUE(rate.count == 100);
+    memcpy(seen, rate.data, sizeof seen);
+    sphfsi_hash(s); /* evaluates */
+    TEST_ASSERT_EQUAL_MEMORY(seen, rate.data, sizeof seen);
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(s, 1));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "ddens", &rate));
+    TEST_ASSERT_TRUE(memcmp(seen, rate.data, sizeof seen) != 0);
+}
+
 static void an_unknown_field_names_the_nearest(void)
 {
     struct sphfsi_view v;
@@ -174,6 +190,7 @@ int main(void)
     RUN_TEST(advance_hits_the_time);
     RUN_TEST(fields_are_views);
     RUN_TEST(pressure_is_up_to_date);
+    RUN_TEST(rates_are_up_to_date);
     RUN_TEST(an_unknown_field_names_the_nearest);
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);
