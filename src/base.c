@@ -62,7 +62,7 @@ enum { BLOCK_HEADER = ARENA_ALIGN };
  * further into its page than the one before. */
 enum { STAGGER_STEP = 3 * ARENA_ALIGN, STAGGER_RANGE = 4096 };
 
-/* Pieces of two large pages and more begin at one, and ask for them: loops over a million particles read some
+/* Pieces ask for large pages as far as they fill them: loops over a million particles read some
  * twenty arrays beside each other, more pages of 4 kB than a core keeps addresses of. */
 enum { LARGE_PAGE = 1 << 21 };
 

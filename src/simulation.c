@@ -524,7 +524,10 @@ void simulation_refresh(struct simulation *s)
         s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
         if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
-    if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+    if (!(s->effects & FX_SOLID)) return;
+    /* Accelerations of parts would be out of reach after an evaluation of the whole. */
+    if (s->solid.in_parts) solid_show(&s->solid, &s->kind[KIND_SOLID]);
+    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
 }
 
 uint64_t simulation_hash(struct simulation *s)
