@@ -47,7 +47,7 @@ struct run {
 };
 
 /* Copies of a sound state in memory take this share of the time at most. */
-static const double image_share = 0.02;
+static const double image_share = 0.0025;
 static const double progress_seconds = 0.25;
 
 static const char ledger_header[] =

@@ -16,47 +16,51 @@ enum { VTK_VERTEX = 1 };
 
 /* --- a snapshot --- */
 
-/* Values of a dataset of points, of one particle, where they are floating. */
-static void real_values(enum data what, const struct simulation *s, enum kind kind, int64_t i,
-                        double v[SNAPSHOT_WIDTH])
+/* Cauchy's stress, in the order of the file: xx yy zz xy yz xz. */
+static double stress_value(const double sigma[4], int column)
+{
+    static const int order[] = {0, 1, 3, 2};
+    return column < (int)COUNT_OF(order) ? sigma[order[column]] : 0;
+}
+
+static double vector_value(double x, double y, int column)
+{
+    return column == 0 ? x : column == 1 ? y : 0;
+}
+
+/* Value of a dataset of points, of one particle, where it is floating. */
+static double real_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+                         int column)
 {
     const struct particles *p = &s->kind[kind];
     double sigma[4] = {0}, det = 1;
     const bool solid = kind == KIND_SOLID;
     if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
         solid_cauchy(&s->solid, p, i, sigma, &det);
-    memset(v, 0, SNAPSHOT_WIDTH * sizeof *v);
     switch (what) {
-    case D_POINTS: v[0] = p->x[i], v[1] = p->y[i]; break;
-    case D_VELOCITY: v[0] = p->vx[i], v[1] = p->vy[i]; break;
-    case D_PRESSURE: v[0] = p->p ? p->p[i] : 0; break;
-    case D_VON_MISES: v[0] = solid_von_mises(sigma); break;
-    case D_DET_F: v[0] = det; break;
+    case D_POINTS: return vector_value(p->x[i], p->y[i], column);
+    case D_VELOCITY: return vector_value(p->vx[i], p->vy[i], column);
+    case D_PRESSURE: return p->p ? p->p[i] : 0;
+    case D_VON_MISES: return solid_von_mises(sigma);
+    case D_DET_F: return det;
     case D_DENSITY:
-        v[0] = solid     ? s->solid.body[p->body[i]].density / det
-               : p->dens ? s->scene->rho0 * (1 + p->dens[i])
-                         : 0;
-        break;
-    case D_STRESS: v[0] = sigma[0], v[1] = sigma[1], v[2] = sigma[3], v[3] = sigma[2]; break;
+        if (solid) return s->solid.body[p->body[i]].density / det;
+        return p->dens ? s->scene->rho0 * (1 + p->dens[i]) : 0;
+    case D_STRESS: return stress_value(sigma, column);
     case D_DISPLACEMENT:
-        if (solid)
-            v[0] = p->ux[i], v[1] = p->uy[i];
-        else if (p->X)
-            v[0] = p->x[i] - p->X[i], v[1] = p->y[i] - p->Y[i];
-        break;
-    default: break;
+        if (solid) return vector_value(p->ux[i], p->uy[i], column);
+        return p->X ? vector_value(p->x[i] - p->X[i], p->y[i] - p->Y[i], column) : 0;
+    default: return 0;
     }
 }
 
-static int64_t whole_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
-                           int64_t row)
+static int64_t whole_value(enum data what, const struct simulation *s, enum kind kind, int64_t i)
 {
     switch (what) {
-    case D_TYPES: return VTK_VERTEX;
     case D_KIND: return kind;
     case D_ID: return s->kind[kind].id[i];
     case D_BODY: return s->kind[kind].body[i];
-    default: return row; /* each point is a cell of its own */
+    default: return VTK_VERTEX;
     }
 }
 
@@ -67,45 +71,58 @@ static double position_unit(const struct scene *scene)
     return ldexp(1, ilogb(scene->top.dp) - 20);
 }
 
-/* Fills the buffer, 8 bytes an item, with what the dataset gets; returns its rows. */
-static int64_t gather(const struct snapshot_layout *layout, enum data what,
-                      const struct simulation *s, void *buffer)
+/* What a snapshot is made of. */
+struct picture {
+    const struct simulation *s;
+    double unit; /* of positions, 0: not rounded */
+};
+
+static int64_t within(int64_t value, int64_t most)
 {
-    const double unit = position_unit(s->scene);
-    const bool rounded = what == D_POINTS && !layout->doubles;
-    const int width = snapshot_file_width(what);
-    const bool real = snapshot_file_real(what);
-    int64_t row = 0;
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t i = 0; i < s->kind[kind].n; i++, row++) {
-            double v[SNAPSHOT_WIDTH];
-            if (real) {
-                real_values(what, s, (enum kind)kind, i, v);
-                for (int k = 0; rounded && k < 2; k++) v[k] = nearbyint(v[k] / unit) * unit;
-                memcpy((double *)buffer + row * width, v, (size_t)width * sizeof *v);
-            } else {
-                ((int64_t *)buffer)[row] = whole_value(what, s, (enum kind)kind, i, row);
-            }
-        }
-    if (what == D_OFFSETS) {
-        ((int64_t *)buffer)[row] = row;
-        row++;
+    return value < 0 ? 0 : value > most ? most : value;
+}
+
+/* A snapshot_values: the particles of one kind after those of the other. */
+static void values_of(const void *context, enum data what, int column, int64_t first, int64_t n,
+                      void *values)
+{
+    const struct picture *const picture = context;
+    const struct simulation *const s = picture->s;
+    const double unit = what == D_POINTS ? picture->unit : 0;
+    double *const real = values;
+    int64_t *const whole = values;
+    if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a cell of its own */
+        for (int64_t row = 0; row < n; row++) whole[row] = first + row;
+        return;
     }
-    return row;
+    const bool is_real = snapshot_file_real(what);
+    int64_t row = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const int64_t most = s->kind[kind].n, end = within(first + n, most);
+        for (int64_t i = within(first, most); i < end; i++, row++) {
+            if (!is_real) {
+                whole[row] = whole_value(what, s, (enum kind)kind, i);
+                continue;
+            }
+            const double value = real_value(what, s, (enum kind)kind, i, column);
+            real[row] = unit > 0 ? nearbyint(value / unit) * unit : value;
+        }
+        first -= most;
+    }
 }
 
 static bool append_step_rows(hid_t root, double time, int64_t n, int64_t steps, int64_t points)
 {
     int64_t before = points, part = steps, one = 1;
-    return snapshot_file_append(root, D_TIME, 1, &time) &&
-           snapshot_file_append(root, D_POINTS_COUNT, 1, &n) &&
-           snapshot_file_append(root, D_CELLS_COUNT, 1, &n) &&
-           snapshot_file_append(root, D_IDS_COUNT, 1, &n) &&
-           snapshot_file_append(root, D_PARTS_BEFORE, 1, &part) &&
-           snapshot_file_append(root, D_PARTS, 1, &one) &&
-           snapshot_file_append(root, D_POINTS_BEFORE, 1, &before) &&
-           snapshot_file_append(root, D_CELLS_BEFORE, 1, &before) &&
-           snapshot_file_append(root, D_IDS_BEFORE, 1, &before);
+    return snapshot_file_append(root, D_TIME, &time) &&
+           snapshot_file_append(root, D_POINTS_COUNT, &n) &&
+           snapshot_file_append(root, D_CELLS_COUNT, &n) &&
+           snapshot_file_append(root, D_IDS_COUNT, &n) &&
+           snapshot_file_append(root, D_PARTS_BEFORE, &part) &&
+           snapshot_file_append(root, D_PARTS, &one) &&
+           snapshot_file_append(root, D_POINTS_BEFORE, &before) &&
+           snapshot_file_append(root, D_CELLS_BEFORE, &before) &&
+           snapshot_file_append(root, D_IDS_BEFORE, &before);
 }
 
 static int64_t count_points(const struct simulation *s)
@@ -126,19 +143,13 @@ static int64_t count_room(const struct simulation *s)
 static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, struct simulation *s)
 {
     int64_t rows[D_COUNT];
-    const int64_t n = count_points(s);
-    const int64_t steps = snapshot_file_steps(file);
-    void *buffer = malloc((size_t)(n + 1) * SNAPSHOT_WIDTH * 8);
+    const int64_t n = count_points(s), steps = snapshot_file_steps(file);
+    const struct picture picture = {s, layout->doubles ? 0 : position_unit(s->scene)};
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
-    bool ok = buffer && root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
-              append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]);
-    for (int k = D_POINTS; ok && k < D_COUNT; k++) {
-        if (!layout->has[k]) continue;
-        const int64_t count = gather(layout, (enum data)k, s, buffer);
-        ok = snapshot_file_append(root, (enum data)k, count, buffer);
-    }
+    const bool ok = root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
+                    append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]) &&
+                    snapshot_file_append_points(root, layout, n, values_of, &picture);
     H5Gclose(root);
-    free(buffer);
     return ok && snapshot_file_set_steps(file, steps + 1);
 }
 

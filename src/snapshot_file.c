@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "snapshot_file.h"
 
+#include "snapshot_pack.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +42,7 @@ static const struct column {
 enum {
     STEP_CHUNK = 128,
     POINT_CHUNK_LEAST = 64,
-    POINT_CHUNK_MOST = 1 << 20,
+    POINT_CHUNK_MOST = 1 << 17,
     METADATA_BYTES = 1 << 18 /* more than headers and chunk indices grow by with a snapshot */
 };
 
@@ -57,9 +59,11 @@ static hid_t file_type(enum item item, bool doubles)
     return H5T_STD_U8LE;
 }
 
+static bool is_real(enum item item) { return item == F64 || item == REAL; }
+
 static hid_t memory_type(const struct column *c)
 {
-    return c->item == F64 || c->item == REAL ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+    return is_real(c->item) ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
 }
 
 struct snapshot_layout snapshot_file_layout(const struct scene *scene)
@@ -80,13 +84,16 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 /* --- one dataset --- */
 
 /* Rows of a chunk of a dataset: those of a snapshot, or of an equal part of one that is too much at a time.
- * A chunk that two snapshots share is packed twice. */
+ * A chunk that two snapshots share is packed twice; among so many parts there mostly are equal ones. */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;
     const int64_t rows = n + (c->growth == BY_POINT_AND_ONE);
-    const int64_t parts = (rows + POINT_CHUNK_MOST - 1) / POINT_CHUNK_MOST;
-    return rows < POINT_CHUNK_LEAST ? POINT_CHUNK_LEAST : (rows + parts - 1) / parts;
+    const int64_t least = (rows + POINT_CHUNK_MOST - 1) / POINT_CHUNK_MOST;
+    if (rows < POINT_CHUNK_LEAST) return POINT_CHUNK_LEAST;
+    for (int64_t parts = least; parts <= 4 * least; parts++)
+        if (rows % parts == 0) return rows / parts;
+    return (rows + least - 1) / least;
 }
 
 /* Rows and columns of the chunks of an open dataset. */
@@ -150,13 +157,19 @@ static int64_t count_rows(hid_t set)
     return ok ? (int64_t)size[0] : -1;
 }
 
-/* Moves rows between memory and an open dataset. */
-static bool move_rows(hid_t set, const struct column *c, int64_t first, int64_t n, void *values,
-                      bool write)
+/* A part of a dataset: rows and columns. */
+struct block {
+    int64_t row, rows;
+    int column, columns;
+};
+
+/* Moves a part between memory and an open dataset. */
+static bool move_block(hid_t set, const struct column *c, struct block b, void *values, bool write)
 {
-    if (n == 0) return true;
+    if (b.rows == 0) return true;
     const int rank = c->width > 1 ? 2 : 1;
-    const hsize_t at[2] = {(hsize_t)first, 0}, size[2] = {(hsize_t)n, (hsize_t)c->width};
+    const hsize_t at[2] = {(hsize_t)b.row, (hsize_t)b.column};
+    const hsize_t size[2] = {(hsize_t)b.rows, (hsize_t)b.columns};
     const hid_t in_file = H5Dget_space(set), in_memory = H5Screate_simple(rank, size, NULL);
     bool ok = in_file >= 0 && in_memory >= 0 &&
               H5Sselect_hyperslab(in_file, H5S_SELECT_SET, at, NULL, size, NULL) >= 0;
@@ -169,18 +182,137 @@ static bool move_rows(hid_t set, const struct column *c, int64_t first, int64_t 
     return ok;
 }
 
-static bool append_rows(hid_t set, const struct column *c, int64_t n, void *values)
+/* Makes room for n more rows; returns the first of them, negative if that fails. */
+static int64_t add_rows(hid_t set, const struct column *c, int64_t n)
 {
     const int64_t first = count_rows(set);
     const hsize_t size[2] = {(hsize_t)(first + n), (hsize_t)c->width};
-    return first >= 0 && H5Dset_extent(set, size) >= 0 && move_rows(set, c, first, n, values, true);
+    return first >= 0 && H5Dset_extent(set, size) >= 0 ? first : -1;
 }
 
-bool snapshot_file_append(hid_t root, enum data what, int64_t n, void *values)
+bool snapshot_file_append(hid_t root, enum data what, void *value)
 {
-    const hid_t set = H5Dopen2(root, columns[what].name, H5P_DEFAULT);
-    const bool ok = set >= 0 && append_rows(set, &columns[what], n, values);
+    const struct column *const c = &columns[what];
+    const hid_t set = H5Dopen2(root, c->name, H5P_DEFAULT);
+    const int64_t first = set >= 0 ? add_rows(set, c, 1) : -1;
+    const bool ok = first >= 0 && move_block(set, c, (struct block){first, 1, 0, 1}, value, true);
     return (set < 0 || H5Dclose(set) >= 0) && ok;
+}
+
+/* --- rows of points, by all threads --- */
+
+/* A dataset that grows by the rows first to last - 1. */
+struct growing {
+    hid_t set;
+    struct packing packing;
+    int64_t chunk; /* its rows */
+    int64_t first, last;
+};
+
+/* New rows of a chunk. */
+struct slice {
+    enum data what;
+    struct block at;
+};
+
+static bool open_growing(struct growing *g, hid_t root, const struct column *c, int64_t n)
+{
+    hsize_t chunk[2];
+    g->set = H5Dopen2(root, c->name, H5P_DEFAULT);
+    if (g->set < 0 || !size_of_chunk(g->set, chunk)) return false;
+    g->packing = packing_of(g->set, chunk[1]);
+    g->chunk = (int64_t)chunk[0];
+    g->first = add_rows(g->set, c, n + (c->growth == BY_POINT_AND_ONE));
+    g->last = g->first + n + (c->growth == BY_POINT_AND_ONE);
+    return g->first >= 0;
+}
+
+/* Lists what is to be written, or just counts it where `list` is NULL. */
+static int64_t list_slices(const struct growing growing[D_COUNT], struct slice *list)
+{
+    int64_t n = 0;
+    for (int k = 0; k < D_COUNT; k++)
+        for (int column = 0; column < (growing[k].chunk > 0 ? columns[k].width : 0); column++)
+            for (int64_t row = growing[k].first, end; row < growing[k].last; row = end) {
+                end = row - row % growing[k].chunk + growing[k].chunk;
+                if (end > growing[k].last) end = growing[k].last;
+                if (list) list[n] = (struct slice){(enum data)k, {row, end - row, column, 1}};
+                n++;
+            }
+    return n;
+}
+
+/* Makes a slice into the chunk that it belongs to, with the older rows of that; where pack_chunk does not
+ * know the packing, just finds its values. */
+static struct packed_chunk make_slice(const struct growing *g, const struct slice *slice,
+                                      snapshot_values *values_of, const void *context, char *room)
+{
+    const struct block *const b = &slice->at;
+    const int64_t old = g->packing.known ? b->row % g->chunk : 0;
+    const struct block before = {b->row - old, old, b->column, 1};
+    const int64_t rest = g->chunk - old - b->rows;
+    bool ok;
+#pragma omp critical
+    ok = move_block(g->set, &columns[slice->what], before, room, false);
+    if (!ok) return (struct packed_chunk){NULL, 0, 0};
+    values_of(context, slice->what, b->column, b->row - g->first, b->rows, room + old * 8);
+    if (!g->packing.known) return (struct packed_chunk){room, 0, 0};
+    memset(room + (old + b->rows) * 8, 0, (size_t)rest * 8);
+    return pack_chunk(&g->packing, g->chunk, room);
+}
+
+static bool write_slice(const struct growing *g, const struct slice *slice,
+                        const struct packed_chunk *chunk, void *room)
+{
+    const struct block *const b = &slice->at;
+    const hsize_t at[2] = {(hsize_t)(b->row - b->row % g->chunk), (hsize_t)b->column};
+    if (!chunk->bytes) return false;
+    if (!g->packing.known) return move_block(g->set, &columns[slice->what], *b, room, true);
+    return H5Dwrite_chunk(g->set, H5P_DEFAULT, chunk->filters, at, chunk->size, chunk->bytes) >= 0;
+}
+
+/* HDF5 is called by one thread at a time, and writes in the order of the list. */
+static bool write_slices(const struct growing growing[D_COUNT], const struct slice *list, int64_t n,
+                         int64_t chunk, snapshot_values *values_of, const void *context)
+{
+    const int threads = n < thread_count() ? (int)n : thread_count();
+    char *const room = malloc((size_t)(threads * chunk) * PACK_ROOM);
+    bool ok = room != NULL;
+    const int64_t count = ok ? n : 0;
+#pragma omp parallel num_threads(threads)
+    {
+        char *const own = room + thread_index() * chunk * PACK_ROOM;
+#pragma omp for ordered schedule(dynamic, 1)
+        for (int64_t k = 0; k < count; k++) {
+            const struct growing *const g = &growing[list[k].what];
+            const struct packed_chunk made = make_slice(g, &list[k], values_of, context, own);
+#pragma omp ordered
+#pragma omp critical
+            ok = ok && write_slice(g, &list[k], &made, own);
+        }
+    }
+    free(room);
+    return ok;
+}
+
+bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
+                                 snapshot_values *values_of, const void *context)
+{
+    struct growing growing[D_COUNT] = {0};
+    int64_t chunk = 0;
+    bool ok = true;
+    for (int k = D_POINTS; ok && k < D_COUNT; k++) {
+        if (!layout->has[k]) continue;
+        ok = open_growing(&growing[k], root, &columns[k], n);
+        chunk = growing[k].chunk > chunk ? growing[k].chunk : chunk;
+    }
+    struct slice *const list =
+        ok ? malloc((size_t)list_slices(growing, NULL) * sizeof *list) : NULL;
+    ok = list && write_slices(growing, list, list_slices(growing, list), chunk, values_of, context);
+    free(list);
+    for (int k = 0; k < D_COUNT; k++)
+        if (growing[k].set > 0 && H5Dclose(growing[k].set) < 0) ok = false;
+    return ok;
 }
 
 /* --- a whole file --- */
@@ -281,8 +413,9 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values)
     char name[96];
     snprintf(name, sizeof name, "VTKHDF/%s", columns[what].name);
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-    const bool ok =
-        set >= 0 && count_rows(set) >= n && move_rows(set, &columns[what], 0, n, values, false);
+    const bool ok = set >= 0 && count_rows(set) >= n &&
+                    move_block(set, &columns[what], (struct block){0, n, 0, columns[what].width},
+                               values, false);
     H5Dclose(set);
     return ok;
 }
@@ -371,7 +504,7 @@ bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hi
 
 int snapshot_file_width(enum data what) { return columns[what].width; }
 
-bool snapshot_file_real(enum data what) { return memory_type(&columns[what]) == H5T_NATIVE_DOUBLE; }
+bool snapshot_file_real(enum data what) { return is_real(columns[what].item); }
 
 int64_t snapshot_file_point(const struct snapshot_layout *layout)
 {

@@ -29,8 +29,6 @@ enum data {
     D_FIRST_POINTDATA = D_TYPES + 1
 };
 
-enum { SNAPSHOT_WIDTH = 6 }; /* most columns of one of them */
-
 /* What a scene's file holds. */
 struct snapshot_layout {
     bool has[D_COUNT];
@@ -52,8 +50,18 @@ bool snapshot_file_real(enum data what);
 int64_t snapshot_file_steps(hid_t file);
 bool snapshot_file_set_steps(hid_t file, int64_t n);
 
-/* Appends rows to a dataset of the group /VTKHDF. */
-bool snapshot_file_append(hid_t root, enum data what, int64_t n, void *values);
+/* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
+bool snapshot_file_append(hid_t root, enum data what, void *value);
+
+/* Finds the values of n rows of a snapshot, from `first` on, in one column: double where snapshot_file_real
+ * says so, int64_t otherwise. Called by several threads at a time. */
+typedef void snapshot_values(const void *context, enum data what, int column, int64_t first,
+                             int64_t n, void *values);
+
+/* Appends a snapshot of n points to all datasets of points. All threads pack; the file does not depend on
+ * their number. */
+bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
+                                 snapshot_values *values_of, const void *context);
 
 /* Reads the first n rows of a dataset of one column. */
 bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
