@@ -3,68 +3,97 @@
  * tree (Bentley 1975) that halves along the longer axis. It follows from positions and ids alone: those of
  * the fluid as it is sorted, of bodies in their reference configuration, which a restart knows as well. */
 #include <math.h>
+#include <string.h>
 
 #include "cells.h"
+#include "simd.h"
 
-/* What decides the place of a particle. */
-struct spot {
-    double at[2];
-    int64_t id;
-    uint32_t particle;
+/* What decides the places of the particles of a cell. */
+struct spots {
+    double at[2][CELL_CAPACITY];
+    int64_t
+        key[2]
+           [CELL_CAPACITY]; /* the same as whole numbers, which have an order whatever they are */
+    int64_t id[CELL_CAPACITY];
 };
 
-/* Along an axis, then the other one, then by id. */
-static bool comes_before(const struct spot *a, const struct spot *b, int axis)
+/* Orders as the numbers do; what is not a number comes before or after all of them. */
+static int64_t key_of(double x)
 {
-    if (a->at[axis] != b->at[axis]) return a->at[axis] < b->at[axis];
-    if (a->at[1 - axis] != b->at[1 - axis]) return a->at[1 - axis] < b->at[1 - axis];
-    return a->id < b->id;
+    int64_t key;
+    x += 0.0; /* one zero instead of two */
+    memcpy(&key, &x, sizeof key);
+    return key < 0 ? key ^ INT64_MAX : key;
 }
 
-/* By insertion: a few of them, mostly in order since the last time. */
-static void sort_spots(struct spot *spot, int n, int axis)
+/* Along an axis, then the other one, then by id: a spot's new place is the number of those that come before,
+ * which takes no branches. */
+static void sort_spots(const struct spots *s, uint16_t *spot, int n, int axis)
 {
-    for (int k = 1; k < n; k++) {
-        const struct spot moved = spot[k];
-        int j = k;
-        for (; j > 0 && comes_before(&moved, &spot[j - 1], axis); j--) spot[j] = spot[j - 1];
-        spot[j] = moved;
+    _Alignas(64) int64_t first[CELL_CAPACITY], second[CELL_CAPACITY], id[CELL_CAPACITY];
+    uint16_t sorted[CELL_CAPACITY];
+    memcpy(sorted, spot, (size_t)n * sizeof *spot); /* ids of damaged files may not be unique */
+    for (int k = 0; k < n; k++) {
+        first[k] = s->key[axis][spot[k]];
+        second[k] = s->key[1 - axis][spot[k]];
+        id[k] = s->id[spot[k]];
     }
+    for (int from = 0; from < n; from += 8) {
+        const eight_long a = *(const eight_long *)(const void *)&first[from];
+        const eight_long b = *(const eight_long *)(const void *)&second[from];
+        const eight_long c = *(const eight_long *)(const void *)&id[from];
+        eight_long before = {0}; /* of those beyond the last nobody asks */
+        for (int j = 0; j < n; j++) {
+            const eight_long by_id = (second[j] == b) & (id[j] < c);
+            before -= (first[j] < a) | ((first[j] == a) & ((second[j] < b) | by_id));
+        }
+        for (int k = from; k < from + 8 && k < n; k++) sorted[before[k - from]] = spot[k];
+    }
+    memcpy(spot, sorted, (size_t)n * sizeof *spot);
 }
 
 /* The axis along which the particles extend further. */
-static int longer_axis(const struct spot *spot, int n)
+static int longer_axis(const struct spots *s, const uint16_t *spot, int n)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int k = 0; k < n; k++)
-        for (int axis = 0; axis < 2; axis++) {
-            low[axis] = min2(low[axis], spot[k].at[axis]);
-            high[axis] = max2(high[axis], spot[k].at[axis]);
-        }
-    return high[1] - low[1] > high[0] - low[0];
+    double left = INFINITY, right = -INFINITY, down = INFINITY, up = -INFINITY;
+    for (int k = 0; k < n; k++) {
+        const double x = s->at[0][spot[k]], y = s->at[1][spot[k]];
+        left = min2(left, x);
+        right = max2(right, x);
+        down = min2(down, y);
+        up = max2(up, y);
+    }
+    return up - down > right - left;
 }
 
 /* Halves the particles along the longer axis, whole clusters each, until they are clusters. */
-static void split(struct spot *spot, int n)
+static void split(const struct spots *s, uint16_t *spot, int n)
 {
     if (n <= CLUSTER) return;
-    sort_spots(spot, n, longer_axis(spot, n));
+    sort_spots(s, spot, n, longer_axis(s, spot, n));
     const int half = (n + CLUSTER - 1) / CLUSTER / 2 * CLUSTER;
-    split(spot, half);
-    split(spot + half, n - half);
+    split(s, spot, half);
+    split(s, spot + half, n - half);
 }
 
 /* One cell's range of pairs. */
 static void order_cell(uint64_t *pair, int n, const struct particles *p)
 {
-    struct spot spot[CELL_CAPACITY];
+    struct spots s;
+    uint16_t spot[CELL_CAPACITY];
+    uint32_t particle[CELL_CAPACITY];
     const double *const x = p->X ? p->X : p->x, *const y = p->Y ? p->Y : p->y;
+    if (n <= CLUSTER) return;
     for (int k = 0; k < n; k++) {
         const uint32_t i = (uint32_t)pair[k];
-        spot[k] = (struct spot){{x[i], y[i]}, p->id[i], i};
+        s.key[0][k] = key_of(s.at[0][k] = x[i]);
+        s.key[1][k] = key_of(s.at[1][k] = y[i]);
+        s.id[k] = p->id[i];
+        particle[k] = i;
+        spot[k] = (uint16_t)k;
     }
-    split(spot, n);
-    for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | spot[k].particle;
+    split(&s, spot, n);
+    for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | particle[spot[k]];
 }
 
 /* Those outside of the grid, and those of a cell with more than there is room for, which ends the run. */

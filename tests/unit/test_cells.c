@@ -182,6 +182,66 @@ static void test_clusters_of_a_lattice_are_squares(void)
     }
 }
 
+/* The k-d tree written plainly, with the library's sort. */
+static const struct particles *compared;
+static int compared_axis;
+
+static int compare(const void *a, const void *b)
+{
+    const int32_t i = *(const int32_t *)a, j = *(const int32_t *)b;
+    const double *const at[2] = {compared->x, compared->y};
+    for (int k = 0; k < 2; k++) {
+        const double *const v = at[k ? 1 - compared_axis : compared_axis];
+        if (v[i] != v[j]) return v[i] < v[j] ? -1 : 1;
+    }
+    return compared->id[i] < compared->id[j] ? -1 : 1;
+}
+
+static void tree_by_library(int32_t *i, int n)
+{
+    const double *const at[2] = {compared->x, compared->y};
+    double extent[2];
+    if (n <= CLUSTER) return;
+    for (int axis = 0; axis < 2; axis++) {
+        double low = at[axis][i[0]], high = low;
+        for (int k = 1; k < n; k++) {
+            low = fmin(low, at[axis][i[k]]);
+            high = fmax(high, at[axis][i[k]]);
+        }
+        extent[axis] = high - low;
+    }
+    compared_axis = extent[1] > extent[0];
+    qsort(i, (size_t)n, sizeof *i, compare);
+    const int half = (n + 3) / 4 / 2 * 4;
+    tree_by_library(i, half);
+    tree_by_library(i + half, n - half);
+}
+
+/* At places of few values, so that many are equal. */
+static void test_order_is_that_of_the_tree(void)
+{
+    scatter(false);
+    struct particles *const p = &kinds[KIND_WALL];
+    const double side = 0.01, x = cell_centre_x(&cells, cells.nx + 1),
+                 y = cell_centre_y(&cells, cells.nx + 1);
+    uint64_t seed = 9;
+    for (int n = CLUSTER + 1; n <= 67; n += 3) {
+        int32_t expected[67];
+        p->n = n;
+        for (int i = 0; i < n; i++) {
+            p->x[i] = x + side * floor(1.9 * noise(&seed));
+            p->y[i] = n % 2 ? y + side * noise(&seed) : y + side * floor(1.9 * noise(&seed));
+            p->id[i] = (7 * i) % 71;
+            expected[i] = i;
+        }
+        cells_sort(&cells, KIND_WALL, p);
+        TEST_ASSERT_EQUAL_INT32(1, cells.kind[KIND_WALL].n_active);
+        compared = p;
+        tree_by_library(expected, n);
+        TEST_ASSERT_EQUAL_INT32_ARRAY(expected, cells.kind[KIND_WALL].order, n);
+    }
+}
+
 /* Clusters of particles thrown at random are hardly wider than squares with room for four of them. */
 static void test_clusters_are_compact(void)
 {
@@ -299,6 +359,7 @@ int main(void)
     RUN_TEST(test_cells_are_no_smaller_than_the_reach);
     RUN_TEST(test_no_pair_is_missed);
     RUN_TEST(test_clusters_of_a_lattice_are_squares);
+    RUN_TEST(test_order_is_that_of_the_tree);
     RUN_TEST(test_clusters_are_compact);
     RUN_TEST(test_cells_cover_all_in_morton_order);
     RUN_TEST(test_lost_particles_come_last);
