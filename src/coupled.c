@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What both integrators share: evaluations with moving walls, solid sub-steps within a fluid step. */
+ * What the integrators share: evaluations with moving walls, looking at the fluid as it advances, solid
+ * sub-steps within a fluid step. */
 #include <math.h>
 #include <string.h>
 
@@ -73,6 +74,52 @@ void evaluate_start(struct simulation *s)
     evaluate_fluid(s, s->state.time);
     s->evaluated = false;
 }
+
+/* The extremes of some of the fluid, found without a branch. */
+static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
+{
+    vdouble low = vset_double(0), high = low, speed2 = low, nothing = low;
+    int64_t i = from;
+    for (; i + LANES_DOUBLE <= end; i += LANES_DOUBLE) {
+        const vdouble vx = vload_double(&p->vx[i]), vy = vload_double(&p->vy[i]);
+        const vdouble d = vload_double(&p->dens[i]), v2 = vx * vx + vy * vy;
+        low = vmin_double(d, low);
+        high = vmax_double(d, high);
+        speed2 = vmax_double(v2, speed2);
+        nothing = nothing + (v2 + d) * 0.0;
+    }
+    struct extremes e = {-vtop_double(-low), vtop_double(high), vtop_double(speed2),
+                         vsum_double(nothing)};
+    for (; i < end; i++) {
+        const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
+        e.dens_low = min2(e.dens_low, p->dens[i]);
+        e.dens_high = max2(e.dens_high, p->dens[i]);
+        e.speed2 = max2(e.speed2, v2);
+        e.nothing += 0 * (v2 + p->dens[i]);
+    }
+    return e;
+}
+
+void advance_fluid(struct simulation *s, advance_rows *rows, const void *by)
+{
+    enum { BLOCK = 256 };
+    struct particles *const p = &s->kind[KIND_FLUID];
+    double low = 0, high = 0, speed2 = 0, nothing = 0;
+#pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
+    reduction(+ : nothing)
+    for (int64_t from = 0; from < p->n; from += BLOCK) {
+        const int64_t end = from + BLOCK < p->n ? from + BLOCK : p->n;
+        if (rows) rows(p, by, from, end);
+        const struct extremes e = extremes_of(p, from, end);
+        low = min2(low, e.dens_low);
+        high = max2(high, e.dens_high);
+        speed2 = max2(speed2, e.speed2);
+        nothing += e.nothing;
+    }
+    s->extremes = (struct extremes){low, high, speed2, nothing};
+}
+
+void look_at_fluid(struct simulation *s) { advance_fluid(s, NULL, NULL); }
 
 double place_solid(struct particles *p)
 {

@@ -23,6 +23,14 @@ void evaluate_fluid(struct simulation *s, double time);
 /* The same at the state that a step starts from, which need not be repeated where output has just made it. */
 void evaluate_start(struct simulation *s);
 
+/* Advances the fluid by `rows`, which brings the particles from to end - 1 to their new velocities and
+ * densities; `by` is what it needs to know. Their extremes are found while they are in the caches. */
+typedef void advance_rows(struct particles *p, const void *by, int64_t from, int64_t end);
+void advance_fluid(struct simulation *s, advance_rows *rows, const void *by);
+
+/* Finds the extremes of the fluid as it stands. */
+void look_at_fluid(struct simulation *s);
+
 /* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
  * solid's mean velocity over the step, carried on to its end, and acceleration. */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);

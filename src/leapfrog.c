@@ -17,16 +17,19 @@ static double extrapolated_rate(double now, double old, double older, double r, 
 
 static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2, dt / dt_old) : 1; }
 
-static void update_fluid(struct particles *p, double dt, double dt_old, double dt_older)
+/* The step that an update is over, s: from half a step behind to half a step ahead, and its ratio to the one
+ * before, and that one's. */
+struct stride {
+    double dt, kick, r, r_old;
+};
+
+static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
-    const double kick = 0.5 * (dt_old + dt), half = 0.5 * dt;
-    const double r = step_ratio(dt, dt_old), r_old = step_ratio(dt_old, dt_older);
-    if (!(dt_old > 0)) { /* the first step knows no others */
-        memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
-        memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
-    }
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
+    const struct stride *const step = by;
+    const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
+                 r_old = step->r_old;
+#pragma omp simd
+    for (int64_t i = from; i < end; i++) {
         p->vx_half[i] += kick * p->ax[i];
         p->vy_half[i] += kick * p->ay[i];
         p->x[i] += dt * p->vx_half[i];
@@ -36,6 +39,18 @@ static void update_fluid(struct particles *p, double dt, double dt_old, double d
         p->dens[i] +=
             dt * extrapolated_rate(p->ddens[i], p->ddens_old[i], p->ddens_older[i], r, r_old);
     }
+}
+
+static void update_fluid(struct simulation *s, double dt, double dt_old, double dt_older)
+{
+    struct particles *const p = &s->kind[KIND_FLUID];
+    const struct stride by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
+                              step_ratio(dt_old, dt_older)};
+    if (!(dt_old > 0)) { /* the first step knows no others */
+        memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
+        memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
+    }
+    advance_fluid(s, update_rows, &by);
     /* The rates grow older by changing arrays; the next evaluation overwrites the oldest. */
     double *const oldest = p->ddens_older;
     p->ddens_older = p->ddens_old;
@@ -56,13 +71,13 @@ static void weigh_force(struct particles *p, double share)
 
 void leapfrog_step(struct simulation *s, double t_limit)
 {
-    struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    struct particles *const solid = &s->kind[KIND_SOLID];
     struct state *const st = &s->state;
     evaluate_start(s);
     double clock = wall_clock();
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits), dt_old = st->dt;
-    update_fluid(fluid, dt, dt_old, st->dt_old);
+    update_fluid(s, dt, dt_old, st->dt_old);
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
         weigh_force(solid, 0.5 * (dt_old + dt) / dt);

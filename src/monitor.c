@@ -45,58 +45,16 @@ static enum err complain(const struct simulation *s, enum kind kind, struct find
         p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
 }
 
-/* Extremes over some of the fluid. What is not a number they may pass over, but nothing of it, times
- * zero, is zero. */
-struct extremes {
-    double low, high, speed2, nothing;
-};
-
-static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
-{
-    vdouble low = vset_double(0), high = low, speed2 = low, nothing = low;
-    int64_t i = from;
-    for (; i + LANES_DOUBLE <= end; i += LANES_DOUBLE) {
-        const vdouble vx = vload_double(&p->vx[i]), vy = vload_double(&p->vy[i]);
-        const vdouble d = vload_double(&p->dens[i]), v2 = vx * vx + vy * vy;
-        low = vmin_double(d, low);
-        high = vmax_double(d, high);
-        speed2 = vmax_double(v2, speed2);
-        nothing = nothing + (v2 + d) * 0.0;
-    }
-    struct extremes e = {-vtop_double(-low), vtop_double(high), vtop_double(speed2),
-                         vsum_double(nothing)};
-    for (; i < end; i++) {
-        const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
-        e.low = min2(e.low, p->dens[i]);
-        e.high = max2(e.high, p->dens[i]);
-        e.speed2 = max2(e.speed2, v2);
-        e.nothing += 0 * (v2 + p->dens[i]);
-    }
-    return e;
-}
-
-/* Whether any speed or density is out of bounds or not a number; run after every step. The extremes say
- * what is out of bounds, so that the loop needs no other comparison and no branch. */
+/* Whether any speed or density is out of bounds or not a number, by the extremes of the last step. */
 static bool fluid_sound(struct simulation *s)
 {
-    enum { BLOCK = 1024 };
-    const struct particles *const p = &s->kind[KIND_FLUID];
-    double low = 0, high = 0, speed2 = 0, nothing = 0;
-#pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
-    reduction(+ : nothing)
-    for (int64_t from = 0; from < p->n; from += BLOCK) {
-        const struct extremes e = extremes_of(p, from, from + BLOCK < p->n ? from + BLOCK : p->n);
-        low = min2(low, e.low);
-        high = max2(high, e.high);
-        speed2 = max2(speed2, e.speed2);
-        nothing += e.nothing;
-    }
-    s->state.dens_low = min2(s->state.dens_low, low);
-    s->state.dens_high = max2(s->state.dens_high, high);
-    s->fluid_speed2 = speed2;
-    s->state.speed_high = max2(s->state.speed_high, sqrt(speed2));
-    return nothing == 0 && sqrt(speed2) <= s->guard.speed_limit && high <= s->guard.dens_limit &&
-           low >= -s->guard.dens_limit;
+    const struct extremes *const e = &s->extremes;
+    const double speed = sqrt(e->speed2);
+    s->state.dens_low = min2(s->state.dens_low, e->dens_low);
+    s->state.dens_high = max2(s->state.dens_high, e->dens_high);
+    s->state.speed_high = max2(s->state.speed_high, speed);
+    return e->nothing == 0 && speed <= s->guard.speed_limit &&
+           e->dens_high <= s->guard.dens_limit && e->dens_low >= -s->guard.dens_limit;
 }
 
 #define UNSTABLE                                                                                  \

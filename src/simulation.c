@@ -124,7 +124,7 @@ static double fastest(const struct particles *p)
 
 static void find_speed(struct simulation *s)
 {
-    s->speed2 = s->fluid_speed2;
+    s->speed2 = s->extremes.speed2;
     if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
     if (s->effects & FX_MOTION)
         s->speed2 = max2(s->speed2, moving_speed2(&s->moving, &s->kind[KIND_WALL]));
@@ -224,7 +224,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
  * speeds before and after and half a step of its acceleration, whatever the integrator, and its shift. */
 static void use_room(struct simulation *s, double speed2_before)
 {
-    const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->fluid_speed2)),
+    const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->extremes.speed2)),
                  way = dt * (speed + 0.5 * dt * sqrt(s->fluid.extremes.acceleration2)) + s->shifted;
     s->room -= way + max2(way, s->solid_way);
 }
@@ -370,7 +370,7 @@ static enum err build(struct simulation *s, struct diag *d)
     warn_of_fixed_step(s, d);
     warn_of_cfl(s, d);
     set_guards(s);
-    s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
+    look_at_fluid(s);
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
     const struct ledger start = simulation_ledger(s);
@@ -460,7 +460,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         timestep_recheck_solid(s);
         return ERR_OK;
     }
-    const double speed2_before = s->fluid_speed2;
+    const double speed2_before = s->extremes.speed2;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
     else if (s->scene->top.integrator == INTEGRATOR_VERLET)
@@ -472,7 +472,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     if (s->effects & FX_SHIFTING) clock = shift_fluid(s, clock);
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
     show_strain(s);
-    const enum err e = monitor_check(s, d); /* finds the fluid's speed on its way */
+    const enum err e = monitor_check(s, d);
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
     take_work(s);
@@ -508,7 +508,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
         timestep_set_solid(s);
         solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards look at the last gradients */
     }
-    s->fluid_speed2 = fastest(&s->kind[KIND_FLUID]);
+    look_at_fluid(s);
     find_speed(s);
     return ERR_OK;
 }

@@ -33,6 +33,12 @@ struct state {
     int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
 };
 
+/* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). What is not a number they may pass over,
+ * but nothing of it, times zero, is zero. */
+struct extremes {
+    double dens_low, dens_high, speed2, nothing;
+};
+
 /* Accelerations from outside, that a program with the library adds to those of the model. */
 typedef void push_function(void *context, double time, const struct particles *p, double *ax,
                            double *ay);
@@ -59,8 +65,8 @@ struct simulation {
     double dt_lone_solid;         /* the same as if there were no contact */
     int substeps;                 /* solid steps in the last fluid step */
     double phase_seconds[PHASE_COUNT];
-    double fluid_speed2; /* of the fastest fluid particle, squared, (m/s)^2 */
-    double speed2;       /* of the fastest particle of any kind, squared, (m/s)^2 */
+    struct extremes extremes; /* of the fluid */
+    double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
     double solid_way; /* longest way of a solid particle in the last step, m (not by symplectic) */
     double shifted;   /* longest way that a fluid particle was shifted in it, m; 0: none is */
     double room;      /* what two particles may go together before a sorting can be due, m */

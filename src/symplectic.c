@@ -22,10 +22,11 @@ static void predict_fluid(struct particles *p, double half)
     }
 }
 
-static void correct_fluid(struct particles *p, double dt)
+static void correct_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
+    const double dt = *(const double *)by;
+#pragma omp simd
+    for (int64_t i = from; i < end; i++) {
         p->vx[i] = p->vx0[i] + dt * p->ax[i]; /* Eq. 23a */
         p->vy[i] = p->vy0[i] + dt * p->ay[i];
         p->x[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]); /* Eq. 23b */
@@ -123,7 +124,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);
 
-    correct_fluid(fluid, dt);
+    advance_fluid(s, correct_rows, &dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
         solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);

@@ -6,11 +6,18 @@
 
 /* Eq. 25, or Eq. 26 where `euler`. For steps that change, the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: printed as it is, a free fall would lose g (dt_old - dt). */
-static void update_fluid(struct particles *p, double dt, double dt_old, bool euler)
+struct stride {
+    double dt, dt_old;
+    bool euler;
+};
+
+static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
-    const double kick = euler ? dt : dt_old + dt;
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
+    const struct stride *const step = by;
+    const bool euler = step->euler;
+    const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
+#pragma omp simd
+    for (int64_t i = from; i < end; i++) {
         const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
         p->x[i] += dt * vx + 0.5 * dt * dt * p->ax[i];
         p->y[i] += dt * vy + 0.5 * dt * dt * p->ay[i];
@@ -31,7 +38,7 @@ void verlet_step(struct simulation *s, double t_limit)
     const double dt = timestep_choose(s, t_limit, &hits);
     const bool euler = s->state.verlet_count == 0;
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
-    update_fluid(&s->kind[KIND_FLUID], dt, s->state.dt, euler);
+    advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) advance_solid(s, dt, timestep_substeps(s, dt), false);
     clock = phase_add(s, PHASE_solid, clock);

@@ -2,6 +2,7 @@
  * The guards: a state that is not sound is found, and the sentence names particle, place, quantity. */
 #include "monitor.h"
 
+#include "integrators.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -37,12 +38,19 @@ void setUp(void)
 
 void tearDown(void) { rig_close(&rig); }
 
+/* The check after a step that has left the state as it stands. */
+static enum err check(void)
+{
+    look_at_fluid(&rig.sim);
+    return monitor_check(&rig.sim, &rig.diag);
+}
+
 /* The sentence holds the particle's kind and number, its place, the quantity and the time. */
 static void expect(enum kind kind, int64_t at, const char *quantity)
 {
     const struct particles *const p = &rig.sim.kind[kind];
     char text[128];
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, rig.diag.code);
     snprintf(text, sizeof text, "%s particle %lld at (%.6g, %.6g) m", kind_names[kind],
              (long long)p->id[at], p->x[at], p->y[at]);
@@ -55,7 +63,7 @@ static void expect(enum kind kind, int64_t at, const char *quantity)
 
 static void test_a_sound_state_passes(void)
 {
-    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     TEST_ASSERT_EQUAL_INT(0, warnings);
 }
 
@@ -74,7 +82,7 @@ static void test_infinite_velocity_of_the_fluid(void)
 static void test_speed_of_sound_of_the_fluid(void)
 {
     rig.sim.kind[KIND_FLUID].vx[12] = 19.9;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     rig.sim.kind[KIND_FLUID].vx[12] = 20.1;
     expect(KIND_FLUID, 12, "speed (m/s) = 20.1");
 }
@@ -84,7 +92,7 @@ static void test_density_of_the_fluid(void)
     struct particles *const p = &rig.sim.kind[KIND_FLUID];
     p->dens[5] = 0.29;
     p->dens[6] = -0.29;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     assert_near(0, 0.29, rig.sim.state.dens_high, "highest density so far");
     assert_near(0, -0.29, rig.sim.state.dens_low, "lowest density so far");
     p->dens[50] = 0.31;
@@ -147,9 +155,9 @@ static void test_collapsed_step(void)
 {
     rig.sim.state.dt = 1e-9;
     rig.sim.dt_bound[BOUND_output] = 1e-9;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     rig.sim.dt_bound[BOUND_output] = INFINITY;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "time step has collapsed"), rig.diag.text);
 }
 
@@ -157,7 +165,7 @@ static void test_collapsed_step(void)
 static void test_one_warning_for_fast_fluid(void)
 {
     rig.sim.kind[KIND_FLUID].vx[12] = 6.5;
-    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     TEST_ASSERT_EQUAL_INT(1, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "6.5"), warning);
 }
@@ -216,7 +224,7 @@ static void test_warnings_before_the_end(void)
     rig.sim.state.steps = 64;
     rig.sim.state.dt = 50 * rig.sim.guard.step_limit;
     rig.sim.dt_bound[BOUND_output] = INFINITY;
-    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, monitor_check(&rig.sim, &rig.diag));
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     TEST_ASSERT_EQUAL_INT(3, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has shrunk"), warning);
 }
@@ -224,7 +232,7 @@ static void test_warnings_before_the_end(void)
 static void test_substeps_without_end(void)
 {
     rig.sim.substeps = 10001;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_check(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "10001 sub-steps"), rig.diag.text);
 }
 
