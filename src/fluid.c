@@ -164,6 +164,7 @@ void fluid_find_near(struct fluid *f, const struct cells *c)
                 f->near_fluid[kind][n++] = list->active[k];
         f->n_near_fluid[kind] = n;
     }
+    f->walls_placed = false;
 }
 
 int32_t fluid_crowding(const struct cells *c)
@@ -190,6 +191,7 @@ static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
+    f->walls_placed = !(f->effects & FX_MOTION);
 }
 
 static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)

@@ -138,6 +138,7 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
+    bool walls_placed;  /* walls are at rest, and their lanes say where since the last sorting */
     bool *near_dummies; /* [cells]: whether walls or structures are in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct sight *sight;      /* [threads] */

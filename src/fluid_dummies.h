@@ -150,14 +150,24 @@ SPHFSI_INLINE void take(const struct dummies *d, const double *field, double out
     for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
 }
 
+/* A structure's velocity as the fluid sees it; walls have none where nothing moves them. */
+SPHFSI_INLINE void take_velocity(const struct fluid *f, const struct dummies *d,
+                                 const struct particles *p, double u[CLUSTER], double v[CLUSTER])
+{
+    const bool moves = f->effects & FX_MOTION;
+    take(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
+    take(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
+}
+
 SPHFSI_INLINE void put(const struct dummies *d, const double in[CLUSTER], double *field)
 {
     for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
 }
 
+/* Zeros, and with them no volume, where there are no particles. */
 SPHFSI_INLINE void put_lanes(const struct dummies *d, const double in[CLUSTER], enum lane_field m)
 {
-    for (int r = 0; r < d->count; r++) d->lanes[(int)m * CLUSTER + r] = (real)in[r];
+    put_four(d->lanes, m, (four_double) * (const four_double_at *)in);
 }
 
 /* Where they are, with the box around them. */
@@ -178,9 +188,11 @@ SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *
 
 /* What fx_one_sided and fx_repulsion need of the dummies. */
 SPHFSI_INLINE void surface_lanes(const struct fluid *f, const struct particles *p,
-                                 const struct dummies *d, const double ax[CLUSTER],
-                                 const double ay[CLUSTER], unsigned fx)
+                                 const struct dummies *d, unsigned fx)
 {
+    double ax[CLUSTER], ay[CLUSTER];
+    take(d, p->ax, ax);
+    take(d, p->ay, ay);
     for (int r = 0; r < d->count; r++) {
         real *const own = d->lanes + r;
         if (fx & FX_ONE_SIDED) {
@@ -228,10 +240,10 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
 
 /* Velocities that the fluid meets where it sticks, with the body's own elsewhere. */
 static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
-                  const struct view *see, const struct cell_sides *sides, const double u[CLUSTER],
-                  const double v[CLUSTER])
+                  const struct view *see, const struct cell_sides *sides)
 {
-    double sticks[CLUSTER] = {0}, mirror_u[CLUSTER], mirror_v[CLUSTER];
+    double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
+    take_velocity(f, d, p, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
@@ -249,30 +261,43 @@ static void stick(const struct fluid *f, const struct particles *p, const struct
     put_lanes(d, sticks, LANE_STICKS);
 }
 
-/* A cluster of wall or solid particles of a cell. */
-SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
-                                  const struct dummies *d, const struct view *see,
-                                  const struct cell_sides *sides, const struct lane_constants *k,
-                                  unsigned fx)
+/* A cluster of a cell. */
+SPHFSI_INLINE struct dummies dummies_at(const struct fluid *f, const struct cells *c,
+                                        enum kind kind, int32_t cell, int32_t m)
 {
-    const bool solid = d->kind == KIND_SOLID;
-    double u[CLUSTER], v[CLUSTER], ax[CLUSTER], ay[CLUSTER], pressure[CLUSTER] = {0};
-    take(d, solid ? p->wx : p->vx, u);
-    take(d, solid ? p->wy : p->vy, v);
+    const struct cell_list *const list = &c->kind[kind];
+    const size_t cluster = (size_t)(list->cluster[cell] + m);
+    return (struct dummies){kind, particles_in(list, cell, m),
+                            &list->order[list->start[cell] + m * CLUSTER], cluster,
+                            cluster_lanes(&f->lanes[kind], cluster)};
+}
+
+/* Their pressure by the fluid that they see. */
+SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particles *p,
+                                    const struct dummies *d, const struct view *see,
+                                    const struct cell_sides *sides, double pressure[CLUSTER])
+{
+    double ax[CLUSTER], ay[CLUSTER];
     take(d, p->ax, ax);
     take(d, p->ay, ay);
+    for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
         const struct receiver s = receiver_at(sides, d->lanes + r);
         extrapolated_pressure(f, see, &s, &ax[r], &ay[r], &pressure[r]);
     }
-    double dens[CLUSTER] = {0}, volume[CLUSTER] = {0};
-    for (int r = 0; r < d->count; r++) {
-        /* Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the fluid. */
-        const double own =
-            f->k.mass / f->k.rho0 * square(1 / f->k.h) * f->volume[d->kind][p->body[d->at[r]]];
-        dens[r] = eos_dens(pressure[r], f->k.rho0, f->k.c0);
-        volume[r] = own / (1 + dens[r]);
-    }
+}
+
+/* What follows from it. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the
+ * fluid. */
+SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
+                                 const struct dummies *d, const double pressure[CLUSTER],
+                                 const double dens[CLUSTER])
+{
+    const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
+    double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0};
+    take_velocity(f, d, p, u, v);
+    for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
+    for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
     put(d, pressure, p->p);
     put(d, dens, p->dens);
     put_lanes(d, u, LANE_U);
@@ -280,28 +305,35 @@ SPHFSI_INLINE void dummies_update(const struct fluid *f, struct particles *p,
     put_lanes(d, volume, LANE_VOLUME);
     put_lanes(d, pressure, LANE_P);
     put_lanes(d, dens, LANE_DENS);
-    if (fx & FX_NO_SLIP) stick(f, p, d, see, sides, u, v);
-    surface_lanes(f, p, d, ax, ay, fx);
-    if (p->fx) dummies_forces(f, p, d, see, sides, k, fx);
 }
 
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
                                    const struct cells *c, int32_t cell, unsigned fx)
 {
-    const struct cell_list *list = &c->kind[kind];
     struct sight *const sight = &f->sight[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);
     const struct lane_constants k =
         fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct lane_constants){0};
+    const int32_t clusters = clusters_in(&c->kind[kind], cell);
+    double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
     look_around(sight, f, c, KIND_FLUID, cell);
-    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
-        const int32_t cluster = list->cluster[cell] + m;
-        const struct dummies d = {kind, particles_in(list, cell, m),
-                                  &list->order[list->start[cell] + m * CLUSTER], (size_t)cluster,
-                                  cluster_lanes(&f->lanes[kind], (size_t)cluster)};
-        place_dummies(f, p, c, cell, &d);
-        const struct view see = look_at(sight, f, KIND_FLUID, kind, cluster);
-        dummies_update(f, p, &d, &see, &sides, &k, fx);
+    for (int32_t m = 0; m < clusters; m++) {
+        const struct dummies d = dummies_at(f, c, kind, cell, m);
+        if (kind != KIND_WALL || !f->walls_placed) place_dummies(f, p, c, cell, &d);
+        const struct view see = look_at(sight, f, KIND_FLUID, kind, (int32_t)d.cluster);
+        dummies_pressure(f, p, &d, &see, &sides, &pressure[m * CLUSTER]);
+    }
+    for (int32_t m = clusters * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
+    for (int32_t m = 0; m < clusters * CLUSTER; m += EOS_BLOCK)
+        eos_dens_of_block(&pressure[m], f->k.rho0, f->k.c0, &dens[m]);
+    for (int32_t m = 0; m < clusters; m++) {
+        const struct dummies d = dummies_at(f, c, kind, cell, m);
+        dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
+        if (!p->fx && !(fx & SURFACE_EFFECTS)) continue;
+        const struct view see = look_at(sight, f, KIND_FLUID, kind, (int32_t)d.cluster);
+        if (fx & FX_NO_SLIP) stick(f, p, &d, &see, &sides);
+        if (fx & SURFACE_EFFECTS) surface_lanes(f, p, &d, fx);
+        if (p->fx) dummies_forces(f, p, &d, &see, &sides, &k, fx);
     }
 }
 

@@ -66,6 +66,25 @@ static void test_tension_beyond_the_law_stays_finite(void)
     assert_near(1e-14, lowest, eos_dens(-1e9, 1000, 20), "d");
 }
 
+/* To the bit, in blocks whose values need one round up to all of them, and with what is not a number among
+ * them. */
+static void test_a_block_is_as_one_by_one(void)
+{
+    const double rho0 = 1000, c0 = 20, B = rho0 * c0 * c0 / 7;
+    double pressure[EOS_BLOCK], d[EOS_BLOCK];
+    uint64_t seed = 3;
+    for (int k = 0; k < 400; k++) {
+        for (int r = 0; r < EOS_BLOCK; r++)
+            pressure[r] = B * pow(10, -8 + 4.5 * (1 + noise(&seed))) * noise(&seed);
+        pressure[k % EOS_BLOCK] = k % 3 ? 0 : k % 2 ? -(double)INFINITY : (double)NAN;
+        eos_dens_of_block(pressure, rho0, c0, d);
+        for (int r = 0; r < EOS_BLOCK; r++) {
+            const double one = eos_dens(pressure[r], rho0, c0);
+            TEST_ASSERT_TRUE(isnan(one) ? isnan(d[r]) : one == d[r]);
+        }
+    }
+}
+
 /* d(energy)/d(rho) = P/rho^2: central difference of relative step 1e-5, error of the order of its
  * square; and the leading term c0^2 d^2/2 for small d. */
 static void test_energy_is_the_integral_of_pressure(void)
@@ -90,6 +109,7 @@ int main(void)
     RUN_TEST(test_slope_is_the_speed_of_sound);
     RUN_TEST(test_inverse_round_trip);
     RUN_TEST(test_tension_beyond_the_law_stays_finite);
+    RUN_TEST(test_a_block_is_as_one_by_one);
     RUN_TEST(test_energy_is_the_integral_of_pressure);
     return UNITY_END();
 }
