@@ -46,9 +46,10 @@ SPHFSI_INLINE void put_four(real *lanes, enum lane_field m, four_double four)
     *(four_real *)(void *)(lanes + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
 }
 
-/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
+/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. Their
+ * pressures are handed over: those of the next cell may be another thread's, which is finding them. */
 SPHFSI_INLINE void fluid_lanes(const struct fluid *f, const struct particles *p, int32_t i,
-                               const double centre[2], real *out)
+                               four_double pressure, const double centre[2], real *out)
 {
     const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
     const four_double dens = FOUR(p->dens, i);
@@ -57,7 +58,7 @@ SPHFSI_INLINE void fluid_lanes(const struct fluid *f, const struct particles *p,
     put_four(out, LANE_U, FOUR(p->vx, i));
     put_four(out, LANE_V, FOUR(p->vy, i));
     put_four(out, LANE_VOLUME, volume / (1 + dens));
-    put_four(out, LANE_P, FOUR(p->p, i));
+    put_four(out, LANE_P, pressure);
     put_four(out, LANE_DENS, dens);
 }
 
@@ -70,13 +71,17 @@ static void lanes_of_cell(const struct fluid *f, const struct particles *p, cons
     const size_t first = (size_t)list->cluster[cell];
     const int32_t full = list->count[cell] / CLUSTER, rest = list->count[cell] % CLUSTER;
     for (int32_t m = 0; m < full; m++) {
+        const int32_t i = list->start[cell] + m * CLUSTER;
         real *const out = cluster_lanes(lanes, first + (size_t)m);
-        fluid_lanes(f, p, list->start[cell] + m * CLUSTER, centre, out);
+        fluid_lanes(f, p, i, FOUR(p->p, i), centre, out);
         cluster_box(&lanes->boxes, first + (size_t)m, out, CLUSTER);
     }
     if (rest == 0) return;
+    const int32_t last = list->start[cell] + full * CLUSTER;
+    four_double pressure = {0};
+    for (int r = 0; r < rest; r++) pressure[r] = p->p[last + r];
     real *const out = cluster_lanes(lanes, first + (size_t)full);
-    fluid_lanes(f, p, list->start[cell] + full * CLUSTER, centre, out);
+    fluid_lanes(f, p, last, pressure, centre, out);
     cluster_close(out, lanes->n, rest);
     cluster_box(&lanes->boxes, first + (size_t)full, out, rest);
 }
