@@ -120,7 +120,7 @@ struct solid {
     struct meeting *meeting; /* of the threads between two loops */
     struct solid_part *part; /* [threads], each stepped by a thread; NULL: not cut */
     bool in_parts;           /* the last evaluation was theirs */
-    double *scratch[4];      /* room for the search of the step */
+    double *scratch[6];      /* room for the search of the step */
     double time; /* of the displacements, s: walls that are touched stand where they are then */
     /* What acts from outside, each NULL where there is none. */
     struct contact *contact;
@@ -164,7 +164,8 @@ void solid_place_driven(const struct solid *s, struct particles *p, double time)
 double solid_step_of(double omega2, double damping);
 
 /* Largest frequency and damping rate of the operator linearised about the present deformation, by power
- * iteration on the force routine, and the stable step that follows, s. Leaves u and v as they were. */
+ * iteration on the force routine, and the stable step that follows, s. Leaves u, v and what is known of the
+ * present state as they were. */
 double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping);
 
 /* The same about the undeformed state, kept in s. */

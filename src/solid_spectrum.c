@@ -110,7 +110,10 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
 {
     /* Without the fluid's force and gravity, which do not depend on the field, and without contact, which
      * has bounds of its own. */
+    double *const rates[2] = {s->scratch[4], s->scratch[5]};
+    if (s->in_parts) solid_show(s, p);
     s->in_parts = false; /* the fields of p will be of the last trial */
+    keep(rates, p->sx, p->sy, p->n);
     struct solid bare = *s;
     struct solid_body body[s->n_bodies];
     memcpy(body, s->body, sizeof body);
@@ -147,6 +150,9 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
         if (s->body[k].viscosity + s->body[k].damping_time > 0 && *damping == 0)
             *damping = largest_factor(&bare, p, v, base, amplitude * *omega, true);
     keep(v, kept[0], kept[1], p->n);
+    /* Whoever looks next finds the body, not a trial. */
+    solid_stress(s, p);
+    keep((double *[2]){p->sx, p->sy}, rates[0], rates[1], p->n);
     /* Eigenvalues of two operators together are no larger than the sum of the largest of each. */
     return solid_step_of(square(*omega) + s->outer_omega2, *damping + s->outer_damping);
 }
