@@ -191,7 +191,7 @@ static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
-    f->walls_placed = !(f->effects & FX_MOTION);
+    f->walls_placed = !(f->effects & FX_MOTION) && !f->idle_is_work;
 }
 
 static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)

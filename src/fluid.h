@@ -131,7 +131,7 @@ struct sight {
 struct fluid {
     struct fluid_constants k;
     unsigned effects;
-    bool idle_is_work;          /* numerics.idle = work: dry walls are visited as well */
+    bool idle_is_work;          /* numerics.idle = work: dry walls visited, resting ones placed */
     double *volume[KIND_COUNT]; /* [sections] of a dummy at rest over that of a fluid particle */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct lanes lanes[KIND_COUNT];
