@@ -38,16 +38,17 @@ static void sort_spots(const struct spots *s, uint16_t *spot, int n, int axis)
         second[k] = s->key[1 - axis][spot[k]];
         id[k] = s->id[spot[k]];
     }
-    for (int from = 0; from < n; from += 8) {
-        const eight_long a = *(const eight_long *)(const void *)&first[from];
-        const eight_long b = *(const eight_long *)(const void *)&second[from];
-        const eight_long c = *(const eight_long *)(const void *)&id[from];
-        eight_long before = {0}; /* of those beyond the last nobody asks */
+    for (int from = 0; from < n; from += LANES_DOUBLE) {
+        const vlong a = *(const vlong *)(const void *)&first[from];
+        const vlong b = *(const vlong *)(const void *)&second[from];
+        const vlong c = *(const vlong *)(const void *)&id[from];
+        vlong before = {0}; /* of those beyond the last nobody asks */
         for (int j = 0; j < n; j++) {
-            const eight_long by_id = (second[j] == b) & (id[j] < c);
+            const vlong by_id = (second[j] == b) & (id[j] < c);
             before -= (first[j] < a) | ((first[j] == a) & ((second[j] < b) | by_id));
         }
-        for (int k = from; k < from + 8 && k < n; k++) sorted[before[k - from]] = spot[k];
+        for (int k = from; k < from + LANES_DOUBLE && k < n; k++)
+            sorted[before[k - from]] = spot[k];
     }
     memcpy(spot, sorted, (size_t)n * sizeof *spot);
 }

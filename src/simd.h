@@ -30,6 +30,7 @@
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
+typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* as many as doubles */
 
 /* Groups of four lanes: sweeps let each lane of a group stand for another candidate, and each group for
  * another receiver, so that sums over candidates are the same however wide a vector is. Vectors of two
@@ -42,15 +43,14 @@ enum {
     GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
 
-/* Four doubles or floats, the particles of a group, and eight floats, words or whole numbers, whatever the
- * registers. */
+/* Four doubles or floats, the particles of a group, and eight floats or words,
+ * whatever the registers. */
 typedef double four_double __attribute__((vector_size(32)));
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
 typedef float four_float_at __attribute__((vector_size(16), aligned(4), may_alias));
 typedef float eight_float_at __attribute__((vector_size(32), aligned(4), may_alias));
 typedef uint32_t eight_word __attribute__((vector_size(32)));
-typedef int64_t eight_long __attribute__((vector_size(64), may_alias));
 typedef uint32_t eight_word_at __attribute__((vector_size(32), aligned(4), may_alias));
 
 /* The same vectors at any address, and free to alias the arrays they are loaded from. */
