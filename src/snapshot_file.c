@@ -275,7 +275,7 @@ static bool write_slice(const struct growing *g, const struct slice *slice,
 static bool write_slices(const struct growing growing[D_COUNT], const struct slice *list, int64_t n,
                          int64_t chunk, snapshot_values *values_of, const void *context)
 {
-    const int threads = n < thread_count() ? (int)n : thread_count();
+    const int threads = thread_count(); /* fewer would have libgomp end some and start them again */
     char *const room = malloc((size_t)(threads * chunk) * PACK_ROOM);
     bool ok = room != NULL;
     const int64_t count = ok ? n : 0;
