@@ -11,11 +11,11 @@
 /* What decides the places of the particles of a cell. */
 struct spots {
     double at[2][CELL_CAPACITY];
-    int64_t
-        key[2]
-           [CELL_CAPACITY]; /* the same as whole numbers, which have an order whatever they are */
+    int64_t key[2][CELL_CAPACITY]; /* `at` as whole numbers, which always have an order */
     int64_t id[CELL_CAPACITY];
 };
+
+_Static_assert(CELL_CAPACITY % LANES_DOUBLE == 0, "a cell's spots fill whole vectors");
 
 /* Orders as the numbers do; what is not a number comes before or after all of them. */
 static int64_t key_of(double x)

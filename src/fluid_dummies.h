@@ -307,6 +307,8 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
     put_lanes(d, dens, LANE_DENS);
 }
 
+_Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
+
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
                                    const struct cells *c, int32_t cell, unsigned fx)
 {
