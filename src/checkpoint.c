@@ -503,7 +503,8 @@ static bool take_rest(const struct image *m, struct particles *p, const struct f
     return true;
 }
 
-/* A structure whose run held the fluid's force over its sub-steps owes the fluid nothing. */
+/* A structure whose run held the fluid's force over its sub-steps owes the fluid nothing; one whose run did
+ * not has no mean of that force. */
 static bool owes_nothing(const struct image *m, const struct field_info *info, void *data,
                          int64_t n)
 {
@@ -526,7 +527,7 @@ static enum err take_particles(const struct image *m, struct particles *p, enum 
         void *data = field_array(p, info);
         if (!data || info->keep != KEEP_STATE) continue;
         if (fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)) continue;
-        if (fork && (info->group & G_WETTED) && owes_nothing(m, info, data, n)) continue;
+        if (fork && (info->group & (G_WETTED | G_HELD)) && owes_nothing(m, info, data, n)) continue;
         TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
     return ERR_OK;

@@ -51,7 +51,7 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
         uy[i] = p->uy[i];
         if (free[i] != 0) continue;
         p->vx[i] = p->vy[i] = 0;
-        if (p->wx) p->wx[i] = p->wy[i] = p->ax[i] = p->ay[i] = 0;
+        if (p->wx) p->wx[i] = p->wy[i] = p->ax[i] = p->ay[i] = p->jx[i] = p->jy[i] = 0;
     }
     solid_place_driven(&s->solid, p, s->state.time);
     for (int64_t i = 0; i < p->n; i++) {

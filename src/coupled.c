@@ -138,12 +138,34 @@ double place_solid(struct particles *p)
  * own force with the delay of a step: taken as it is, it blew the gate up, with sub-steps within 400
  * steps and at a single rate within 4000. The fluid cannot follow anything faster than sound crosses h,
  * so it sees the mean over about that time. */
-double acceleration_weight(const struct simulation *s, double dt)
+double smoothing_lag(const struct simulation *s) { return s->fluid.k.h / s->fluid.k.c0; }
+
+double smoothing_weight(const struct simulation *s, double dt)
 {
-    return dt / (dt + s->fluid.k.h / s->fluid.k.c0);
+    return dt / (dt + smoothing_lag(s));
 }
 
-void advance_solid(struct simulation *s, double dt, int n, bool centred)
+/* T-35: what the fluid sees of a structure after sub-steps. */
+static void show_substeps(struct simulation *s, double dt, double carried)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const double per_dt = 1 / dt, newest = smoothing_weight(s, dt);
+    /* The mean acceleration is that of half a step and the lag ago, the mean velocity that of half a step:
+     * between that and now the acceleration is, at the middle, a quarter of a step old. */
+    const double half = 0.5 * dt, since = smoothing_lag(s) + 0.25 * dt;
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double ax = p->ax[i] - carried * p->jx[i], ay = p->ay[i] - carried * p->jy[i];
+        p->ax[i] = ax + newest * ((p->vx[i] - p->vx0[i]) * per_dt - ax);
+        p->ay[i] = ay + newest * ((p->vy[i] - p->vy0[i]) * per_dt - ay);
+        p->jx[i] += newest * ((p->ax[i] - ax) * per_dt - p->jx[i]);
+        p->jy[i] += newest * ((p->ay[i] - ay) * per_dt - p->jy[i]);
+        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * (p->ax[i] + since * p->jx[i]);
+        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * (p->ay[i] + since * p->jy[i]);
+    }
+}
+
+void advance_solid(struct simulation *s, double dt, int n, bool centred, double carried)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
 #pragma omp parallel for simd schedule(static)
@@ -158,16 +180,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
     s->state.solid_substeps += n;
     s->state.solid_evaluations += n;
     s->solid_way = sqrt(place_solid(p));
-    const double per_dt = 1 / dt, half = 0.5 * dt;
-    const double newest = acceleration_weight(s, dt);
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->ax[i] += newest * ((p->vx[i] - p->vx0[i]) * per_dt - p->ax[i]);
-        p->ay[i] += newest * ((p->vy[i] - p->vy0[i]) * per_dt - p->ay[i]);
-        /* T-35: the mean velocity belongs to the middle of the step. */
-        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * p->ax[i];
-        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * p->ay[i];
-    }
+    show_substeps(s, dt, carried);
 }
 
 /* Steps of a lone solid that are taken between two looks at its state. */

@@ -30,6 +30,25 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
     }
 }
 
+/* T-36a: the force that is held over sub-steps is that of their beginning; `ahead`: the time from there to
+ * the middle of their kicks. */
+static void carry_force(struct simulation *s, double ahead)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const double since = s->state.dt, newest = smoothing_weight(s, since);
+    const double per_time = ahead / (since + smoothing_lag(s));
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        /* A mean of nothing begins with the first force. */
+        const double fx = p->fx[i], fy = p->fy[i], old_x = p->mean_fx[i] != 0 ? p->mean_fx[i] : fx,
+                     old_y = p->mean_fy[i] != 0 ? p->mean_fy[i] : fy;
+        p->fx[i] += per_time * (fx - old_x);
+        p->fy[i] += per_time * (fy - old_y);
+        p->mean_fx[i] = old_x + newest * (fx - old_x);
+        p->mean_fy[i] = old_y + newest * (fy - old_y);
+    }
+}
+
 void verlet_step(struct simulation *s, double t_limit)
 {
     evaluate_start(s);
@@ -40,7 +59,11 @@ void verlet_step(struct simulation *s, double t_limit)
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
     advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
-    if (s->effects & FX_COUPLING) advance_solid(s, dt, timestep_substeps(s, dt), false);
+    if (s->effects & FX_COUPLING) {
+        const int n = timestep_substeps(s, dt);
+        if (s->effects & FX_HELD_FORCE) carry_force(s, 0.5 * (dt - dt / n));
+        advance_solid(s, dt, n, false, 0);
+    }
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);
     phase_add(s, PHASE_update, clock);

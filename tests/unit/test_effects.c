@@ -72,6 +72,9 @@ static const struct {
     {TOP FLUID WALL "[probe p]\nquantity = force\nbody = bed\n", FX_FLUID | FX_WALL | FX_WALL_FORCE,
      EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
+    {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\ninterface = held\n",
+     FX_FLUID | FX_VERLET | FX_SOLID | FX_COUPLING | FX_HELD_FORCE, EFFECT_HELD_FORCE,
+     "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
 };
 

@@ -280,44 +280,69 @@ static void look(void *context, double time, const struct particles *p, double *
     memcpy(seen.y, p->y, bytes);
     memcpy(seen.u, p->wx, bytes);
     memcpy(seen.v, p->wy, bytes);
+    memcpy(seen.ax, p->ax, bytes);
+    memcpy(seen.ay, p->ay, bytes);
 }
 
-/* With sub-steps the fluid sees the structure's mean velocity over the step, carried on to the instant of the
- * evaluation (half a step and `ahead` steps) with an acceleration that follows the mean over about h/c0
- * (T-35, T-14). */
+/* T-35 for one component: u, v, w of the particle when a step starts, u1, v1 after it; a and j are the mean
+ * acceleration and its rate of change, of the instant `old` before the step's start. Advances a, j and w. */
+struct shown {
+    double x, w, a; /* what the evaluation at `on` within the step is to see */
+};
+static struct shown show(double u, double v, double u1, double v1, double *w, double *a, double *j,
+                         double on, double dt, double dt_old)
+{
+    const double lag = 0.0135 / 20, old = lag + 0.5 * dt_old;
+    const double on_the_way = *a + (old + 0.5 * on) * *j;
+    const struct shown s = {u + on * (*w + 0.5 * on * on_the_way), *w + on * on_the_way,
+                            on > 0 ? *a + (old + on - lag) * *j : *a};
+    const double a1 = *a + dt / (dt + lag) * ((v1 - v) / dt - *a);
+    *j += dt / (dt + lag) * ((a1 - *a) / dt - *j);
+    *a = a1;
+    /* From the middle of the step to its end; on the way the acceleration is a quarter of a step old. */
+    *w = (u1 - u) / dt + 0.5 * dt * (a1 + (lag + 0.5 * dt - 0.25 * dt) * *j);
+    return s;
+}
+
+/* With sub-steps the fluid sees the structure carried on to the instant of the evaluation, `ahead` steps on,
+ * with an acceleration that follows the mean over about h/c0 (T-35, T-14). */
 static void see_substeps(const char *integrator, double ahead)
 {
     open(integrator, "numerics.multirate=on");
     rig.sim.dt_solid = 0.3e-5;
     TEST_ASSERT_EQUAL(ERR_OK, simulation_push(&rig.sim, KIND_SOLID, look, NULL, &rig.diag));
-    for (int step = 0; step < 3; step++) {
+    static double a[2][MOST], j[2][MOST], w[2][MOST];
+    memset(a, 0, sizeof a);
+    memset(j, 0, sizeof j);
+    memcpy(w[0], solid->wx, (size_t)solid->n * sizeof *w[0]);
+    memcpy(w[1], solid->wy, (size_t)solid->n * sizeof *w[1]);
+    double dt_old = 0;
+    for (int step = 0; step < 4; step++) {
         take_solid(&s0);
-        static double ax[MOST], ay[MOST], wx[MOST], wy[MOST];
-        memcpy(ax, solid->ax, (size_t)solid->n * sizeof *ax);
-        memcpy(ay, solid->ay, (size_t)solid->n * sizeof *ay);
-        memcpy(wx, solid->wx, (size_t)solid->n * sizeof *wx);
-        memcpy(wy, solid->wy, (size_t)solid->n * sizeof *wy);
         rig_steps(&rig, 1, 1);
-        const double dt = rig.sim.state.dt, weight = dt / (dt + 0.0135 / 20), on = ahead * dt;
+        const double dt = rig.sim.state.dt;
         TEST_ASSERT_EQUAL_INT(4, rig.sim.substeps);
         for (int64_t i = 0; i < solid->n; i++) {
-            const double way_x = on * (wx[i] + 0.5 * on * ax[i]),
-                         way_y = on * (wy[i] + 0.5 * on * ay[i]);
-            assert_near(1e-15, solid->X[i] + s0.x[i] + way_x, seen.x[i], "x seen");
-            assert_near(1e-15, solid->Y[i] + s0.y[i] + way_y, seen.y[i], "y seen");
-            assert_near(1e-13, wx[i] + on * ax[i], seen.u[i], "wx seen");
-            assert_near(1e-13, wy[i] + on * ay[i], seen.v[i], "wy seen");
-            const double half = 0.5 * dt;
-            assert_near(1e-10, (solid->ux[i] - s0.x[i]) / dt + half * solid->ax[i], solid->wx[i],
-                        "wx");
-            assert_near(1e-10, (solid->uy[i] - s0.y[i]) / dt + half * solid->ay[i], solid->wy[i],
-                        "wy");
-            const double mean_x = (solid->vx[i] - s0.u[i]) / dt,
-                         mean_y = (solid->vy[i] - s0.v[i]) / dt;
-            const double tolerance = 1e-11 * (1 + fabs(mean_x) + fabs(mean_y));
-            assert_near(tolerance, ax[i] + weight * (mean_x - ax[i]), solid->ax[i], "ax");
-            assert_near(tolerance, ay[i] + weight * (mean_y - ay[i]), solid->ay[i], "ay");
+            const struct shown x = show(s0.x[i], s0.u[i], solid->ux[i], solid->vx[i], &w[0][i],
+                                        &a[0][i], &j[0][i], ahead * dt, dt, dt_old);
+            const struct shown y = show(s0.y[i], s0.v[i], solid->uy[i], solid->vy[i], &w[1][i],
+                                        &a[1][i], &j[1][i], ahead * dt, dt, dt_old);
+            assert_near(1e-15, solid->X[i] + x.x, seen.x[i], "x seen");
+            assert_near(1e-15, solid->Y[i] + y.x, seen.y[i], "y seen");
+            assert_near(1e-10, x.w, seen.u[i], "wx seen");
+            assert_near(1e-10, y.w, seen.v[i], "wy seen");
+            const double tolerance = 1e-10 * (1 + fabs(x.a) + fabs(y.a));
+            assert_near(tolerance, x.a, seen.ax[i], "ax seen");
+            assert_near(tolerance, y.a, seen.ay[i], "ay seen");
+            assert_near(1e-10, w[0][i], solid->wx[i], "wx");
+            assert_near(1e-10, w[1][i], solid->wy[i], "wy");
         }
+        dt_old = dt;
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        const double tolerance = 1e-10 * (1 + fabs(a[0][i]) + fabs(a[1][i]));
+        assert_near(tolerance, a[0][i], solid->ax[i], "ax");
+        assert_near(tolerance, a[1][i], solid->ay[i], "ay");
     }
 }
 
@@ -328,14 +353,8 @@ static void test_fluid_sees_the_mean_of_substeps_carried_on(void)
     see_substeps("integrator=leapfrog", 0);
 }
 
-/* Four sub-steps of Eq. 27 are four steps of Eq. 27 with the fluid's force held. */
-static void test_substeps_are_steps_with_the_force_held(void)
+static void four_steps_of_eq_27(double dt)
 {
-    open("integrator=verlet", "numerics.multirate=on");
-    rig.sim.dt_solid = 0.3e-5;
-    rates();
-    take_solid(&s0);
-    const double dt = 1e-5 / 4;
     for (int k = 0; k < 4; k++) {
         solid_stress(&rig.sim.solid, solid);
         solid_forces(&rig.sim.solid, solid);
@@ -346,14 +365,64 @@ static void test_substeps_are_steps_with_the_force_held(void)
             solid->uy[i] += dt * solid->vy[i];
         }
     }
-    take_solid(&s1);
-    put_solid(&s0);
-    rig_steps(&rig, 1, 1);
-    TEST_ASSERT_EQUAL_INT(4, rig.sim.substeps);
-    for (int64_t i = 0; i < solid->n; i++) {
-        assert_near(1e-17, s1.x[i], solid->ux[i], "ux");
-        assert_near(1e-13, s1.u[i], solid->vx[i], "vx");
+}
+
+/* Four sub-steps of Eq. 27 are four steps of Eq. 27 with the fluid's force held: in the first step that of
+ * the evaluation, later carried on to the middle of the kicks, 3/8 of a step, by the rate at which its mean
+ * over about h/c0 changes (T-36a). */
+static void test_substeps_are_steps_with_the_force_held(void)
+{
+    open("integrator=verlet", "numerics.multirate=on");
+    rig.sim.dt_solid = 0.3e-5;
+    static double f[2][MOST], mean[2][MOST];
+    const double dt = 1e-5, lag = 0.0135 / 20;
+    for (int step = 0; step < 3; step++) {
+        rates();
+        take_solid(&s0);
+        double most = 0;
+        for (int64_t i = 0; i < solid->n; i++) {
+            double *const force[2] = {&solid->fx[i], &solid->fy[i]};
+            for (int c = 0; c < 2; c++) {
+                f[c][i] = *force[c];
+                if (step == 0) mean[c][i] = f[c][i];
+                const double rate = (f[c][i] - mean[c][i]) / (dt + lag);
+                *force[c] += 0.375 * dt * rate;
+                if (step > 0) mean[c][i] += dt * rate;
+                most = fmax(most, fabs(dt * rate) / (1e-9 + fabs(f[c][i])));
+            }
+        }
+        TEST_ASSERT_TRUE(step == 0 ? most == 0 : most > 1e-3);
+        four_steps_of_eq_27(dt / 4);
+        take_solid(&s1);
+        put_solid(&s0);
+        memcpy(solid->fx, f[0], (size_t)solid->n * sizeof *f[0]);
+        memcpy(solid->fy, f[1], (size_t)solid->n * sizeof *f[1]);
+        rig_steps(&rig, 1, 1);
+        TEST_ASSERT_EQUAL_INT(4, rig.sim.substeps);
+        for (int64_t i = 0; i < solid->n; i++) {
+            assert_near(1e-17, s1.x[i], solid->ux[i], "ux");
+            assert_near(1e-17, s1.y[i], solid->uy[i], "uy");
+            assert_near(1e-12, s1.u[i], solid->vx[i], "vx");
+            assert_near(1e-12, s1.v[i], solid->vy[i], "vy");
+        }
     }
+}
+
+/* Where the structure answers to the fluid within its sub-steps, or has none, its force is taken as it is. */
+static void test_the_force_is_carried_only_where_it_is_held(void)
+{
+    open("integrator=verlet", "numerics.multirate=on");
+    TEST_ASSERT_TRUE(rig.sim.effects & FX_HELD_FORCE);
+    rig_close(&rig);
+    open("integrator=verlet", "numerics.multirate=off");
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_HELD_FORCE);
+    rig_close(&rig);
+    open("integrator=verlet", "numerics.interface=impedance");
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_HELD_FORCE);
+    rig_close(&rig);
+    open("integrator=symplectic", "numerics.multirate=on");
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_HELD_FORCE);
+    TEST_ASSERT_NULL(solid->mean_fx);
 }
 
 /* A block of fluid without pressure falls: v = g t and y = g t^2/2 are exact for every scheme, whatever
@@ -393,6 +462,7 @@ int main(void)
     RUN_TEST(test_leapfrog_steps);
     RUN_TEST(test_fluid_sees_the_mean_of_substeps_carried_on);
     RUN_TEST(test_substeps_are_steps_with_the_force_held);
+    RUN_TEST(test_the_force_is_carried_only_where_it_is_held);
     RUN_TEST(test_free_fall_with_uneven_steps);
     return UNITY_END();
 }
