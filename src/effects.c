@@ -34,11 +34,11 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
 #define LIGHT_SOLID called_by(by, SECTION_solid, "density", first_light(s))
 #define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
 
-/* The first body no heavier than the fluid; -1: none. */
+/* The first light body; -1: none. */
 static int first_light(const struct scene *s)
 {
     for (int k = 0; k < s->n_solid; k++)
-        if (s->n_fluid && s->solid[k].density <= s->fluid[0].density) return k;
+        if (scene_is_light(s, k)) return k;
     return -1;
 }
 

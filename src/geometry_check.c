@@ -99,33 +99,19 @@ static void warn_see_through(struct sampler *g, const struct region *region, int
               directly ? "a finer dp" : "numerics.sides = one");
 }
 
-/* A force of the fluid that is held during the sub-steps has given energy to bodies of up to 1.5 times the
- * fluid's density and four particles across (docs/stability.md); those that are four across mostly hold, and
- * are left to the guard. */
-static void warn_light_and_thin(struct sampler *g, const struct region *region, double across)
+/* Only where the case says so is the fluid's force on a light body held. */
+static void warn_light(struct sampler *g, const struct region *region)
 {
     const struct scene *const s = g->scene;
-    const double ratio =
-        s->n_fluid ? s->solid[region->body].density / s->fluid[0].density : HUGE_VAL;
-    if (ratio > 1.5 || across > 3 || s->numerics.multirate == MULTIRATE_OFF ||
-        effects_of_scene(s) & FX_IMPEDANCE)
+    if (!scene_is_light(s, region->body) || s->numerics.multirate == MULTIRATE_OFF ||
+        s->numerics.interface != INTERFACE_HELD)
         return;
     char place[PLACE_TEXT];
     scene_place(s, region->line, place);
-    diag_warn(
-        g->diag,
-        "%s: [solid %s] is %.3g times as dense as the fluid and %.0f particles thick: it may gain "
-        "energy from nowhere; numerics.interface = impedance would mend it",
-        place, region->name, ratio, across);
-}
-
-/* Whether a body is bonded to another: its thickness is not its own. */
-static bool is_bonded(const struct scene *s, int body)
-{
-    for (int k = 0; k < s->n_solid; k++)
-        if (s->solid[k].joined[0] && (k == body || scene_find_solid(s, s->solid[k].joined) == body))
-            return true;
-    return false;
+    diag_warn(g->diag,
+              "%s: [solid %s] is %.3g times as dense as the fluid, whose force is held over "
+              "sub-steps: it may gain energy from nowhere; numerics.interface = auto mends it",
+              place, region->name, s->solid[region->body].density / s->fluid[0].density);
 }
 
 static enum err check_solid(struct sampler *g, const struct region *region)
@@ -148,11 +134,11 @@ static enum err check_solid(struct sampler *g, const struct region *region)
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
                   "will be inaccurate",
                   place, region->name, across, region->dp);
-    if (is_bonded(g->scene, region->body)) return ERR_OK;
+    warn_light(g, region);
+    if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
     /* At the default h/dp this is said of two particles across only, which is one warning too many. */
     if (across > 2 || (across + 1) * region->dp < 2 * g->scene->h)
         warn_see_through(g, region, region->line, across * region->dp);
-    warn_light_and_thin(g, region, across);
     return ERR_OK;
 }
 

@@ -210,6 +210,12 @@ int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
 /* Spacing of a solid's particles, m. */
 double scene_solid_dp(const struct scene *s, int solid);
+/* Whether a solid is bonded to another: its thickness is not its own. */
+bool scene_is_bonded(const struct scene *s, int solid);
+/* Whether the fluid's force, held over sub-steps, may give a solid energy (docs/stability.md): it is no
+ * heavier than the fluid, or up to 1.5 times as heavy, not bonded to another and at most three particles
+ * across. */
+bool scene_is_light(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);
 
 /* Whether the snapshots of a scene have a field of pointdata.def. */

@@ -10,7 +10,7 @@
 #include <string.h>
 
 static const char gate[] =
-    "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n"
+    "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[numerics]\ninterface = held\n"
     "[fluid water]\nshape = box 0, 0, 0.1, 0.14\nsound_speed = 23.4\nsurface = 0.14\n"
     "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.2, 0\n"

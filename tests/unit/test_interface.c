@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* A light block in the middle of water, free to move, no gravity: nothing acts from outside. */
 static const char block[] =
@@ -27,25 +28,52 @@ static void open(const char *set, const char *another)
     solid = &rig.sim.kind[KIND_SOLID];
 }
 
-static void test_only_where_no_body_is_heavier(void)
+static void held(const char *set, const char *another)
 {
-    open("block.density=1001", NULL);
-    TEST_ASSERT_FALSE(rig.sim.effects & FX_IMPEDANCE);
-    TEST_ASSERT_NULL(solid->owed_x);
+    open(set, another);
+    TEST_ASSERT_FALSE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, set);
     rig_close(&rig);
+}
+
+static void answered(const char *set, const char *another)
+{
+    open(set, another);
+    TEST_ASSERT_TRUE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, set);
+    rig_close(&rig);
+}
+
+/* No heavier than the fluid, or up to 1.5 times and three particles across; or by name. */
+static void test_only_where_a_body_is_light(void)
+{
+    static const char three[] = "block.shape=box 0.1, 0.1, 0.13, 0.14";
+    held("block.density=1001", NULL);
+    held("block.density=1501", three);
+    held("block.density=1500", "block.shape=polyline thickness 0.04: 0.1, 0.1; 0.14, 0.1");
+    answered("block.density=1500", three);
+    answered("block.density=1500", "block.shape=polyline thickness 0.03: 0.1, 0.1; 0.14, 0.1");
+    answered("block.density=1500", "block.shape=circle 0.12, 0.12, 0.015");
+    answered("block.density=1001", "numerics.interface=impedance");
+    held("numerics.multirate=off", NULL);
+    held("numerics.interface=held", NULL);
     open("numerics.interface=held", NULL);
-    TEST_ASSERT_FALSE(rig.sim.effects & FX_IMPEDANCE);
     TEST_ASSERT_NULL(solid->owed_x);
-    rig_close(&rig);
-    open("numerics.multirate=off", NULL);
-    TEST_ASSERT_FALSE(rig.sim.effects & FX_IMPEDANCE);
-    rig_close(&rig);
-    open("block.density=1001", "numerics.interface=impedance");
-    TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
     rig_close(&rig);
     open(NULL, NULL);
     TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
     assert_near(1e-12, 1000 * 20, rig.sim.solid.impedance, "rho0 c0");
+}
+
+/* Layers that are bonded to each other are as thick as both. */
+static void test_not_where_thin_layers_are_bonded(void)
+{
+    rig_open(&rig, block, "block.density=1200", "block.shape=box 0.1, 0.1, 0.12, 0.14", NULL);
+    TEST_ASSERT_TRUE(scene_is_light(&rig.scene, 0));
+    rig_close(&rig);
+    static char two[1024];
+    snprintf(two, sizeof two, "%s%s", block,
+             "[solid layer]\nlike = block\nshape = box 0.12, 0.1, 0.14, 0.14\njoined = block\n");
+    rig_open(&rig, two, "block.density=1200", "block.shape=box 0.1, 0.1, 0.12, 0.14", NULL);
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_IMPEDANCE);
 }
 
 /* A pressure of 1 Pa everywhere presses with the force of the height on the middle of a straight side:
@@ -153,7 +181,8 @@ static void test_dry_particles_owe_less_and_less(void)
 int main(void)
 {
     UNITY_BEGIN();
-    RUN_TEST(test_only_where_no_body_is_heavier);
+    RUN_TEST(test_only_where_a_body_is_light);
+    RUN_TEST(test_not_where_thin_layers_are_bonded);
     RUN_TEST(test_surface_of_a_straight_side);
     RUN_TEST(test_answer_and_return_by_hand);
     RUN_TEST(test_momentum_closes);
