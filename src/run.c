@@ -6,6 +6,7 @@
 #include "probes.h"
 #include "report.h"
 #include "run_change.h"
+#include "run_due.h"
 #include "series.h"
 #include "snapshot.h"
 
@@ -16,13 +17,6 @@
 #include <unistd.h>
 
 enum output { OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
-
-/* An output on the grid k * interval of simulated time. */
-struct due {
-    double interval; /* s; 0: never */
-    int64_t k;       /* next one */
-    double written;  /* time of the last one; -1: none */
-};
 
 struct run {
     const struct sphfsi_options *options;
@@ -58,45 +52,18 @@ static const char ledger_header[] =
 
 /* --- when --- */
 
-static double due_time(const struct due *u)
-{
-    return u->interval > 0 ? session_time((double)u->k * u->interval) : (double)INFINITY;
-}
-
-/* The time up to which a restart keeps what is written. A row off its grid stands there because a run
- * ended; one that does not end there does not write it. */
-static double kept_until(double interval, double time)
-{
-    if (interval == 0 || session_time(round(time / interval) * interval) == time) return time;
-    return nextafter(time, -1);
-}
-
-static void pass(struct due *u, double time)
-{
-    u->written = time;
-    while (due_time(u) <= time) u->k++;
-}
-
-static void set_interval(const struct run *r, struct due *u, double interval, double time)
-{
-    u->interval = interval;
-    u->k = interval > 0 ? (int64_t)(time / interval) : 0;
-    while (r->options->restart && due_time(u) < time) u->k++;
-    /* A run that was stopped right at an output may have written it, or not. */
-    u->k += due_time(u) <= u->written;
-}
-
 static void set_intervals(struct run *r, double time)
 {
     const struct scene_output *out = &r->session.scene.output;
+    const bool again = r->options->restart;
     const double interval[OUT_COUNT] = {
         [OUT_LEDGER] = out->ledger_interval,
         [OUT_SNAPSHOT] = out->snapshot_interval,
         [OUT_CHECKPOINT] = out->checkpoint_interval,
     };
-    for (int k = 0; k < OUT_COUNT; k++) set_interval(r, &r->due[k], interval[k], time);
+    for (int k = 0; k < OUT_COUNT; k++) due_begin(&r->due[k], interval[k], time, again);
     for (int k = 0; k < r->probes.n_files; k++)
-        set_interval(r, &r->probe_due[k], r->probes.file[k].interval, time);
+        due_begin(&r->probe_due[k], r->probes.file[k].interval, time, again);
     /* The state at the beginning is the case itself, or the checkpoint that is forked. */
     r->due[OUT_CHECKPOINT].k += !r->options->restart;
 }
@@ -173,26 +140,39 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }
 
+/* A full disk need not end a run whose user wants its rows more than its pictures; the next snapshot
+ * is tried again. The file with the name stays as it was. */
+static enum err judge_snapshot(struct run *r, enum err e, double time, struct diag *why)
+{
+    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
+        return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
+    r->record.snapshots_missed++;
+    diag_warn(why, "the snapshot at %.6g s is left out, the run goes on: %s", time, why->text);
+    return ERR_OK;
+}
+
+static enum err settle_snapshot(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_settle(&r->snapshots, &why);
+    return judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
+}
+
+static enum err write_snapshot(struct run *r)
+{
+    TRY(settle_snapshot(r));
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_write(&r->snapshots, r->s, &why);
+    return judge_snapshot(r, e, r->s->state.time, &why);
+}
+
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
+    TRY(settle_snapshot(r));
     TRY(capture(r, r->diag));
     TRY(store(r, r->diag));
     return write_summary(r, "running", "", r->diag);
-}
-
-/* A full disk need not end a run whose user wants its rows more than its pictures; the next snapshot
- * is tried again. The file with the name stays as it was. */
-static enum err write_snapshot(struct run *r)
-{
-    struct diag why = session_diag(r->options);
-    const enum err e = snapshots_write(&r->snapshots, r->s, &why);
-    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
-        return e ? diag_fail(r->diag, e, "%s", why.text) : ERR_OK;
-    r->record.snapshots_missed++;
-    diag_warn(&why, "the snapshot at %.6g s is left out, the run goes on: %s", r->s->state.time,
-              why.text);
-    return ERR_OK;
 }
 
 static enum err write_output(struct run *r, enum output what)
@@ -204,11 +184,6 @@ static enum err write_output(struct run *r, enum output what)
     case OUT_COUNT: break;
     }
     return ERR_OK;
-}
-
-static bool is_due(const struct due *u, double time, bool at_end)
-{
-    return due_time(u) <= time || (at_end && u->written < time);
 }
 
 static double phases_so_far(const struct simulation *s)
@@ -224,14 +199,14 @@ static enum err write_due(struct run *r, bool at_end)
 {
     const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
     for (int k = 0; k < r->probes.n_files; k++) {
-        if (!is_due(&r->probe_due[k], time, at_end)) continue;
+        if (!due_now(&r->probe_due[k], time, at_end)) continue;
         TRY(write_probes(r, k));
-        pass(&r->probe_due[k], time);
+        due_pass(&r->probe_due[k], time);
     }
     for (int k = 0; k < OUT_COUNT; k++) {
-        if (!is_due(&r->due[k], time, at_end)) continue;
+        if (!due_now(&r->due[k], time, at_end)) continue;
         TRY(write_output(r, (enum output)k));
-        pass(&r->due[k], time);
+        due_pass(&r->due[k], time);
     }
     if (!at_end && image_share * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
@@ -323,7 +298,8 @@ static void leave_state(struct run *r, enum err why)
     if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
         diag_warn(&second, "the last sound state could not be kept: %s", second.text);
     second.code = ERR_OK;
-    if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->s, &second))
+    if (why == ERR_GUARD &&
+        (snapshots_write(&r->snapshots, r->s, &second) || snapshots_settle(&r->snapshots, &second)))
         diag_warn(&second, "the state at the stop could not be kept: %s", second.text);
     second.code = ERR_OK;
     const char *reason = why == ERR_GUARD       ? "guard"
@@ -410,15 +386,16 @@ static enum err start_again(struct run *r)
     /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
     TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
-                         kept_until(out->snapshot_interval, time), &r->due[OUT_SNAPSHOT].written,
-                         r->diag));
+                         due_kept_until(out->snapshot_interval, time),
+                         &r->due[OUT_SNAPSHOT].written, r->diag));
     TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1,
-                      kept_until(out->ledger_interval, time), row, &r->due[OUT_LEDGER].written,
+                      due_kept_until(out->ledger_interval, time), row, &r->due[OUT_LEDGER].written,
                       r->diag));
     for (int k = 0; k < r->probes.n_files; k++) {
         const struct probe_file *const f = &r->probes.file[k];
         TRY(series_resume(&r->probe_rows[k], r->folder.path, f->name, f->header,
-                          kept_until(f->interval, time), NULL, &r->probe_due[k].written, r->diag));
+                          due_kept_until(f->interval, time), NULL, &r->probe_due[k].written,
+                          r->diag));
     }
     r->due[OUT_CHECKPOINT].written = time;
     int k = 0;
@@ -521,6 +498,7 @@ static enum err carry_out(struct run *r)
         return failed;
     }
     compare(r);
+    TRY(settle_snapshot(r));
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",

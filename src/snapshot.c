@@ -215,27 +215,6 @@ static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulati
     return (file < 0 || H5Fclose(file) >= 0) && ok;
 }
 
-static bool sync_file(const char *path)
-{
-    const int fd = open(path, O_RDONLY | O_CLOEXEC);
-    const bool ok = fd >= 0 && fsync(fd) == 0;
-    if (fd >= 0) close(fd);
-    return ok;
-}
-
-/* The spare takes the name in one move, the file that had it becomes the spare. Where a file system
- * has no links the old one is gone, and the next spare is made anew. */
-static bool swap(const struct snapshots *w)
-{
-    char old[FOLDER_PATH];
-    if (snprintf(old, sizeof old, "%s.old", w->spare) >= FOLDER_PATH) return false;
-    unlink(old);
-    const bool linked = link(w->path, old) == 0;
-    if (rename(w->spare, w->path) != 0) return false;
-    if (linked) rename(old, w->spare);
-    return true;
-}
-
 /* HDF5 is mostly built for one thread: simulations in several take turns. */
 static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
 
@@ -261,8 +240,8 @@ static void quiet_end(struct quiet q)
     pthread_mutex_unlock(&turn);
 }
 
-static enum err update(const struct snapshots *w, int64_t steps, struct simulation *s,
-                       struct diag *d)
+/* Leaves the filled spare to be put in place. */
+static enum err update(struct snapshots *w, int64_t steps, struct simulation *s, struct diag *d)
 {
     const struct quiet q = quiet_begin();
     errno = 0;
@@ -275,9 +254,8 @@ static enum err update(const struct snapshots *w, int64_t steps, struct simulati
                          "%s: a snapshot cannot be written: %s; those before it are kept", w->path,
                          why ? strerror(why) : "HDF5 reports a failure");
     }
-    if (!sync_file(w->spare) || !swap(w))
-        return diag_fail(d, ERR_IO, "%s: cannot be put in place: %s", w->path, strerror(errno));
-    return folder_sync(w->folder, d);
+    placing_begin(&w->placing, w->folder, w->path, w->spare);
+    return ERR_OK;
 }
 
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
@@ -334,17 +312,27 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
                          w->path);
     if (keep == all) return ERR_OK;
     TRY(update(w, keep, NULL, d));
+    TRY(snapshots_settle(w, d));
     unlink(w->spare);
     return ERR_OK;
 }
 
+enum err snapshots_settle(struct snapshots *w, struct diag *d)
+{
+    return placing_end(&w->placing, d);
+}
+
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d)
 {
+    TRY(snapshots_settle(w, d));
     simulation_refresh(s);
     return update(w, -1, s, d);
 }
 
 void snapshots_close(struct snapshots *w)
 {
+    struct diag unheard = {.code = ERR_OK};
+    const enum err e = snapshots_settle(w, &unheard);
+    (void)e;
     if (w->spare[0]) unlink(w->spare);
 }

@@ -6,6 +6,7 @@
 #include "folder.h"
 #include "simulation.h"
 #include "snapshot_file.h"
+#include "snapshot_place.h"
 
 /* A snapshot is appended to a spare copy, which then takes the name; so the file with the name is
  * whole at any moment, and the other one lags a snapshot behind and is caught up first. */
@@ -14,6 +15,7 @@ struct snapshots {
     const struct scene *scene;
     struct snapshot_layout layout;
     const char *version; /* of the program */
+    struct placing placing;
 };
 
 /* Begins with no snapshot, or goes on with those up to `time`; `last` is the time of the last one,
@@ -24,9 +26,12 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
                           const char *version, double time, double *last, struct diag *d)
     SPHFSI_CHECKED;
 
+/* Appends one. It has its place in the file with the name when snapshots_settle or the next call comes
+ * back: the disk is waited for beside the simulation. */
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+enum err snapshots_settle(struct snapshots *w, struct diag *d) SPHFSI_CHECKED;
 
-/* Removes the spare. */
+/* Settles, and removes the spare. */
 void snapshots_close(struct snapshots *w);
 
 #endif

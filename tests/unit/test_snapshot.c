@@ -42,6 +42,7 @@ static void write_one(double time)
     simulation.state.time = time;
     simulation.kind[KIND_FLUID].x[0] = time;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_write(&writer, &simulation, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_settle(&writer, &diag), diag.text);
 }
 
 /* Reads a whole dataset of doubles; returns its items. */
@@ -151,6 +152,22 @@ static void what_cannot_be_written_is_named(void)
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "lost/fields.vtkhdf"));
 }
 
+/* What goes wrong while the disk is waited for is said by the next call. */
+static void a_place_that_is_taken_is_said_later(void)
+{
+    begin(tiny_path("taken"));
+    mkdir(writer.path, 0777);
+    mkdir(tiny_path("taken/fields.vtkhdf/kept"), 0777);
+    struct placing placing = {.begun = false};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, placing_end(&placing, &diag));
+    fclose(fopen(writer.spare, "w"));
+    placing_begin(&placing, writer.folder, writer.path, writer.spare);
+    TEST_ASSERT_EQUAL_INT(ERR_IO, placing_end(&placing, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "taken/fields.vtkhdf: cannot be put in place"));
+    diag.code = ERR_OK;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, placing_end(&placing, &diag));
+}
+
 static void fewer_particles_are_fewer_points(void)
 {
     static double counts[4];
@@ -158,6 +175,7 @@ static void fewer_particles_are_fewer_points(void)
     write_one(0);
     simulation.kind[KIND_FLUID].n -= 7;
     TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_write(&writer, &simulation, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_settle(&writer, &diag));
     TEST_ASSERT_EQUAL_UINT(2, read_all("VTKHDF/NumberOfPoints", counts, 4));
     TEST_ASSERT_TRUE(counts[0] - counts[1] == 7);
 }
@@ -242,6 +260,7 @@ int main(void)
     RUN_TEST(a_damaged_copy_is_made_anew);
     RUN_TEST(an_open_reader_does_no_harm);
     RUN_TEST(what_cannot_be_written_is_named);
+    RUN_TEST(a_place_that_is_taken_is_said_later);
     RUN_TEST(fewer_particles_are_fewer_points);
     RUN_TEST(fields_and_precision_are_chosen);
     RUN_TEST(positions_are_rounded_beside_single_precision);
