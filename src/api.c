@@ -160,6 +160,7 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
         if (!data) continue;
         if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
             solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+        if (kind == SPHFSI_FLUID && data == p->p) fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
         *view = (struct sphfsi_view){data, p->n, type_of(f), f->unit, f->meaning};
         return SPHFSI_OK;
     }

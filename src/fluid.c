@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fluid.h"
 
+#include "eos.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -221,4 +223,9 @@ void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const s
         phase_seconds[passes[k].phase] += now - since;
         since = now;
     }
+}
+
+void fluid_show(const struct fluid *f, struct particles *p)
+{
+    for (int64_t i = 0; i < p->n; i++) p->p[i] = eos_pressure(p->dens[i], f->k.rho0, f->k.c0);
 }

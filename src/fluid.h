@@ -75,7 +75,8 @@ struct fluid_sweeps {
     unsigned effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
     size_t lane_size; /* of an item */
     /* Pressure by the equation of state, and lanes of the fluid. */
-    void (*lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+    void (*lanes)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
+                  const struct cells *c);
     /* Renormalised gradient of the fluid's density, and its lanes. */
     void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                    const struct cells *c);
@@ -166,5 +167,8 @@ int32_t fluid_crowding(const struct cells *c);
  * The time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
                     double phase_seconds[PHASE_COUNT]);
+
+/* The fluid's own pressures into p, which no step needs. */
+void fluid_show(const struct fluid *f, struct particles *p);
 
 #endif

@@ -46,10 +46,17 @@ SPHFSI_INLINE void put_four(real *lanes, enum lane_field m, four_double four)
     *(four_real *)(void *)(lanes + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
 }
 
-/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. Their
- * pressures are handed over: those of the next cell may be another thread's, which is finding them. */
+/* Tait's pressure of four. */
+SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_constants *k)
+{
+    four_double pressure;
+    for (int r = 0; r < 4; r++) pressure[r] = eos_pressure(dens[r], k->rho0, k->c0);
+    return pressure;
+}
+
+/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
 SPHFSI_INLINE void fluid_lanes(const struct fluid *f, const struct particles *p, int32_t i,
-                               four_double pressure, const double centre[2], real *out)
+                               const double centre[2], real *out)
 {
     const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
     const four_double dens = FOUR(p->dens, i);
@@ -58,7 +65,7 @@ SPHFSI_INLINE void fluid_lanes(const struct fluid *f, const struct particles *p,
     put_four(out, LANE_U, FOUR(p->vx, i));
     put_four(out, LANE_V, FOUR(p->vy, i));
     put_four(out, LANE_VOLUME, volume / (1 + dens));
-    put_four(out, LANE_P, pressure);
+    put_four(out, LANE_P, pressure_of(dens, &f->k));
     put_four(out, LANE_DENS, dens);
 }
 
@@ -68,45 +75,24 @@ static void lanes_of_cell(const struct fluid *f, const struct particles *p, cons
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const struct lanes *const lanes = &f->lanes[KIND_FLUID];
     const double centre[2] = {cell_centre_x(c, cell), cell_centre_y(c, cell)};
-    const size_t first = (size_t)list->cluster[cell];
-    const int32_t full = list->count[cell] / CLUSTER, rest = list->count[cell] % CLUSTER;
-    for (int32_t m = 0; m < full; m++) {
-        const int32_t i = list->start[cell] + m * CLUSTER;
-        real *const out = cluster_lanes(lanes, first + (size_t)m);
-        fluid_lanes(f, p, i, FOUR(p->p, i), centre, out);
-        cluster_box(&lanes->boxes, first + (size_t)m, out, CLUSTER);
+    const int32_t count = list->count[cell];
+    for (int32_t first = 0; first < count; first += CLUSTER) {
+        const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
+        const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
+        real *const out = cluster_lanes(lanes, cluster);
+        fluid_lanes(f, p, list->start[cell] + first, centre, out);
+        if (own < CLUSTER) cluster_close(out, lanes->n, own);
+        cluster_box(&lanes->boxes, cluster, out, own);
     }
-    if (rest == 0) return;
-    const int32_t last = list->start[cell] + full * CLUSTER;
-    four_double pressure = {0};
-    for (int r = 0; r < rest; r++) pressure[r] = p->p[last + r];
-    real *const out = cluster_lanes(lanes, first + (size_t)full);
-    fluid_lanes(f, p, last, pressure, centre, out);
-    cluster_close(out, lanes->n, rest);
-    cluster_box(&lanes->boxes, first + (size_t)full, out, rest);
 }
 
-/* Pressure by the equation of state, then lanes, of some cells in a row. */
-static void lanes_of_row(const struct fluid *f, const struct particles *p, const struct cells *c,
-                         int32_t from, int32_t to)
-{
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
-    const double rho0 = f->k.rho0, c0 = f->k.c0;
-    const int64_t end = list->start[list->active[to - 1]] + list->count[list->active[to - 1]];
-#pragma omp simd
-    for (int64_t i = list->start[list->active[from]]; i < end; i++)
-        p->p[i] = eos_pressure(p->dens[i], rho0, c0);
-    for (int32_t k = from; k < to; k++) lanes_of_cell(f, p, c, list->active[k]);
-}
-
-static void SWEEP(lanes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+static void SWEEP(lanes)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
                          const struct cells *c)
 {
-    enum { ROW = 16 }; /* what a row reads stays in the first cache */
     const int32_t n = c->kind[KIND_FLUID].n_active;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < n; k += ROW)
-        lanes_of_row(f, &kinds[KIND_FLUID], c, k, k + ROW < n ? k + ROW : n);
+    for (int32_t k = 0; k < n; k++)
+        lanes_of_cell(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,

@@ -95,8 +95,8 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d) S
  * everything derived. The next step gives the same bits as in the uninterrupted run. */
 enum err simulation_resume(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
-/* Brings DERIVED fields that output shows (pressure of fluid, wall and solid; displacement gradient)
- * up to date with the state, without changing the state. */
+/* Brings DERIVED fields that output shows (pressure of wall and solid; displacement gradient) up to date
+ * with the state, without changing the state. */
 void simulation_refresh(struct simulation *s);
 
 /* Energy, momentum and extremes now; calls simulation_refresh. */

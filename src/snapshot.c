@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "snapshot.h"
 
+#include "eos.h"
 #include "snapshot_file.h"
 
 #include <errno.h>
@@ -40,7 +41,9 @@ static double real_value(enum data what, const struct simulation *s, enum kind k
     switch (what) {
     case D_POINTS: return vector_value(p->x[i], p->y[i], column);
     case D_VELOCITY: return vector_value(p->vx[i], p->vy[i], column);
-    case D_PRESSURE: return p->p ? p->p[i] : 0;
+    case D_PRESSURE:
+        if (kind == KIND_FLUID) return eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
+        return p->p ? p->p[i] : 0;
     case D_VON_MISES: return solid_von_mises(sigma);
     case D_DET_F: return det;
     case D_DENSITY:

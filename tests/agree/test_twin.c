@@ -82,7 +82,7 @@ static void compare_fluid(double tolerance)
         size_p = fmax(size_p, fabs(q->p));
         top_a = fmax(top_a, hypot(p->ax[i] - q->ax, p->ay[i] - q->ay));
         top_rho = fmax(top_rho, fabs(rho0 * p->ddens[i] - q->drho));
-        top_p = fmax(top_p, fabs(p->p[i] - q->p));
+        top_p = fmax(top_p, fabs(rig_pressure(&rig.sim, i) - q->p));
         if (!p->spread) continue;
         /* Both are of the size of 1/h and 1. */
         assert_near(tolerance / twin.h, q->cx, p->crowd_x[i], "gradient of the concentration, x");

@@ -172,7 +172,7 @@ static void level(double *height, double *error)
     for (int64_t i = 0; i < p->n; i++) {
         const double x = p->x[i] - way, depth = 0.2 - p->y[i] - (x - 0.2) / 4;
         sum += p->y[i] + x / 4;
-        if (depth > 2 * dp) square_sum += square(p->p[i] - 1000 * 9.81 * depth);
+        if (depth > 2 * dp) square_sum += square(rig_pressure(&sim, i) - 1000 * 9.81 * depth);
     }
     *height = sum / (double)p->n;
     *error = sqrt(square_sum / (double)p->n) / (1000 * 9.81 * 0.2);

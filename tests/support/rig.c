@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "rig.h"
 
+#include "eos.h"
 #include "unity.h"
 
 #include <stdarg.h>
@@ -76,6 +77,11 @@ void rig_sort(struct rig *r)
                                     cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
     fluid_find_near(&r->sim.fluid, &r->sim.cells);
     r->sim.room = 0;
+}
+
+double rig_pressure(const struct simulation *s, int64_t i)
+{
+    return eos_pressure(s->kind[KIND_FLUID].dens[i], s->fluid.k.rho0, s->fluid.k.c0);
 }
 
 void rig_evaluate(struct rig *r)

@@ -37,6 +37,8 @@ void rig_refuses(const char *text, const char *why);
 void rig_sort(struct rig *r);
 /* One evaluation of the fluid's rates, the walls' pressures and the fluid's force on solids. */
 void rig_evaluate(struct rig *r);
+/* Tait's pressure of a fluid particle, Pa. */
+double rig_pressure(const struct simulation *s, int64_t i);
 
 /* Tests of small scenes run beside each other, and a barrier of threads that share a core costs more
  * than the work: one thread from here on. */

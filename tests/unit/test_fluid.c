@@ -68,8 +68,8 @@ static void test_pressure(void)
     place("w.density=1000", "gravity=0,0");
     evaluate(0, 0, 0, 0);
     check_forces(0.6822899792818219, 0, 0);
-    assert_near(1e-10, 1030.5050301001436, p->p[a], "P_a");
-    assert_near(1e-10, 2124.080966418286, p->p[b], "P_b");
+    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
+    assert_near(1e-10, 2124.080966418286, rig_pressure(&rig.sim, b), "P_b");
     TEST_ASSERT_TRUE(p->ddens[a] == 0);
 }
 
