@@ -122,7 +122,10 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
     }
     const size_t stagger = a->pieces++ * STAGGER_STEP % STAGGER_RANGE;
     const size_t all = want + overhead + stagger;
-    unsigned char *raw = rehearsed_failure() ? NULL : aligned_alloc(ARENA_ALIGN, all);
+    /* Those that fill large pages begin with one. */
+    const size_t align = all >= 2 * (size_t)LARGE_PAGE ? LARGE_PAGE : ARENA_ALIGN;
+    unsigned char *const raw =
+        rehearsed_failure() ? NULL : aligned_alloc(align, (all + align - 1) / align * align);
     if (!raw) {
         diag_fail(d, ERR_MEMORY, "%s: no memory for %zu bytes (%zu in use)", what, want, a->bytes);
         return NULL;
