@@ -151,8 +151,10 @@ static void show_substeps(struct simulation *s, double dt, double carried)
     struct particles *const p = &s->kind[KIND_SOLID];
     const double per_dt = 1 / dt, newest = smoothing_weight(s, dt);
     /* The mean acceleration is that of half a step and the lag ago, the mean velocity that of half a step:
-     * between that and now the acceleration is, at the middle, a quarter of a step old. */
-    const double half = 0.5 * dt, since = smoothing_lag(s) + 0.25 * dt;
+     * between that and now the acceleration is, at the middle, a quarter of a step old. With leapfrog's step,
+     * two fifths of the lag, carrying that on drove the gate (docs/theory.md, Sec. 7). */
+    const double half = 0.5 * dt;
+    const double since = s->effects & FX_LEAPFROG ? 0 : smoothing_lag(s) + 0.25 * dt;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i] - carried * p->jx[i], ay = p->ay[i] - carried * p->jy[i];
