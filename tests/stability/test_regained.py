@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Energy that comes back once it is lost, at the gate of cases/gate.cfg: what sub-steps and the fluid see of each
-other late is a friction of the wrong sign (docs/theory.md, Sec. 7). Limits in J/m, of rows at 1 ms: with
-the mean velocity half a step old it was 2.8e-5 (Verlet) and 2.3e-5 (symplectic); leapfrog, with the
+"""Energy that comes back once it is lost, at the gate of cases/gate.cfg: what sub-steps and the fluid see of
+each other late is a friction of the wrong sign (docs/theory.md, Sec. 7). Limits in J/m, of rows at 1 ms: with
+the mean velocity half a step old it was 2.7e-5 (Verlet) and 2.3e-5 (symplectic); leapfrog, with the
 acceleration carried on by its rate of change, regained 9.5e-4 about 0.02 s."""
 import subprocess
 import sys
