@@ -426,7 +426,8 @@ bool scene_is_bonded(const struct scene *s, int solid)
     return false;
 }
 
-/* Least extent, m: of the box around all shapes, or the thickness of a polyline. */
+/* Least extent, m: of the box around all shapes, of any box, or the thickness of a polyline. What `minus`
+ * leaves, and polygons aslant, may be thinner. */
 static double thickness_of(const struct shape_list *list)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, least = HUGE_VAL;
@@ -434,6 +435,8 @@ static double thickness_of(const struct shape_list *list)
         const struct shape *const shape = &list->item[k];
         const double around = shape->kind == SHAPE_CIRCLE ? shape->size : 0;
         if (shape->kind == SHAPE_POLYLINE) least = min2(least, fabs(shape->size));
+        if (shape->kind == SHAPE_BOX)
+            for (int c = 0; c < 2; c++) least = min2(least, shape->pt[1][c] - shape->pt[0][c]);
         for (int j = 0; j < shape->n; j++) {
             for (int c = 0; c < 2; c++) {
                 low[c] = min2(low[c], shape->pt[j][c] - around);
@@ -441,7 +444,7 @@ static double thickness_of(const struct shape_list *list)
             }
         }
     }
-    /* A straight polyline has no extent across but its thickness. */
+    /* A straight polyline has no extent across but its thickness, and a box around is no thinner than it. */
     if (least < HUGE_VAL) return least;
     return min2(high[0] - low[0], high[1] - low[1]);
 }

@@ -50,9 +50,9 @@ static void push_fluid(struct simulation *s, double time)
     s->fluid.extremes.acceleration2 = top;
 }
 
-/* What the structure was given back in the last step stands in its force, also where no fluid is near
- * any more and no evaluation writes it anew. */
-static void forget_returned(struct particles *p)
+/* What the structure was given back or ahead in the last step stands in its force, also where no fluid is
+ * near any more and no evaluation writes it anew. */
+static void forget_given(struct particles *p)
 {
     memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
     memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
@@ -63,7 +63,7 @@ void evaluate_fluid(struct simulation *s, double time)
     s->state.evaluations++;
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
-    if (s->effects & FX_IMPEDANCE) forget_returned(&s->kind[KIND_SOLID]);
+    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) forget_given(&s->kind[KIND_SOLID]);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     if (s->push[KIND_FLUID].at) push_fluid(s, time);
     if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);

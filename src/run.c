@@ -31,6 +31,7 @@ struct run {
     struct series *probe_rows; /* [probes.n_files] */
     struct series ledger_rows;
     struct snapshots snapshots;
+    bool snapshot_lost; /* one that was written has not got its place, and that ends the run */
     struct image image; /* state that was sound, for the guard */
     char *case_text;    /* effective case */
     char restarted_from[FOLDER_PATH], checkpoint[FOLDER_PATH];
@@ -155,7 +156,9 @@ static enum err settle_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);
     const enum err e = snapshots_settle(&r->snapshots, &why);
-    return judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
+    const enum err judged = judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
+    r->snapshot_lost |= judged != ERR_OK;
+    return judged;
 }
 
 static enum err write_snapshot(struct run *r)
@@ -287,15 +290,17 @@ static enum err advance(struct run *r)
         }
         TRY(write_due(r, false));
     }
-    return write_due(r, true);
+    TRY(write_due(r, true));
+    return settle_snapshot(r);
 }
 
 /* After a failure: what can still be left behind. The failure itself stays the message. */
 static void leave_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
-    /* All rows up to the image have been written, so that a restart from it leaves no gap. */
-    if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
+    /* All rows and snapshots up to the image have been written, so that a restart from it leaves no gap. */
+    const bool whole = !r->snapshot_lost && settle_snapshot(r) == ERR_OK;
+    if (why != ERR_INTERRUPT && whole && r->image.size > 0 && store(r, &second))
         diag_warn(&second, "the last sound state could not be kept: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD &&
@@ -498,7 +503,6 @@ static enum err carry_out(struct run *r)
         return failed;
     }
     compare(r);
-    TRY(settle_snapshot(r));
     TRY(write_summary(r, "finished", "", r->diag));
     show_progress(r, true);
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",

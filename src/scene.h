@@ -214,7 +214,7 @@ double scene_solid_dp(const struct scene *s, int solid);
 bool scene_is_bonded(const struct scene *s, int solid);
 /* Whether the fluid's force, held over sub-steps, may give a solid energy (docs/stability.md): it is no
  * heavier than the fluid, or up to 1.5 times as heavy, not bonded to another and at most three particles
- * across. */
+ * across, as far as its shapes show. */
 bool scene_is_light(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);
 

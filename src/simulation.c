@@ -495,7 +495,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     s->evaluated = false;
     if (s->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
-            if (s->kind[kind].n && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
+            if (s->kind[kind].capacity && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
                 cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
         find_room(s);

@@ -4,6 +4,8 @@
 #include "integrators.h"
 #include "timestep.h"
 
+#include <math.h>
+
 /* Eq. 25, or Eq. 26 where `euler`. For steps that change, the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: printed as it is, a free fall would lose g (dt_old - dt). */
 struct stride {
@@ -30,6 +32,16 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
     }
 }
 
+/* One component of T-36a: the force, and its mean, which begins with the first force and ends where it has
+ * become less than any force that is felt, N/m. */
+SPHFSI_INLINE double carried(double *mean, double force, double per_time, double newest)
+{
+    const double least = 1e-30, old = *mean != 0 ? *mean : force;
+    const double next = old + newest * (force - old);
+    *mean = fabs(next) > least ? next : 0;
+    return force + per_time * (force - old);
+}
+
 /* T-36a: the force that is held over sub-steps is that of their beginning; `ahead`: the time from there to
  * the middle of their kicks. */
 static void carry_force(struct simulation *s, double ahead)
@@ -39,13 +51,8 @@ static void carry_force(struct simulation *s, double ahead)
     const double per_time = ahead / (since + smoothing_lag(s));
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        /* A mean of nothing begins with the first force. */
-        const double fx = p->fx[i], fy = p->fy[i], old_x = p->mean_fx[i] != 0 ? p->mean_fx[i] : fx,
-                     old_y = p->mean_fy[i] != 0 ? p->mean_fy[i] : fy;
-        p->fx[i] += per_time * (fx - old_x);
-        p->fy[i] += per_time * (fy - old_y);
-        p->mean_fx[i] = old_x + newest * (fx - old_x);
-        p->mean_fy[i] = old_y + newest * (fy - old_y);
+        p->fx[i] = carried(&p->mean_fx[i], p->fx[i], per_time, newest);
+        p->fy[i] = carried(&p->mean_fy[i], p->fy[i], per_time, newest);
     }
 }
 

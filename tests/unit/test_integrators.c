@@ -408,6 +408,30 @@ static void test_substeps_are_steps_with_the_force_held(void)
     }
 }
 
+/* A particle that has fallen dry is left with what its mean still changes by; no evaluation
+ * writes its force anew. */
+static void test_the_force_on_a_dry_particle_fades(void)
+{
+    open("integrator=verlet", "numerics.multirate=on");
+    rig.sim.dt_solid = 0.3e-5;
+    rates();
+    int64_t dry = 0;
+    while (dry < solid->n && solid->Y[dry] < 0.14) dry++;
+    TEST_ASSERT_TRUE(dry < solid->n && solid->fx[dry] == 0);
+    solid->mean_fx[dry] = 1;
+    const double dt = 1e-5, lag = 0.0135 / 20;
+    double since = 0;
+    for (int step = 0; step < 3; step++, since = dt) {
+        const double mean = solid->mean_fx[dry];
+        rig_steps(&rig, 1, 1);
+        assert_near(1e-15, -0.375 * dt / (since + lag) * mean, solid->fx[dry], "force");
+        assert_near(1e-15, mean * lag / (since + lag), solid->mean_fx[dry], "mean");
+    }
+    solid->mean_fx[dry] = 1e-30;
+    rig_steps(&rig, 1, 1);
+    TEST_ASSERT_TRUE(solid->mean_fx[dry] == 0);
+}
+
 /* Where the structure answers to the fluid within its sub-steps, or has none, its force is taken as it is. */
 static void test_the_force_is_carried_only_where_it_is_held(void)
 {
@@ -462,6 +486,7 @@ int main(void)
     RUN_TEST(test_leapfrog_steps);
     RUN_TEST(test_fluid_sees_the_mean_of_substeps_carried_on);
     RUN_TEST(test_substeps_are_steps_with_the_force_held);
+    RUN_TEST(test_the_force_on_a_dry_particle_fades);
     RUN_TEST(test_the_force_is_carried_only_where_it_is_held);
     RUN_TEST(test_free_fall_with_uneven_steps);
     return UNITY_END();
