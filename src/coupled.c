@@ -146,7 +146,7 @@ double smoothing_weight(const struct simulation *s, double dt)
 }
 
 /* T-35: what the fluid sees of a structure after sub-steps. */
-static void show_substeps(struct simulation *s, double dt, double carried)
+static void show_substeps(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     const double per_dt = 1 / dt, newest = smoothing_weight(s, dt);
@@ -157,7 +157,7 @@ static void show_substeps(struct simulation *s, double dt, double carried)
     const double since = s->effects & FX_LEAPFROG ? 0 : smoothing_lag(s) + 0.25 * dt;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        const double ax = p->ax[i] - carried * p->jx[i], ay = p->ay[i] - carried * p->jy[i];
+        const double ax = p->ax[i], ay = p->ay[i];
         p->ax[i] = ax + newest * ((p->vx[i] - p->vx0[i]) * per_dt - ax);
         p->ay[i] = ay + newest * ((p->vy[i] - p->vy0[i]) * per_dt - ay);
         p->jx[i] += newest * ((p->ax[i] - ax) * per_dt - p->jx[i]);
@@ -167,7 +167,7 @@ static void show_substeps(struct simulation *s, double dt, double carried)
     }
 }
 
-void advance_solid(struct simulation *s, double dt, int n, bool centred, double carried)
+void advance_solid(struct simulation *s, double dt, int n, bool centred)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
 #pragma omp parallel for simd schedule(static)
@@ -182,7 +182,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred, double 
     s->state.solid_substeps += n;
     s->state.solid_evaluations += n;
     s->solid_way = sqrt(place_solid(p));
-    show_substeps(s, dt, carried);
+    show_substeps(s, dt);
 }
 
 /* Steps of a lone solid that are taken between two looks at its state. */

@@ -32,9 +32,8 @@ void advance_fluid(struct simulation *s, advance_rows *rows, const void *by);
 void look_at_fluid(struct simulation *s);
 
 /* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
- * solid's mean velocity over the step, carried on to its end, and acceleration (T-35). `carried`: by how long
- * the acceleration was carried on for the evaluation, s. */
-void advance_solid(struct simulation *s, double dt, int n, bool centred, double carried);
+ * solid's mean velocity over the step, carried on to its end, and acceleration (T-35). */
+void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
 /* How far the acceleration that the fluid sees of a structure lags, s, and the weight of a new value after
  * dt in a mean that lags by that. */

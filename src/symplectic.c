@@ -84,13 +84,12 @@ static void show_solid(struct particles *p, double newest)
     }
 }
 
-/* Sub-steps: the structure as the fluid sees it half a step on (T-35); `since`: how old the acceleration is
- * that it has on the way there. Returns by how long the acceleration as the fluid sees it was carried on. */
-static double carry_solid(struct simulation *s, double half)
+/* Sub-steps: position and velocity of the structure as the fluid sees them half a step on (T-35). */
+static void carry_solid(struct simulation *s, double half)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    const double lags = 0.5 * s->state.dt, since = smoothing_lag(s) + lags + 0.5 * half;
-    const double carried = lags + half;
+    /* How old the acceleration is that it has on the way there. */
+    const double since = smoothing_lag(s) + 0.5 * s->state.dt + 0.5 * half;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i] + since * p->jx[i], ay = p->ay[i] + since * p->jy[i];
@@ -98,10 +97,7 @@ static double carry_solid(struct simulation *s, double half)
         p->y[i] = p->Y[i] + p->uy[i] + half * (p->wy[i] + 0.5 * half * ay);
         p->wx[i] += half * ax;
         p->wy[i] += half * ay;
-        p->ax[i] += carried * p->jx[i];
-        p->ay[i] += carried * p->jy[i];
     }
-    return carried;
 }
 
 void symplectic_step(struct simulation *s, double t_limit)
@@ -117,7 +113,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
     predict_fluid(fluid, 0.5 * dt);
-    const double carried = coupled && multirate ? carry_solid(s, 0.5 * dt) : 0;
+    if (coupled && multirate) carry_solid(s, 0.5 * dt);
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
         s->solid.time = time + 0.5 * dt;
@@ -128,7 +124,7 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     evaluate_fluid(s, time + 0.5 * dt);
     clock = wall_clock();
-    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true, carried);
+    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);
 

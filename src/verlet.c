@@ -69,7 +69,7 @@ void verlet_step(struct simulation *s, double t_limit)
     if (s->effects & FX_COUPLING) {
         const int n = timestep_substeps(s, dt);
         if (s->effects & FX_HELD_FORCE) carry_force(s, 0.5 * (dt - dt / n));
-        advance_solid(s, dt, n, false, 0);
+        advance_solid(s, dt, n, false);
     }
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);

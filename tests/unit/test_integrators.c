@@ -294,8 +294,7 @@ static struct shown show(double u, double v, double u1, double v1, double *w, do
 {
     const double lag = 0.0135 / 20, old = lag + 0.5 * dt_old;
     const double on_the_way = *a + (old + 0.5 * on) * *j;
-    const struct shown s = {u + on * (*w + 0.5 * on * on_the_way), *w + on * on_the_way,
-                            on > 0 ? *a + (old + on - lag) * *j : *a};
+    const struct shown s = {u + on * (*w + 0.5 * on * on_the_way), *w + on * on_the_way, *a};
     const double a1 = *a + dt / (dt + lag) * ((v1 - v) / dt - *a);
     *j += dt / (dt + lag) * ((a1 - *a) / dt - *j);
     *a = a1;
