@@ -202,14 +202,18 @@ static void fluid_case(char *text, size_t size, double n, bool rich, const char 
              1 / sqrt(n), precision, rich ? 0.05 : 0.0, rich ? 0.1 : 0.0, 4 / sqrt(n));
 }
 
-/* One repetition of `steps` steps; false where a guard has stopped it. */
-static bool time_steps(struct bench *b, struct sim *x, int rep, int steps)
+/* Of a repetition, at every size: the particles are sorted some six times in them, and fewer steps would leave
+ * that out of most repetitions. */
+enum { FLUID_STEPS = 100 };
+
+/* One repetition; false where a guard has stopped it. */
+static bool time_steps(struct bench *b, struct sim *x, int rep)
 {
     double before[PHASE_COUNT];
     memcpy(before, x->s.phase_seconds, sizeof before);
     const int64_t evaluations = x->s.state.evaluations;
     const double instructions = counter_read(b->counter);
-    for (int k = 0; k < steps; k++) {
+    for (int k = 0; k < FLUID_STEPS; k++) {
         if (!simulation_step(&x->s, 1e6, &x->diag)) continue;
         fprintf(stderr, "%s\n", x->diag.text);
         return false;
@@ -302,9 +306,8 @@ static void bench_fluid(struct bench *b, double n, bool rich, const char *precis
     struct sim x;
     fluid_case(text, sizeof text, n, rich, precision);
     if (!sim_open(&x, text)) return;
-    const int steps = (int)max2(10, 5e5 / n);
     bool sound = true;
-    for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r, steps);
+    for (int r = -1; sound && r < b->reps; r++) sound = time_steps(b, &x, r);
     const int64_t count = x.s.kind[KIND_FLUID].n;
     const char *const variant = x.s.fluid.sweeps->name;
     for (size_t k = 0; sound && k < COUNT_OF(parts); k++)
