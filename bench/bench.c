@@ -202,8 +202,8 @@ static void fluid_case(char *text, size_t size, double n, bool rich, const char 
              1 / sqrt(n), precision, rich ? 0.05 : 0.0, rich ? 0.1 : 0.0, 4 / sqrt(n));
 }
 
-/* Of a repetition, at every size: the particles are sorted some six times in them, and fewer steps would leave
- * that out of most repetitions. */
+/* Of a repetition, at every size: the particles are sorted some six times in them, and fewer steps would
+ * leave that out of most repetitions. */
 enum { FLUID_STEPS = 100 };
 
 /* One repetition; false where a guard has stopped it. */

@@ -426,37 +426,6 @@ bool scene_is_bonded(const struct scene *s, int solid)
     return false;
 }
 
-/* Least extent, m: of the box around all shapes, of any box, or the thickness of a polyline. What `minus`
- * leaves, and polygons aslant, may be thinner. */
-static double thickness_of(const struct shape_list *list)
-{
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, least = HUGE_VAL;
-    for (int k = 0; k < list->n; k++) {
-        const struct shape *const shape = &list->item[k];
-        const double around = shape->kind == SHAPE_CIRCLE ? shape->size : 0;
-        if (shape->kind == SHAPE_POLYLINE) least = min2(least, fabs(shape->size));
-        if (shape->kind == SHAPE_BOX)
-            for (int c = 0; c < 2; c++) least = min2(least, shape->pt[1][c] - shape->pt[0][c]);
-        for (int j = 0; j < shape->n; j++) {
-            for (int c = 0; c < 2; c++) {
-                low[c] = min2(low[c], shape->pt[j][c] - around);
-                high[c] = max2(high[c], shape->pt[j][c] + around);
-            }
-        }
-    }
-    /* A straight polyline has no extent across but its thickness, and a box around is no thinner than it. */
-    if (least < HUGE_VAL) return least;
-    return min2(high[0] - low[0], high[1] - low[1]);
-}
-
-bool scene_is_light(const struct scene *s, int solid)
-{
-    if (s->n_fluid == 0) return false;
-    const double ratio = s->solid[solid].density / s->fluid[0].density;
-    const double across = thickness_of(&s->solid[solid].shape) / scene_solid_dp(s, solid);
-    return ratio <= 1 || (ratio <= 1.5 && across < 3.5 && !scene_is_bonded(s, solid));
-}
-
 int scene_find_wall(const struct scene *s, const char *name)
 {
     for (int k = 0; k < s->n_wall; k++)

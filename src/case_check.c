@@ -431,7 +431,7 @@ static void check_interface(struct reader *r)
 {
     const struct scene *s = r->scene;
     const struct scene_given *const given = scene_given(s, SECTION_numerics, 0, "interface");
-    if (s->numerics.multirate == MULTIRATE_OFF && given && s->numerics.interface != INTERFACE_AUTO)
+    if (s->numerics.multirate == MULTIRATE_OFF && given)
         warn(r, given->line,
              "`interface` does nothing with multirate = off: it is the fluid's force within the "
              "solid's sub-steps, and there are none");

@@ -145,16 +145,21 @@ double smoothing_weight(const struct simulation *s, double dt)
     return dt / (dt + smoothing_lag(s));
 }
 
+double seen_lag(const struct simulation *s, double dt)
+{
+    const bool corrects = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    const double lag = smoothing_lag(s);
+    return max2(0.25 * lag, lag - (corrects ? 1.75 : 1.25) * dt);
+}
+
 /* T-35: what the fluid sees of a structure after sub-steps. */
 static void show_substeps(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    const double per_dt = 1 / dt, newest = smoothing_weight(s, dt);
+    const double lag = seen_lag(s, dt), per_dt = 1 / dt, newest = dt / (dt + lag);
     /* The mean acceleration is that of half a step and the lag ago, the mean velocity that of half a step:
-     * between that and now the acceleration is, at the middle, a quarter of a step old. With leapfrog's step,
-     * two fifths of the lag, carrying that on drove the gate (docs/theory.md, Sec. 7). */
-    const double half = 0.5 * dt;
-    const double since = s->effects & FX_LEAPFROG ? 0 : smoothing_lag(s) + 0.25 * dt;
+     * between that and now the acceleration is, at the middle, a quarter of a step old. */
+    const double half = 0.5 * dt, since = lag + 0.25 * dt;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i], ay = p->ay[i];
@@ -177,6 +182,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
         p->vx0[i] = p->vx[i];
         p->vy0[i] = p->vy[i];
     }
+    s->solid.seen_ago = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC ? -0.5 * dt : 0;
     solid_advance(&s->solid, p, dt / n, n, centred);
     s->substeps = n;
     s->state.solid_substeps += n;

@@ -31,16 +31,7 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
                   at;                                                \
               }))
 #define LATER false
-#define LIGHT_SOLID called_by(by, SECTION_solid, "density", first_light(s))
 #define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
-
-/* The first light body; -1: none. */
-static int first_light(const struct scene *s)
-{
-    for (int k = 0; k < s->n_solid; k++)
-        if (scene_is_light(s, k)) return k;
-    return -1;
-}
 
 /* The first contact that a wall takes part in; -1: none. */
 static int first_with_wall(const struct scene *s)

@@ -91,16 +91,17 @@ static void drag_force(const struct fluid *f, const struct view *see, const stru
 }
 
 /* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with the sign reversed;
- * N/m per depth. The mirror image of what the fluid particles sum. */
+ * N/m per depth. The mirror image of what the fluid particles sum. With FX_IMPEDANCE as well the surface per
+ * depth, m, on which a pressure of 1 Pa on both sides of the pairs would press. */
 SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct view *see,
                                const struct receiver *s, const real *own, const double *volume,
-                               const struct lane_constants *k, unsigned effects, double *fx,
-                               double *fy)
+                               const struct lane_constants *k, unsigned effects,
+                               double *const force[2], double *const wet[2])
 {
     const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + LANE_LIFT_X * CLUSTER) : vset(0);
     const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + LANE_LIFT_Y * CLUSTER) : vset(0);
     const vreal near = effects & FX_REPULSION ? vspread(own + LANE_NEAR * CLUSTER) : vset(0);
-    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
     EACH_SEEN(see, m, part) {
         const uint32_t seen = see->seen[m];
         const real *const b = candidates(see, seen, part);
@@ -114,26 +115,17 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct view *see,
         const vreal g = q.slope * stress;
         sum_x[part] = vfma(g, q.x, sum_x[part]);
         sum_y[part] = vfma(g, q.y, sum_y[part]);
+        if (!(effects & FX_IMPEDANCE)) continue;
+        wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
+        wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
     }
-    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, fx, fy);
-}
-
-/* The surface per depth, m, on which a pressure of 1 Pa on both sides of the pair would press. */
-static void wetted_surface(const struct fluid *f, const struct view *see, const struct receiver *s,
-                           const double *volume, double *wet_x, double *wet_y)
-{
-    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    EACH_SEEN(see, m, part) {
-        const uint32_t seen = see->seen[m];
-        const struct pair q = pair_load(s, seen, candidates(see, seen, part));
-        sum_x[part] = vfma(q.slope, q.x, sum_x[part]);
-        sum_y[part] = vfma(q.slope, q.y, sum_y[part]);
-    }
-    add_force(sum_x, sum_y, 2 * PAIR_SLOPE * f->k.h, volume, wet_x, wet_y);
+    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
+    if (effects & FX_IMPEDANCE)
+        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
 }
 
 /* Effects that walls and structures have code of their own for: without them it is stamped out. */
-#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION | FX_IMPEDANCE)
+#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION)
 
 /* The particles of a cluster: those there are, and their places in the arrays. */
 struct dummies {
@@ -213,7 +205,6 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
                                   const struct cell_sides *sides, const struct lane_constants *k,
                                   unsigned fx)
 {
-    const bool wets = p->wet_x && (fx & FX_IMPEDANCE);
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
            wet_y[CLUSTER] = {0};
     for (int r = 0; r < CLUSTER && see->n; r += GROUPS) {
@@ -223,8 +214,8 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
         s.p = vspread(own + LANE_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[LANE_VOLUME * CLUSTER + g];
-        fluid_force(f, see, &s, own, volume, k, fx, &force_x[r], &force_y[r]);
-        if (wets) wetted_surface(f, see, &s, volume, &wet_x[r], &wet_y[r]);
+        fluid_force(f, see, &s, own, volume, k, fx, (double *[]){&force_x[r], &force_y[r]},
+                    (double *[]){&wet_x[r], &wet_y[r]});
         if (!(fx & FX_NO_SLIP)) continue;
         s.u = vspread(own + LANE_MIRROR_U * CLUSTER);
         s.v = vspread(own + LANE_MIRROR_V * CLUSTER);
@@ -233,7 +224,7 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
     }
     put(d, force_x, p->fx);
     put(d, force_y, p->fy);
-    if (!wets) return;
+    if (!(fx & FX_IMPEDANCE)) return;
     put(d, wet_x, p->wet_x);
     put(d, wet_y, p->wet_y);
 }
@@ -342,11 +333,14 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
+    const unsigned unfelt = kind == KIND_SOLID ? 0 : FX_IMPEDANCE;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];
         if (f->effects & SURFACE_EFFECTS)
-            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects);
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects & ~unfelt);
+        else if (f->effects & FX_IMPEDANCE & ~unfelt)
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, FX_IMPEDANCE);
         else
             dummies_of_cell(f, &kinds[kind], kind, c, cell, 0);
     }

@@ -40,6 +40,11 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred);
 double smoothing_lag(const struct simulation *s);
 double smoothing_weight(const struct simulation *s, double dt);
 
+/* The same of what it sees after a step of dt with sub-steps, s: less by what the acceleration ages beyond
+ * that, at least a quarter. Half a step goes by until the end of the one that it is the mean of, and half a
+ * step more until the corrector; three quarters more by measurement (docs/theory.md, Sec. 7). */
+double seen_lag(const struct simulation *s, double dt);
+
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void move_walls(struct simulation *s, double time);
 

@@ -6,36 +6,54 @@
 
 #include <math.h>
 
-void interface_answer(const struct solid *s, struct particles *p, double dt)
+/* Of the impedance: what a late answer gives to a mode is at most 0.47 of what a prompt one would take
+ * (docs/theory.md, Sec. 7). All of it drives plates of four particles. */
+#define PROMPT 0.5
+
+/* Of what is owed, in a step: as slow as to leave modes that swing within some tens of steps alone. A tenth
+ * drives structures of a fiftieth of the fluid's density again; none leaves them too heavy. */
+#define SHARE 0.02
+
+static void return_share(struct particles *p, int64_t i, double per_time)
+{
+    p->fx[i] -= SHARE * per_time * p->owed_x[i];
+    p->fy[i] -= SHARE * per_time * p->owed_y[i];
+    p->owed_x[i] *= 1 - SHARE;
+    p->owed_y[i] *= 1 - SHARE;
+}
+
+/* A particle's face: the direction of its wetted surface times the root of the share that one sub-step of dt,
+ * taken implicitly so that no bound follows from it, takes of the velocity along that; and velocity and
+ * acceleration along it as the fluid saw them. Dry and clamped ones have none. A body no heavier than the
+ * fluid is not expected to go on as it was seen to: the fluid decides how it does. */
+static void find_face(const struct solid *s, struct particles *p, int64_t i, double dt)
+{
+    const struct solid_body *const body = &s->body[p->body[i]];
+    const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i])) * p->free[i];
+    const double k = dt * PROMPT * s->impedance * wet / body->mass;
+    const double root = wet > 0 ? sqrt(k / (1 + k)) / wet : 0;
+    p->face_x[i] = root * p->wet_x[i];
+    p->face_y[i] = root * p->wet_y[i];
+    p->face_v[i] = p->wx[i] * p->face_x[i] + p->wy[i] * p->face_y[i];
+    p->face_a[i] = body->light ? 0 : p->ax[i] * p->face_x[i] + p->ay[i] * p->face_y[i];
+    p->face_taken[i] = 0;
+}
+
+void interface_begin(const struct solid *s, struct particles *p, double dt, int n)
 {
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i]));
-        if (!(wet * p->free[i] > 0)) continue;
-        const double nx = p->wet_x[i] / wet, ny = p->wet_y[i] / wet;
-        const double mass = s->body[p->body[i]].mass;
-        /* T-35a, taken implicitly: no bound of the step follows from it. */
-        const double k = dt * s->impedance * wet / mass;
-        const double faster = (p->vx[i] - p->wx[i]) * nx + (p->vy[i] - p->wy[i]) * ny;
-        const double kick = -k / (1 + k) * faster;
-        p->vx[i] += kick * nx;
-        p->vy[i] += kick * ny;
-        p->owed_x[i] += mass * kick * nx;
-        p->owed_y[i] += mass * kick * ny;
+        return_share(p, i, 1 / (n * dt));
+        find_face(s, p, i, dt);
     }
 }
 
-/* Of what is owed, in a step: as slow as to leave modes that swing within some tens of steps alone. A tenth
- * drives structures of a fiftieth of the fluid's density again; none leaves them rho0 c0 dt too heavy. */
-#define SHARE 0.02
-
-void interface_return(struct particles *p, double dt)
+void interface_end(const struct solid *s, struct particles *p)
 {
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] -= SHARE / dt * p->owed_x[i];
-        p->fy[i] -= SHARE / dt * p->owed_y[i];
-        p->owed_x[i] *= 1 - SHARE;
-        p->owed_y[i] *= 1 - SHARE;
+        const double impulse = s->body[p->body[i]].mass * p->face_taken[i];
+        p->owed_x[i] -= impulse * p->face_x[i];
+        p->owed_y[i] -= impulse * p->face_y[i];
     }
 }

@@ -31,6 +31,9 @@ static void add_solid(const struct simulation *s, struct ledger *row)
         row->momentum_x += b->mass * p->vx[i];
         row->momentum_y += b->mass * p->vy[i];
         row->mass += b->mass;
+        if (!p->owed_x) continue; /* the fluid has not got that yet (T-35b) */
+        row->momentum_x -= p->owed_x[i];
+        row->momentum_y -= p->owed_y[i];
     }
     solid_energy(&s->solid, p, SOLID_ALL, &row->elastic, &row->hourglass, &row->det_low);
 }

@@ -252,17 +252,14 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
             d, ERR_GUARD,
             "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
             "%.3g J/m in motion and strain: the run is unstable; a smaller cfl or "
-            "solid_safety may help, or numerics.interface = impedance where a structure is light "
-            "or "
-            "undamped",
+            "solid_safety may help, and numerics.interface = impedance where it is held",
             s->state.time, gained, active);
     if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(
         d,
         "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
-        "strain: the run is not sound; a high cfl does this, and a light or undamped structure "
-        "without numerics.interface = impedance",
+        "strain: the run is not sound; a high cfl does this, and numerics.interface = held",
         s->state.time, gained, active);
     return ERR_OK;
 }

@@ -64,7 +64,7 @@ enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED }; /* what presets are
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
-enum interface { INTERFACE_HELD, INTERFACE_IMPEDANCE, INTERFACE_AUTO };
+enum interface { INTERFACE_HELD, INTERFACE_IMPEDANCE };
 enum suction { SUCTION_OFF, SUCTION_ON };
 enum sides { SIDES_BOTH, SIDES_ONE };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
@@ -212,10 +212,6 @@ int scene_find_solid(const struct scene *s, const char *name);
 double scene_solid_dp(const struct scene *s, int solid);
 /* Whether a solid is bonded to another: its thickness is not its own. */
 bool scene_is_bonded(const struct scene *s, int solid);
-/* Whether the fluid's force, held over sub-steps, may give a solid energy (docs/stability.md): it is no
- * heavier than the fluid, or up to 1.5 times as heavy, not bonded to another and at most three particles
- * across, as far as its shapes show. */
-bool scene_is_light(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);
 
 /* Whether the snapshots of a scene have a field of pointdata.def. */

@@ -99,7 +99,6 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
     if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)(FX_IMPEDANCE | FX_HELD_FORCE);
-    if (s->effects & FX_IMPEDANCE) s->effects &= ~(unsigned)FX_HELD_FORCE;
     s->fluid.effects = s->effects;
     if (s->effects & FX_IMPEDANCE) s->solid.impedance = s->scene->rho0 * s->scene->c0;
     return ERR_OK;

@@ -32,6 +32,7 @@ static struct solid_body body_of(const struct scene *scene, int k)
         .kappa = c->hourglass,
         .damping_time = c->damping_time,
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
+        .light = scene->n_fluid > 0 && c->density <= scene->fluid[0].density,
         .law = c->law,
         .plane = c->plane,
         .gradient = c->gradient,
@@ -252,21 +253,52 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
     }
 }
 
-/* Kick and drift; what the sweeps take of both is taken at once. */
+/* The first behind a share's particles, and the first of them. */
+static int64_t end_of(const struct share *own)
+{
+    return own->last < own->s->n_packs ? own->s->pack[own->last].i : own->p->n;
+}
+
+static int64_t first_of(const struct share *own)
+{
+    return own->first < own->last ? own->s->pack[own->first].i : end_of(own);
+}
+
+/* What the sweeps take of new places and velocities is taken at once. */
+static void look(const struct share *own)
+{
+    sweep(own, own->s->sweeps->look);
+    together(own, HAND_PLACE);
+}
+
 static void move(const struct share *own, double kick, double drift)
 {
-    const struct solid *const s = own->s;
     const struct particles *const p = own->p;
-    const int64_t end = own->last < s->n_packs ? s->pack[own->last].i : p->n;
+    const int64_t end = end_of(own);
 #pragma omp simd
-    for (int64_t i = own->first < own->last ? s->pack[own->first].i : end; i < end; i++) {
+    for (int64_t i = first_of(own); i < end; i++) {
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }
-    sweep(own, s->sweeps->look);
-    together(own, HAND_PLACE);
+    look(own);
+}
+
+/* The same with the fluid's answer to the kick. */
+static void move_answered(const struct share *own, double kick, double drift, double since)
+{
+    const struct particles *const p = own->p;
+    const int64_t end = end_of(own);
+#pragma omp simd
+    for (int64_t i = first_of(own); i < end; i++) {
+        p->vx[i] += kick * p->sx[i];
+        p->vy[i] += kick * p->sy[i];
+        interface_answer(p, i, since);
+        p->ux[i] += drift * p->vx[i];
+        p->uy[i] += drift * p->vy[i];
+    }
+    look(own);
 }
 
 void solid_stress(struct solid *s, struct particles *p)
@@ -311,8 +343,7 @@ static void place_driven(const struct share *own, double time)
     if (!s->drive) return;
 #pragma omp single
     drive_place(s->drive, own->p, time);
-    sweep(own, s->sweeps->look);
-    together(own, HAND_PLACE);
+    look(own);
 }
 
 static void book_work(struct solid *s, const struct particles *p, double dt)
@@ -327,7 +358,6 @@ static void substeps(struct solid *s, const struct share *own, double dt, int n,
 {
     struct particles *const p = own->p;
     const double first = centred ? 0.5 * dt : 0;
-    if (s->impedance > 0) interface_return(p, n * dt);
     move(own, 0, first);
     if (centred) place_driven(own, s->time + first);
     for (int k = 0; k < n; k++) {
@@ -336,11 +366,10 @@ static void substeps(struct solid *s, const struct share *own, double dt, int n,
         outer_forces(s, p, s->time + k * dt + first);
         book_work(s, p, dt);
         const double drift = k + 1 < n ? dt : dt - first;
-        move(own, dt, s->impedance > 0 ? 0 : drift);
-        if (s->impedance > 0) {
-            interface_answer(s, p, dt);
-            move(own, 0, drift);
-        }
+        if (s->impedance > 0)
+            move_answered(own, dt, drift, s->seen_ago + (k + 1) * dt);
+        else
+            move(own, dt, drift);
         place_driven(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
     }
 }
@@ -351,7 +380,7 @@ static bool steps_parts(const struct solid *s, int n)
 {
     enum { WORTH_COPYING = 4 };
     return s->part && n >= WORTH_COPYING && !s->contact && !s->drive && !s->push[0] &&
-           !(s->impedance > 0) && thread_team() == s->threads;
+           thread_team() == s->threads;
 }
 
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
@@ -359,6 +388,7 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     bool in_parts = false;
 #pragma omp parallel num_threads(s->threads)
     {
+        if (s->impedance > 0) interface_begin(s, p, dt, n);
         if (steps_parts(s, n)) {
             struct solid_part *const part = &s->part[thread_index()];
             const struct share own = share_of_part(part);
@@ -370,6 +400,10 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
         } else {
             const struct share own = share_of(s, p);
             substeps(s, &own, dt, n, centred);
+        }
+        if (s->impedance > 0) {
+#pragma omp barrier
+            interface_end(s, p);
         }
     }
     s->in_parts = in_parts;

@@ -19,6 +19,7 @@ struct solid_body {
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
+    bool light;       /* no heavier than the fluid */
     int bond;         /* bodies joined to each other share this number, that of the first of them */
     bool symmetric;   /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */
@@ -126,6 +127,7 @@ struct solid {
     struct contact *contact;
     struct drive *drive;
     const double *push[2]; /* accelerations, x and y, m/s^2 */
+    double seen_ago;       /* time since the fluid saw it, at the start of the sub-steps, s */
     double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */
     double outer_omega2, outer_damping; /* what contact can add to omega_max^2 and damping_max */
     double work; /* of walls, clamps and loads on the solid since it was last asked for, J/m */

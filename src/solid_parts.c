@@ -114,7 +114,7 @@ static void find_runs(struct solid_part *part, const struct plan *plan, const in
 static enum err create_particles(struct solid_part *part, const struct plan *plan,
                                  const struct cut *c, const int32_t *global)
 {
-    const unsigned groups = G_POINT | G_SOLID | (plan->p->groups & G_FORCE);
+    const unsigned groups = G_POINT | G_SOLID | (plan->p->groups & (G_FORCE | G_WETTED));
     struct particles *const p = &part->p;
     TRY(particles_create(p, plan->arena, size_of(c), groups, "parts of the solid", plan->d));
     p->n = size_of(c);
@@ -251,14 +251,15 @@ enum err solid_parts_create(struct solid *s, struct arena *a, const struct parti
 /* --- stepping --- */
 
 #define STATE_FIELDS(p) (p)->ux, (p)->uy, (p)->vx, (p)->vy
+#define FACE_FIELDS(p) (p)->face_x, (p)->face_y, (p)->face_v, (p)->face_a, (p)->face_taken
 #define SHOWN_FIELDS(p) \
     (p)->Uxx, (p)->Uxy, (p)->Uyx, (p)->Uyy, (p)->Pxx, (p)->Pxy, (p)->Pyx, (p)->Pyy, (p)->sx, (p)->sy
 
 void solid_part_take(struct solid_part *part, const struct particles *whole)
 {
     const struct particles *const p = &part->p;
-    double *const from[] = {STATE_FIELDS(whole), whole->fx, whole->fy};
-    double *const to[] = {STATE_FIELDS(p), p->fx, p->fy};
+    double *const from[] = {STATE_FIELDS(whole), whole->fx, whole->fy, FACE_FIELDS(whole)};
+    double *const to[] = {STATE_FIELDS(p), p->fx, p->fy, FACE_FIELDS(p)};
     for (int f = 0; f < (int)COUNT_OF(from) && from[f]; f++)
         for (const struct part_run *r = part->run; r < part->run + part->n_runs; r++)
             memcpy(&to[f][r->here], &from[f][r->there], (size_t)r->n * sizeof(double));
@@ -270,14 +271,15 @@ void solid_part_take(struct solid_part *part, const struct particles *whole)
 /* Fields of the part's own particles into those of the whole. */
 static void give(const struct solid_part *part, double *const *from, double *const *to, int fields)
 {
-    for (int f = 0; f < fields; f++)
+    for (int f = 0; f < fields && from[f]; f++)
         for (const struct part_run *r = part->run; r < part->run + part->n_runs; r++)
             if (r->own) memcpy(&to[f][r->there], &from[f][r->here], (size_t)r->n * sizeof(double));
 }
 
 void solid_part_give(const struct solid_part *part, const struct particles *whole)
 {
-    double *const from[] = {STATE_FIELDS(&part->p)}, *const to[] = {STATE_FIELDS(whole)};
+    double *const from[] = {STATE_FIELDS(&part->p), part->p.face_taken};
+    double *const to[] = {STATE_FIELDS(whole), whole->face_taken};
     give(part, from, to, COUNT_OF(from));
 }
 

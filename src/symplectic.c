@@ -89,7 +89,7 @@ static void carry_solid(struct simulation *s, double half)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     /* How old the acceleration is that it has on the way there. */
-    const double since = smoothing_lag(s) + 0.5 * s->state.dt + 0.5 * half;
+    const double since = seen_lag(s, s->state.dt) + 0.5 * s->state.dt + 0.5 * half;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i] + since * p->jx[i], ay = p->ay[i] + since * p->jy[i];

@@ -47,7 +47,7 @@ SCENES = {
     "fluid alone": TOP + FLUID + OUTPUT,
     "dam break": GRAVITY + TOP + WATER + WALL + OUTPUT,
     "solid alone": TOP + SOLID + OUTPUT,
-    "gate": GRAVITY + TOP + "interface = held\n" + WATER + WALL + SOLID + OUTPUT,
+    "gate": GRAVITY + TOP + WATER + WALL + SOLID + OUTPUT,
 }
 
 

@@ -42,7 +42,7 @@ fi
 says 1 'gap = 0.05 m is more than 4 spacings of 0.01 m' settle.cfg bed.gap=5*dp
 says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp would mend it' \
     gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
-says 0 'is 1.1 times as dense as the fluid, whose force is held.*numerics.interface = auto mends it' \
+says 0 '1.1 times as dense as the fluid and 2 particles thick.*interface = impedance mends it' \
     gate.cfg 'thickness=10 mm' numerics.interface=held
 says 0 'shifting_speed = largest under gravity lifts a free surface' column.cfg water.shifting=2 \
     water.shifting_speed=largest

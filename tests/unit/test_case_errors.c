@@ -278,7 +278,7 @@ static const struct {
      "bad.cfg, --set: [numerics] interface is of COUPLING, which the scene does not have: a "
      "[fluid] "
      "and a [solid] section calls for it"},
-    {TOP SOLID "[numerics]\ninterface = impedance\n", NULL,
+    {TOP SOLID "[numerics]\ninterface = held\n", NULL,
      "bad.cfg, line 9: [numerics] interface is of COUPLING, which the scene does not have: "},
     {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
                "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",

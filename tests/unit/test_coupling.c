@@ -173,6 +173,8 @@ static double momentum_of_kicks(int axis)
         sum += rig.sim.fluid.k.mass * (axis ? fluid->vy_half[i] : fluid->vx_half[i]);
     for (int64_t i = 0; i < solid->n; i++)
         sum += rig.sim.solid.body[0].mass * (axis ? solid->vy[i] : solid->vx[i]);
+    for (int64_t i = 0; solid->owed_x && i < solid->n; i++) /* T-35b */
+        sum -= axis ? solid->owed_y[i] : solid->owed_x[i];
     return sum;
 }
 

@@ -56,7 +56,7 @@ static const struct {
     {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_COUPLING,
      "line 6: [solid s]"},
     {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_IMPEDANCE,
-     "line 8: [solid s] density"},
+     "default: [numerics] interface"},
     {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_KELVIN_VOIGT, EFFECT_KELVIN_VOIGT,
      "line 10: [solid s] damping_time"},
     {TOP PLAIN_SOLID "[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\njoined = s\n",
