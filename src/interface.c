@@ -6,10 +6,6 @@
 
 #include <math.h>
 
-/* Of the impedance: what a late answer gives to a mode is at most 0.47 of what a prompt one would take
- * (docs/theory.md, Sec. 7). All of it drives plates of four particles. */
-#define PROMPT 0.5
-
 /* Of what is owed, in a step: as slow as to leave modes that swing within some tens of steps alone. A tenth
  * drives structures of a fiftieth of the fluid's density again; none leaves them too heavy. */
 #define SHARE 0.02
@@ -30,7 +26,7 @@ static void find_face(const struct solid *s, struct particles *p, int64_t i, dou
 {
     const struct solid_body *const body = &s->body[p->body[i]];
     const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i])) * p->free[i];
-    const double k = dt * PROMPT * s->impedance * wet / body->mass;
+    const double k = dt * body->prompt * s->impedance * wet / body->mass;
     const double root = wet > 0 ? sqrt(k / (1 + k)) / wet : 0;
     p->face_x[i] = root * p->wet_x[i];
     p->face_y[i] = root * p->wet_y[i];

@@ -84,6 +84,18 @@ static void start_solid(struct simulation *s)
     }
 }
 
+/* What a late answer gives to a mode is at most 0.47 of what a prompt one would take (docs/theory.md,
+ * Sec. 7). More drives plates of four particles and light bodies by symplectic; less drives light ones by
+ * leapfrog, from C = 0.5 on. */
+static void set_impedance(struct simulation *s)
+{
+    s->solid.impedance = s->scene->rho0 * s->scene->c0;
+    for (int k = 0; k < s->solid.n_bodies; k++) {
+        struct solid_body *const body = &s->solid.body[k];
+        body->prompt = body->light && s->effects & FX_LEAPFROG ? 1 : 0.5;
+    }
+}
+
 /* Sub-steps pay where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
@@ -100,7 +112,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
     if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)(FX_IMPEDANCE | FX_HELD_FORCE);
     s->fluid.effects = s->effects;
-    if (s->effects & FX_IMPEDANCE) s->solid.impedance = s->scene->rho0 * s->scene->c0;
+    if (s->effects & FX_IMPEDANCE) set_impedance(s);
     return ERR_OK;
 }
 

@@ -19,6 +19,7 @@ struct solid_body {
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
+    double prompt;    /* share of the fluid's impedance that it meets within its sub-steps */
     bool light;       /* no heavier than the fluid */
     int bond;         /* bodies joined to each other share this number, that of the first of them */
     bool symmetric;   /* viscous force with both particles' tensors */

@@ -31,9 +31,9 @@ LIMITS = """* The printed hourglass force (`hourglass_form = printed`) has growi
   shapes from kappa of some 10 on; the program warns.
 * Steps that must change (a fluid that accelerates, outputs a few steps apart) can still be in tune with an
   undamped oscillation of the solid near its bound; artificial viscosity or a smaller solid_safety helps.
-* A body up to 1.5 times as heavy as the fluid and four or five particles thick may gain energy unless
-  `interface = impedance` is named: by itself it is on for bodies no heavier than the fluid, and for those
-  of up to three particles. The program warns of the energy when it comes.
+* Bodies of a fiftieth of the fluid's density gain energy by `symplectic` beyond its default cfl; and with
+  `interface = held` bodies of up to three times its density and six particles here and there. The program
+  warns of the energy when it comes.
 * Fluid on both sides of a body that is thinner than the kernel's reach less one spacing feels each other
   across it, whatever `sides` says: two particles hold at h/dp up to 1.5, three at 2. The program warns.
 * `wall_repulsion` stores energy that no account holds while it pushes back.

@@ -91,12 +91,22 @@ static void face_one(void)
     interface_begin(&rig.sim.solid, solid, 1e-4, 10);
 }
 
+/* The whole impedance for a light body by leapfrog: k = 2, of 4 m/s 2/3 go. */
+static void test_light_bodies_by_leapfrog(void)
+{
+    open("integrator=leapfrog", NULL);
+    face_one();
+    interface_answer(solid, 0, 0.02);
+    assert_near(1e-12, 3 - 1.6, solid->vx[0], "vx");
+    assert_near(1e-12, 4 - 1.6 * 4 / 3, solid->vy[0], "vy");
+}
+
 /* By hand: mass 100 * 1e-4 = 0.01 kg/m, half of the impedance 1e4, dt = 1e-4: k = 1e-4 * 1e4 * 0.01/0.01 = 1;
  * along the surface 0.6 * 3 + 0.8 * 2.75 = 4 m/s faster, of which 1/2 go: kick (-1.2, -1.6), owed 0.01 of it.
  * What the fluid saw of its acceleration does not count. */
 static void test_answer_and_return_by_hand(void)
 {
-    open(NULL, NULL);
+    open("integrator=symplectic", NULL);
     face_one();
     interface_answer(solid, 0, 0.02);
     assert_near(1e-12, 3 - 1.2, solid->vx[0], "vx");
@@ -260,6 +270,7 @@ int main(void)
     RUN_TEST(test_wherever_there_are_substeps);
     RUN_TEST(test_surface_of_a_straight_side);
     RUN_TEST(test_answer_and_return_by_hand);
+    RUN_TEST(test_light_bodies_by_leapfrog);
     RUN_TEST(test_answer_to_what_was_not_expected);
     RUN_TEST(test_substeps_by_hand);
     RUN_TEST(test_momentum_closes);
