@@ -32,7 +32,7 @@ static struct solid_body body_of(const struct scene *scene, int k)
         .kappa = c->hourglass,
         .damping_time = c->damping_time,
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
-        .light = scene->n_fluid > 0 && c->density <= scene->fluid[0].density,
+        .light = c->density <= scene->rho0,
         .law = c->law,
         .plane = c->plane,
         .gradient = c->gradient,
