@@ -249,9 +249,11 @@ def what_was_run(report, versions):
     stand, done = {"unfinished or failed": [], "damaged": [], "not run": []}, {}
     for k, (version, names) in enumerate(versions.items()):
         done[f"finished, by {version}" if k else "finished"] = names
+    held = []
     for spec in SPECS:
         try:
-            report.run(spec.name)
+            effects = report.run(spec.name).summary.get("effects", [])
+            held += [spec.name] if "MULTIRATE" in effects and "IMPEDANCE" not in effects else []
         except NotRun as nothing:
             wrong = str(nothing).partition("; ")[2]
             stand["not run"].append(f"{spec.name} ({wrong})" if wrong else spec.name)
@@ -261,6 +263,8 @@ def what_was_run(report, versions):
             stand["damaged"].append(f"{spec.name} ({problem})")
     stand["damaged"] += [f"{name} ({text}; what is kept of it stands instead)"
                          for name, text in report.replaced.items()]
+    if held:
+        done["of these with the force held over sub-steps, the default of earlier versions"] = held
     return [f"* {words} ({len(names)}): {', '.join(names) or 'none'}"
             for words, names in {**(done or {"finished": []}), **stand}.items()] + [""]
 

@@ -214,6 +214,10 @@ SPECS = [*cantilevers(), *plates(), *gates(), *single_rates(), *baffles(), *slui
 BY_NAME = {spec.name: spec for spec in SPECS}
 
 
+# What earlier versions wrote where nothing was named and no case can hold now.
+RETIRED = ("interface = auto",)
+
+
 def physics(text):
     """Lines of an effective case that the results depend on: comments name the program, the paths of
     files the place where it ran, and numerics.skin says only when particles are sorted."""
@@ -279,7 +283,8 @@ class Program:
 
     def means(self, spec, text):
         """Whether the effective case of a run, which another version may have written, is what the
-        specification means now: the present program gives keys that were not there their defaults."""
+        specification means now: the present program gives keys that were not there, or that held what
+        is no longer known, their defaults."""
         meant = (spec.case, *spec.arguments())
         if meant not in self.cases:
             try:
@@ -290,7 +295,8 @@ class Program:
         if physics(text) == physics(now):
             return True
         files = iter([line for line in now.splitlines() if line.startswith("file ")])
-        lines = [next(files, line) if line.startswith("file ") else line for line in text.splitlines()]
+        lines = [next(files, line) if line.startswith("file ") else line for line in text.splitlines()
+                 if line not in RETIRED]
         with tempfile.NamedTemporaryFile("w", suffix=".cfg", encoding="utf-8") as old:
             old.write("\n".join([*lines, ""]))
             old.flush()

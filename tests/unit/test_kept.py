@@ -161,19 +161,27 @@ def test_stale(bench):
 
 
 def test_older(bench):
-    """A key that came later stands at its default in what is kept: the result is used. With another value it
-    is of another case."""
+    """A key that came later, or held what is no longer known, stands at its default in what is kept: the
+    result is used. With another value it is of another case."""
     whole = bench.archive.read_bytes()
-    for value, used in ((None, True), ("suction = on", False)):
+    for key, line, used in (("suction", None, True), ("suction", "suction = on", False),
+                            ("interface", "interface = auto", True),
+                            ("interface", "interface = held", False)):
         def edit(text):
-            assert "\nsuction = off" in text.replace("  ", " ")
-            lines = [line for line in text.splitlines() if not line.startswith("suction")]
-            if value:
-                lines.insert(lines.index("[numerics]") + 1, value)
+            lines = [old for old in text.splitlines() if not old.startswith(key)]
+            assert len(lines) == len(text.splitlines()) - 1, key
+            if line:
+                lines.insert(lines.index("[numerics]") + 1, line)
             return "\n".join([*lines, ""])
         bench.rewrite("case.cfg", edit)
         text, lines = bench.report()
-        assert (lines == []) == used and ("is of another case" in text) != used, (value, lines)
+        assert (lines == []) == used and ("is of another case" in text) != used, (line, lines)
+        bench.archive.write_bytes(whole)
+    # Which of them had the force held over sub-steps is said.
+    for effects, held in (([], False), (["MULTIRATE"], True), (["MULTIRATE", "IMPEDANCE"], False)):
+        bench.rewrite("summary.json", lambda text: json.dumps({**json.loads(text), "effects": effects}))
+        text, _ = bench.report()
+        assert (f"the default of earlier versions (1): {NAME}" in text) == held, effects
         bench.archive.write_bytes(whole)
 
 
