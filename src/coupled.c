@@ -159,13 +159,11 @@ static void show_substeps(struct simulation *s, double dt)
     const double lag = seen_lag(s, dt), per_dt = 1 / dt, newest = dt / (dt + lag);
     /* The mean acceleration is that of half a step and the lag ago, the mean velocity that of half a step:
      * between that and now the acceleration is, at the middle, a quarter of a step old. */
-    const double half = 0.5 * dt, since[2] = {lag + 0.25 * dt, 0};
-    /* Carried on, the acceleration drives light bodies by leapfrog from C = 0.5 on. */
-    const bool leaps = s->effects & FX_LEAPFROG;
+    const double half = 0.5 * dt, since = lag + 0.25 * dt;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i], ay = p->ay[i];
-        const double old = since[leaps && s->solid.body[p->body[i]].light];
+        const double old = since * s->solid.body[p->body[i]].carried;
         p->ax[i] = ax + newest * ((p->vx[i] - p->vx0[i]) * per_dt - ax);
         p->ay[i] = ay + newest * ((p->vy[i] - p->vy0[i]) * per_dt - ay);
         p->jx[i] += newest * ((p->ax[i] - ax) * per_dt - p->jx[i]);

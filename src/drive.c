@@ -131,6 +131,11 @@ void drive_place(struct drive *v, struct particles *p, double time)
     }
 }
 
+void drive_turn_away(const struct drive *v, struct particles *p)
+{
+    for (int64_t k = 0; k < v->n_held; k++) p->face_x[v->held[k]] = p->face_y[v->held[k]] = 0;
+}
+
 /* Dead loads: they keep their direction and do not follow the surface. */
 void drive_forces(struct drive *v, const struct solid *s, struct particles *p, double time)
 {

@@ -33,6 +33,10 @@ enum err drive_create(struct drive *v, struct arena *a, const struct scene *scen
 /* Puts the particles of moving clamps where they are at a time, with their velocity. By one thread. */
 void drive_place(struct drive *v, struct particles *p, double time);
 
+/* Takes their faces (interface.h) from the particles of moving clamps: they answer to the clamp, not to the
+ * fluid. By one thread. */
+void drive_turn_away(const struct drive *v, struct particles *p);
+
 /* Adds the loads to sx, sy; gives the particles of moving clamps the acceleration of their motion. By
  * one thread, after all other forces. */
 void drive_forces(struct drive *v, const struct solid *s, struct particles *p, double time);

@@ -107,15 +107,15 @@ static void warn_held(struct sampler *g, const struct region *region, double acr
     if (s->n_fluid == 0 || s->numerics.multirate == MULTIRATE_OFF ||
         s->numerics.interface != INTERFACE_HELD)
         return;
-    const double ratio = s->solid[region->body].density / s->fluid[0].density;
+    const double ratio = s->solid[region->body].density / s->rho0;
     if (ratio > 1 && across > 6) return;
     char place[PLACE_TEXT];
     scene_place(s, region->line, place);
     diag_warn(
         g->diag,
         "%s: [solid %s], %.3g times as dense as the fluid and %.0f particles thick, may gain "
-        "energy from nowhere, as the fluid's force is held over sub-steps; numerics.interface "
-        "= impedance mends it",
+        "energy from nowhere where it takes sub-steps and the fluid's force is held over them; "
+        "numerics.interface = impedance mends it",
         place, region->name, ratio, across);
 }
 

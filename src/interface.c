@@ -20,8 +20,7 @@ static void return_share(struct particles *p, int64_t i, double per_time)
 
 /* A particle's face: the direction of its wetted surface times the root of the share that one sub-step of dt,
  * taken implicitly so that no bound follows from it, takes of the velocity along that; and velocity and
- * acceleration along it as the fluid saw them. Dry and clamped ones have none. A body no heavier than the
- * fluid is not expected to go on as it was seen to: the fluid decides how it does. */
+ * acceleration along it as the fluid expects them. Dry and clamped ones have none. */
 static void find_face(const struct solid *s, struct particles *p, int64_t i, double dt)
 {
     const struct solid_body *const body = &s->body[p->body[i]];
@@ -31,7 +30,7 @@ static void find_face(const struct solid *s, struct particles *p, int64_t i, dou
     p->face_x[i] = root * p->wet_x[i];
     p->face_y[i] = root * p->wet_y[i];
     p->face_v[i] = p->wx[i] * p->face_x[i] + p->wy[i] * p->face_y[i];
-    p->face_a[i] = body->light ? 0 : p->ax[i] * p->face_x[i] + p->ay[i] * p->face_y[i];
+    p->face_a[i] = body->expected * (p->ax[i] * p->face_x[i] + p->ay[i] * p->face_y[i]);
     p->face_taken[i] = 0;
 }
 

@@ -241,6 +241,14 @@ enum err monitor_check(struct simulation *s, struct diag *d)
  * of which are then from nowhere, and is stable; a run that is not gets beyond any such share. */
 #define ENERGY_LIMIT 0.9
 
+/* What may help a run that gains energy. */
+static const char *steadier(const struct simulation *s)
+{
+    if (!(s->effects & FX_MULTIRATE)) return "a smaller cfl or solid_safety";
+    return s->effects & FX_IMPEDANCE ? "a smaller cfl or numerics.multirate = off"
+                                     : "numerics.interface = impedance or a smaller cfl";
+}
+
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
 {
     const double active =
@@ -251,16 +259,15 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
-            "%.3g J/m in motion and strain: the run is unstable; a smaller cfl or "
-            "solid_safety may help, and numerics.interface = impedance where it is held",
-            s->state.time, gained, active);
+            "%.3g J/m in motion and strain: the run is unstable; %s may help",
+            s->state.time, gained, active, steadier(s));
     if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(
         d,
         "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
-        "strain: the run is not sound; a high cfl does this, and numerics.interface = held",
-        s->state.time, gained, active);
+        "strain: the run is not sound; %s may help",
+        s->state.time, gained, active, steadier(s));
     return ERR_OK;
 }
 

@@ -84,15 +84,23 @@ static void start_solid(struct simulation *s)
     }
 }
 
-/* What a late answer gives to a mode is at most 0.47 of what a prompt one would take (docs/theory.md,
- * Sec. 7). More drives plates of four particles and light bodies by symplectic; less drives light ones by
- * leapfrog, from C = 0.5 on. */
-static void set_impedance(struct simulation *s)
+/* How fluid and bodies meet within sub-steps (docs/theory.md, Sec. 7). What a late answer gives to a mode is
+ * at most 0.47 of what a prompt one would take. A body no heavier than the fluid is not expected to go on as
+ * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all at steps beyond its
+ * default, are driven by half of the impedance and by an acceleration that is carried on; by symplectic the
+ * whole impedance drives light ones. */
+static void set_interface(struct simulation *s)
 {
-    s->solid.impedance = s->scene->rho0 * s->scene->c0;
+    const double fixed = s->scene->numerics.fixed_step;
+    const double cfl = fixed > 0 ? fixed / smoothing_lag(s) : s->scene->numerics.cfl;
+    const bool leaps = s->effects & FX_LEAPFROG, far = leaps && cfl > 0.4 * (1 + 1e-9);
+    s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     for (int k = 0; k < s->solid.n_bodies; k++) {
         struct solid_body *const body = &s->solid.body[k];
-        body->prompt = body->light && s->effects & FX_LEAPFROG ? 1 : 0.5;
+        const bool follows = far || body->density <= s->scene->rho0;
+        body->expected = follows ? 0 : 1;
+        body->prompt = follows && leaps ? 1 : 0.5;
+        body->carried = follows && leaps ? 0 : 1;
     }
 }
 
@@ -112,7 +120,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
     if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)(FX_IMPEDANCE | FX_HELD_FORCE);
     s->fluid.effects = s->effects;
-    if (s->effects & FX_IMPEDANCE) set_impedance(s);
+    set_interface(s);
     return ERR_OK;
 }
 

@@ -32,7 +32,6 @@ static struct solid_body body_of(const struct scene *scene, int k)
         .kappa = c->hourglass,
         .damping_time = c->damping_time,
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
-        .light = c->density <= scene->rho0,
         .law = c->law,
         .plane = c->plane,
         .gradient = c->gradient,
@@ -383,12 +382,21 @@ static bool steps_parts(const struct solid *s, int n)
            thread_team() == s->threads;
 }
 
+/* By all threads together. */
+static void begin_answer(const struct solid *s, struct particles *p, double dt, int n)
+{
+    interface_begin(s, p, dt, n);
+    if (!s->drive) return;
+#pragma omp single
+    drive_turn_away(s->drive, p);
+}
+
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     bool in_parts = false;
 #pragma omp parallel num_threads(s->threads)
     {
-        if (s->impedance > 0) interface_begin(s, p, dt, n);
+        if (s->impedance > 0) begin_answer(s, p, dt, n);
         if (steps_parts(s, n)) {
             struct solid_part *const part = &s->part[thread_index()];
             const struct share own = share_of_part(part);

@@ -96,6 +96,25 @@ static void test_set_of_sections(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2 * sqrt(1 / 9.81), scene.top.end_time);
 }
 
+/* Leapfrog's step is twice as long, but with bodies of less than half of the fluid's density. */
+static void test_default_cfl(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.1, 0.1\n"
+        "sound_speed = 20\n[solid floor]\nshape = box 0, -0.04, 0.1, 0\nyoung = 1e6\n"
+        "poisson = 0.3\ndensity = 500\n";
+    static const char *const sets[] = {"integrator=leapfrog", "floor.density=499",
+                                       "numerics.cfl=0.3"};
+    parse(text, 1, (const char *const[]){"integrator=symplectic"});
+    TEST_ASSERT_EQUAL_DOUBLE(0.2, scene.numerics.cfl);
+    parse(text, 1, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.4, scene.numerics.cfl);
+    parse(text, 2, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.2, scene.numerics.cfl);
+    parse(text, 3, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.3, scene.numerics.cfl);
+}
+
 static void test_like_inherits_values_but_no_regions(void)
 {
     parse(TOP BLOCK "law = svk\nclamp = box 0, 0, 10 mm, 5 mm\n"
@@ -276,6 +295,7 @@ int main(void)
     RUN_TEST(test_constants_in_any_order);
     RUN_TEST(test_set_comes_before_evaluation);
     RUN_TEST(test_set_of_sections);
+    RUN_TEST(test_default_cfl);
     RUN_TEST(test_like_inherits_values_but_no_regions);
     RUN_TEST(test_sound_speed_follows_eq_3);
     RUN_TEST(test_line_ends_and_marks_of_other_systems);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The fluid's answer to a structure within its sub-steps (T-35a, T-35b). */
+#include "integrators.h"
 #include "interface.h"
 #include "rig.h"
 #include "unity.h"
@@ -120,6 +121,34 @@ static void test_answer_and_return_by_hand(void)
     assert_near(1e-14, -0.012 * 0.98, solid->owed_x[0], "still owed, x");
 }
 
+/* Bodies no heavier than the fluid, and with leapfrog's steps beyond its default all. */
+static void test_who_follows_the_fluid(void)
+{
+    static const struct {
+        const char *integrator, *density, *step;
+        double prompt, expected, carried;
+    } row[] = {
+        {"integrator=leapfrog", "block.density=1001", NULL, 0.5, 1, 1},
+        {"integrator=leapfrog", "block.density=1000", NULL, 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.cfl=0.5", 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.fixed_step=0.3 ms", 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.fixed_step=0.2 ms", 0.5, 1, 1},
+        {"integrator=symplectic", "block.density=1000", "numerics.cfl=0.4", 0.5, 0, 1},
+        {"integrator=verlet", "block.density=1000", NULL, 0.5, 0, 1},
+        {"integrator=verlet", "block.density=1001", NULL, 0.5, 1, 1},
+    };
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        rig_open(&rig, block, row[k].integrator, row[k].density, "block.young=1e8", row[k].step,
+                 NULL);
+        const struct solid_body *const body = &rig.sim.solid.body[0];
+        assert_near(0, row[k].prompt, body->prompt, "prompt");
+        assert_near(0, row[k].expected, body->expected, "expected");
+        assert_near(0, row[k].carried, body->carried, "carried");
+        rig_close(&rig);
+    }
+    open(NULL, NULL);
+}
+
 /* By hand, of 20 times the fluid's density: k = 0.005, of which 1/201 go. After 0.02 s the fluid expects
  * 0.8 * 1.25 + 0.02 * 50 = 2 m/s along the surface, where there are 5. A clamped particle has no face. */
 static void test_answer_to_what_was_not_expected(void)
@@ -139,9 +168,9 @@ static void test_answer_to_what_was_not_expected(void)
     TEST_ASSERT_TRUE(solid->vx[0] == 3 && solid->vy[0] == 4);
 }
 
-/* Sub-steps written out: kick, answer, drift, with times since the evaluation: from its own half step on
- * by symplectic, which begins and ends with half a drift. */
-static void substeps_by_hand(double dt, int n, bool centred)
+/* Sub-steps written out: kick, answer, drift, with times since the evaluation, which is `ahead` after the
+ * first begins; centred ones begin and end with half a drift. */
+static void substeps_by_hand(double dt, int n, bool centred, double ahead)
 {
     const double half = centred ? 0.5 * dt : 0;
     for (int64_t i = 0; i < solid->n; i++) {
@@ -158,7 +187,7 @@ static void substeps_by_hand(double dt, int n, bool centred)
             const double mass = 2000 * 1e-4, stiff = dt * 0.5 * 1000 * 20 * wet / mass;
             const double nx = wet > 0 ? solid->wet_x[i] / wet : 0,
                          ny = wet > 0 ? solid->wet_y[i] / wet : 0;
-            const double since = k * dt - (centred ? 0.5 * n * dt : 0);
+            const double since = k * dt - ahead;
             const double faster = (solid->vx[i] - solid->wx[i] - since * solid->ax[i]) * nx +
                                   (solid->vy[i] - solid->wy[i] - since * solid->ay[i]) * ny;
             const double kick = -stiff / (1 + stiff) * faster;
@@ -173,11 +202,11 @@ static void substeps_by_hand(double dt, int n, bool centred)
     }
 }
 
-static void twin(bool centred)
+static void twin(const char *integrator, bool centred, double ahead)
 {
     enum { FIELDS = 6, MOST = 32 };
     static double start[FIELDS][MOST], end[FIELDS][MOST];
-    open(centred ? "integrator=symplectic" : "integrator=verlet", "block.density=2000");
+    open(integrator, "block.density=2000");
     rig_steps(&rig, 30, 1);
     rig_evaluate(&rig);
     double *const field[FIELDS] = {solid->ux, solid->uy,     solid->vx,
@@ -187,11 +216,10 @@ static void twin(bool centred)
     for (int64_t i = 0; i < solid->n; i++) solid->owed_x[i] = solid->owed_y[i] = 0;
     for (int f = 0; f < FIELDS; f++) memcpy(start[f], field[f], bytes);
     const double dt = rig.sim.dt_solid;
-    substeps_by_hand(dt, 5, centred);
+    substeps_by_hand(dt, 5, centred, ahead * dt);
     for (int f = 0; f < FIELDS; f++) memcpy(end[f], field[f], bytes);
     for (int f = 0; f < FIELDS; f++) memcpy(field[f], start[f], bytes);
-    rig.sim.solid.seen_ago = centred ? -2.5 * dt : 0;
-    solid_advance(&rig.sim.solid, solid, dt, 5, centred);
+    advance_solid(&rig.sim, 5 * dt, 5, centred);
     double owed = 0;
     for (int64_t i = 0; i < solid->n; i++) {
         for (int f = 0; f < FIELDS; f++)
@@ -199,13 +227,15 @@ static void twin(bool centred)
         owed = fmax(owed, fabs(solid->owed_x[i]));
     }
     TEST_ASSERT_TRUE(owed > 1e-9);
+    rig_close(&rig);
 }
 
 static void test_substeps_by_hand(void)
 {
-    twin(false);
-    rig_close(&rig);
-    twin(true);
+    twin("integrator=verlet", false, 0);
+    twin("integrator=leapfrog", true, 0);
+    twin("integrator=symplectic", true, 2.5);
+    open(NULL, NULL);
 }
 
 static double momentum(double *size)
@@ -264,6 +294,31 @@ static void test_dry_particles_owe_less_and_less(void)
     }
 }
 
+/* What is clamped to a motion answers to its clamp: it owes the fluid nothing, its neighbours do. */
+static void test_moving_clamps_owe_nothing(void)
+{
+    rig_open(
+        &rig,
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.24, 0.1\nsound_speed = 20\n"
+        "[solid floor]\nshape = box 0, -0.04, 0.24, 0\ndensity = 2000\nyoung = 1e7\npoisson = 0.3\n"
+        "clamp = box 0, -0.04, 0.1, 0\nclamp_motion = shake\n"
+        "[motion shake]\nkind = polynomial\npoly_y = 0, 5\n"
+        "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
+        NULL);
+    TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
+    solid = &rig.sim.kind[KIND_SOLID];
+    rig_steps(&rig, 20, 1);
+    double most = 0, wet = 0;
+    for (int64_t i = 0; i < solid->n; i++) {
+        const double owed = hypot(solid->owed_x[i], solid->owed_y[i]);
+        most = fmax(most, owed);
+        if (solid->X[i] > 0.1) continue;
+        wet = fmax(wet, hypot(solid->wet_x[i], solid->wet_y[i]));
+        TEST_ASSERT_TRUE(owed == 0);
+    }
+    TEST_ASSERT_TRUE(most > 0 && wet > 0);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -271,9 +326,11 @@ int main(void)
     RUN_TEST(test_surface_of_a_straight_side);
     RUN_TEST(test_answer_and_return_by_hand);
     RUN_TEST(test_light_bodies_by_leapfrog);
+    RUN_TEST(test_who_follows_the_fluid);
     RUN_TEST(test_answer_to_what_was_not_expected);
     RUN_TEST(test_substeps_by_hand);
     RUN_TEST(test_momentum_closes);
     RUN_TEST(test_dry_particles_owe_less_and_less);
+    RUN_TEST(test_moving_clamps_owe_nothing);
     return UNITY_END();
 }
