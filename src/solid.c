@@ -270,7 +270,9 @@ static void look(const struct share *own)
     together(own, HAND_PLACE);
 }
 
-static void move(const struct share *own, double kick, double drift)
+/* Kick and drift, with the fluid's answer to the kick where there is one: `since` it saw the structure. */
+SPHFSI_INLINE void kick_and_drift(const struct share *own, double kick, double drift, bool answered,
+                                  double since)
 {
     const struct particles *const p = own->p;
     const int64_t end = end_of(own);
@@ -278,26 +280,21 @@ static void move(const struct share *own, double kick, double drift)
     for (int64_t i = first_of(own); i < end; i++) {
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
+        if (answered) interface_answer(p, i, since);
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }
     look(own);
 }
 
-/* The same with the fluid's answer to the kick. */
+static void move(const struct share *own, double kick, double drift)
+{
+    kick_and_drift(own, kick, drift, false, 0);
+}
+
 static void move_answered(const struct share *own, double kick, double drift, double since)
 {
-    const struct particles *const p = own->p;
-    const int64_t end = end_of(own);
-#pragma omp simd
-    for (int64_t i = first_of(own); i < end; i++) {
-        p->vx[i] += kick * p->sx[i];
-        p->vy[i] += kick * p->sy[i];
-        interface_answer(p, i, since);
-        p->ux[i] += drift * p->vx[i];
-        p->uy[i] += drift * p->vy[i];
-    }
-    look(own);
+    kick_and_drift(own, kick, drift, true, since);
 }
 
 void solid_stress(struct solid *s, struct particles *p)
