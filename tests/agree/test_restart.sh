@@ -99,4 +99,15 @@ for integrator in symplectic verlet leapfrog; do
 done
 grep -q '"fluid_left_domain": 0,' "$dir/round-verlet/summary.json" || fail "fluid was lost"
 
+# After all water has left, the solid must not feel the places of the water at the start.
+case=tests/fault/dry.cfg
+for integrator in symplectic verlet leapfrog; do
+    set=(--set integrator=$integrator --threads 1)
+    run "${set[@]}" --out "$dir/dry-$integrator"
+    run "${set[@]}" --out "$dir/dry-$integrator-cut" --until 0.05
+    grep -q '"fluid_left_domain": 25,' "$dir/dry-$integrator-cut/summary.json" || fail "water stays"
+    run "${set[@]}" --out "$dir/dry-$integrator-cut" --restart
+    agree "$dir/dry-$integrator" "$dir/dry-$integrator-cut" "all water gone, $integrator"
+done
+
 [ $failures = 0 ] || exit 1

@@ -56,6 +56,8 @@ finish() {
     [ "$(hash "$run")" = "$(hash "$dir/whole")" ] || fail "$what: other bits"
     cmp "$run/probes.csv" "$dir/whole/probes.csv" || fail "$what: probes.csv"
     cmp "$run/ledger.csv" "$dir/whole/ledger.csv" || fail "$what: ledger.csv"
+    "${PYTHON:-python3}" tests/support/same_snapshots.py {"$run","$dir/whole"}/fields.vtkhdf ||
+        fail "$what: fields.vtkhdf"
     compgen -G "$run/*.part" >/dev/null && fail "$what: an unfinished file stays"
 }
 
@@ -98,6 +100,29 @@ for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:EN
         finish "$what"
     done
 done
+
+# A snapshot that is lost while the run goes on, since the disk takes its time to say so: no checkpoint later
+# than it may stay, or a run that goes on would lack it. The times at which it is said do not matter.
+lose() { # STATUS of a run whose file of snapshots fails to be synced; the arguments that it has beside
+    strace -f -qq -o "$dir/trace" -e trace=fsync -P "$run/fields.vtkhdf.spare" \
+        -e inject=fsync:error=EIO:delay_exit=300000:when=1 \
+        "$sphfsi" "${arguments[@]}" --out "$run" "$@" >"$dir/output" 2>&1
+    status=$?
+    [ $status = 2 ] && grep -q '"exit_reason": "input_output"' "$run/summary.json" ||
+        fail "lost snapshot: exit status $status"
+}
+arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=60ms --set output.probe_interval=1ms
+    --set output.snapshot_interval=30ms)
+rm -rf "$dir/whole" "$run"
+"$sphfsi" "${arguments[@]}" --out "$dir/whole" >"$dir/output" 2>&1 || fail "the long run itself"
+lose
+finish "first snapshot lost"
+# The last one: its loss is known after all else has been done.
+rm -rf "$run"
+"$sphfsi" "${arguments[@]}" --out "$run" --until 0.03 >"$dir/output" 2>&1 || fail "the long run, cut"
+lose --restart
+finish "last snapshot lost"
+
 [ $kills -gt 3 ] && [ $errors -gt 3 ] || fail "only $kills kills and $errors errors"
 echo "found: $kills kills within a call, $errors calls that failed ($harmless of them harmless);" \
     "$again runs gone on and $anew begun anew with the same bits; $failures failures"
