@@ -19,9 +19,8 @@ struct solid_body {
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
-    double prompt; /* share of the fluid's impedance that it meets within its sub-steps (T-35a) */
-    double
-        expected; /* share of the acceleration that the fluid saw with which it expects it to go on */
+    double prompt;    /* share of the fluid's impedance that it meets within sub-steps (T-35a) */
+    double expected;  /* share of its acceleration that the fluid expects to go on (T-35a) */
     double carried;   /* share of that acceleration's rate of change that the fluid sees (T-35) */
     int bond;         /* bodies joined to each other share this number, that of the first of them */
     bool symmetric;   /* viscous force with both particles' tensors */
