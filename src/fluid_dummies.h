@@ -257,7 +257,7 @@ SPHFSI_INLINE struct dummies dummies_at(const struct fluid *f, const struct cell
                                         enum kind kind, int32_t cell, int32_t m)
 {
     const struct cell_list *const list = &c->kind[kind];
-    const size_t cluster = (size_t)(list->cluster[cell] + m);
+    const size_t cluster = (size_t)list->cluster[cell] + (size_t)m;
     return (struct dummies){kind, particles_in(list, cell, m),
                             &list->order[list->start[cell] + m * CLUSTER], cluster,
                             cluster_lanes(&f->lanes[kind], cluster)};

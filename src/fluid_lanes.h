@@ -50,6 +50,7 @@ SPHFSI_INLINE void put_four(real *lanes, enum lane_field m, four_double four)
 SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_constants *k)
 {
     four_double pressure;
+    /* cppcheck-suppress uninitvar ; all of its items are set here */
     for (int r = 0; r < 4; r++) pressure[r] = eos_pressure(dens[r], k->rho0, k->c0);
     return pressure;
 }
@@ -167,9 +168,9 @@ static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COU
         const int32_t cell = list->active[k];
         for (int32_t m = 0; m < list->count[cell]; m++) {
             const int32_t i = list->start[cell] + m;
-            real *const own =
-                cluster_lanes(&f->lanes[KIND_FLUID], (size_t)(list->cluster[cell] + m / CLUSTER)) +
-                m % CLUSTER;
+            real *const own = cluster_lanes(&f->lanes[KIND_FLUID],
+                                            (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
+                              m % CLUSTER;
             own[LANE_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
             own[LANE_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
         }

@@ -74,6 +74,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t s
     }
     if (fx & FX_SHIFTING) fx_crowd(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
+    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
     return e;
 }
 
@@ -144,6 +145,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t s
     }
     if (fx & FX_SHIFTING) fx_crowd(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
+    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
     return e;
 }
 

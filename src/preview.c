@@ -285,7 +285,7 @@ static void describe_probe(const struct scene_probe *p, char *text, size_t size)
 
 static void put_list(const struct drawing *g, double y)
 {
-    char text[512];
+    char text[640];
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int k = 0; k < section_count(g->s, sections[kind]); k++, y += LINE) {
             const bool moves = kind == KIND_WALL && g->s->wall[k].motion[0];

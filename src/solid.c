@@ -90,6 +90,7 @@ static void warn_of_flutter(const struct solid_body *b, const char *name, struct
 static const char *needs_double(const struct solid *s, const struct scene *scene,
                                 const struct particles *p)
 {
+    /* NOLINTNEXTLINE(clang-analyzer-core.VLASize): a solid has bodies */
     bool held[s->n_bodies];
     memset(held, 0, sizeof held);
     for (int64_t i = 0; i < p->n; i++) {

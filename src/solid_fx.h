@@ -12,6 +12,7 @@
 #define weight_of(slot, weight) vload((slot) + (weight)*LANES)
 
 /* Displacements are in two parts where real is float. */
+/* NOLINTNEXTLINE(misc-redundant-expression): this text is compiled for both */
 enum { SPLIT = sizeof(real) < sizeof(double) };
 
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct solid *s, int64_t i)

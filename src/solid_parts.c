@@ -106,6 +106,7 @@ static void find_runs(struct solid_part *part, const struct plan *plan, const in
         if (last && last->there + last->n == global[k] && last->own == own)
             last->n++;
         else
+            /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): create_part has allocated it */
             part->run[part->n_runs++] = (struct part_run){k, global[k], 1, own};
     }
 }

@@ -220,6 +220,7 @@ double solid_stiffening(const struct solid *s, const struct particles *p)
         reference[k] = axial_stiffness(&s->body[k], vset_double(1), vset_double(1))[0];
 #pragma omp parallel for schedule(static) num_threads(s->threads) reduction(max : top)
     for (int64_t k = 0; k < s->n_packs; k++)
+        /* cppcheck-suppress uninitvar ; all of its items are set above */
         top = max2(top, stiffest(s, p, &s->pack[k]) / reference[s->pack[k].body]);
     return top;
 }

@@ -485,8 +485,8 @@ enum err solid_stencil_of_part(struct solid *part, struct arena *a, const struct
     TRY(create_packs(part, a, p, d));
     struct arena scratch = {.limit = a->limit};
     const struct solid_pack *const last = &whole->pack[whole->n_packs - 1];
-    int32_t *const pack_of = arena_alloc(&scratch, (size_t)(last->i + last->lanes), sizeof *pack_of,
-                                         "packs of the solid", d);
+    int32_t *const pack_of = arena_alloc(&scratch, (size_t)last->i + (size_t)last->lanes,
+                                         sizeof *pack_of, "packs of the solid", d);
     for (int32_t k = 0; pack_of && k < whole->n_packs; k++)
         for (int l = 0; l < whole->pack[k].lanes; l++) pack_of[whole->pack[k].i + l] = k;
     const struct slot_source from = {.fill = slots_from_whole,

@@ -40,9 +40,11 @@ else
     echo "clang-tidy is not there"
 fi
 
+# Its search for what is not set takes vectors that are filled item by item, and fields that only some laws
+# load, for unset; cppcheck and memcheck look for that.
 if gcc -fanalyzer -E -x c /dev/null >/dev/null 2>&1; then
     for file in "${files[@]}"; do
-        gcc -fanalyzer "${flags[@]}" -c -o /dev/null "$file" 2>&1
+        gcc -fanalyzer -Wno-analyzer-use-of-uninitialized-value "${flags[@]}" -c -o /dev/null "$file" 2>&1
     done | grep ': warning: ' >"$findings"
     report "gcc -fanalyzer" "$(gcc -dumpfullversion)"
 else
