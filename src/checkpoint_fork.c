@@ -68,6 +68,15 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
     return ERR_OK;
 }
 
+/* What is owed to the fluid is let go where the structure does not answer it any more: nobody returns it. */
+static void forgive(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    if (!p->owed_x || s->effects & FX_IMPEDANCE) return;
+    memset(p->owed_x, 0, (size_t)p->n * sizeof *p->owed_x);
+    memset(p->owed_y, 0, (size_t)p->n * sizeof *p->owed_y);
+}
+
 static enum err sort_anew(struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
@@ -90,6 +99,7 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     if (s->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
     TRY(checkpoint_load(m, s, true, d));
     if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
+    forgive(s);
     if (s->effects & FX_FLUID) {
         TRY(fork_walls(s, d));
         TRY(sort_anew(s, d));

@@ -60,6 +60,42 @@ expect 0 'restart from' "$case" --out "$dir/cut" --restart "${go[@]}" --set gate
 expect 0 'fork from' "$case" --fork "$ckpt" --out "$dir/answers" "${go[@]}" \
     --set numerics.interface=impedance
 
+# --- fork: what a structure owes is let go where it does not answer any more, and the ledger knows ---
+cat >"$dir/free.cfg" <<'CASE'
+dp = 1 cm
+end_time = 0.1
+[fluid water]
+shape = box 0, 0, 0.24, 0.24
+minus = box 0.1, 0.1, 0.14, 0.14
+sound_speed = 20
+artificial_viscosity = 0.1
+density_diffusion = 0.1
+[solid block]
+shape = box 0.1, 0.1, 0.14, 0.14
+density = 100
+young = 1e6
+poisson = 0.3
+velocity = 0.2, 0.1
+[domain]
+lower = -0.2, -0.2
+upper = 0.5, 0.5
+CASE
+momentum() { # the first of the ledger's rows: of fluid and structure less what is owed
+    awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) if ($k == "momentum_x_Ns_per_m") at = k }
+             NR == 2 { print $at }' "$dir/$1/ledger.csv"
+}
+expect 0 'simulated' "$dir/free.cfg" --threads 1 --until 0.02 --out "$dir/free"
+for way in interface=held interface=impedance multirate=off; do
+    expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/soft-$way" \
+        --set block.young=1e4 --set numerics.$way
+done
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/owes"
+[ -n "$(momentum soft-interface=held)" ] || fail "no momentum in the ledger"
+for way in interface=impedance multirate=off; do
+    [ "$(momentum "soft-$way")" = "$(momentum soft-interface=held)" ] || fail "$way: a debt stays"
+done
+[ "$(momentum owes)" != "$(momentum soft-interface=held)" ] || fail "nothing is owed, nothing tested"
+
 # --- fork: a wall that begins to move; one that would jump ---
 cp "$case" "$dir/moving.cfg"
 sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nvelocity = 0.1, 0\nstart = 0.02 s\n\n&/' \
