@@ -437,15 +437,12 @@ static void check_interface(struct reader *r)
              "solid's sub-steps, and there are none");
 }
 
-/* The largest steps that keep the accuracy of each integrator; the paper's is 0.2. Bodies of up to 0.35 of
- * the fluid's density between equal waters are driven by leapfrog at 0.4 (docs/theory.md, Sec. 7). */
+/* The largest steps that keep the accuracy of each integrator, and light bodies sound. */
 static void choose_cfl(struct scene *s)
 {
     if (s->numerics.cfl != 0) return;
-    bool light = false;
-    for (int k = 0; k < s->n_solid && s->n_fluid > 0; k++)
-        light |= s->solid[k].density < 0.5 * s->fluid[0].density;
-    s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG && !light ? 0.4 : 0.2;
+    const bool leaps = s->top.integrator == INTEGRATOR_LEAPFROG && scene_light_solid(s) < 0;
+    s->numerics.cfl = leaps ? CFL_LEAPFROG : CFL_PAPER;
 }
 
 enum err case_check(struct reader *r)

@@ -31,8 +31,8 @@ void advance_fluid(struct simulation *s, advance_rows *rows, const void *by);
 /* Finds the extremes of the fluid as it stands. */
 void look_at_fluid(struct simulation *s);
 
-/* n solid steps within a fluid step of dt with the fluid's force held; afterwards the fluid sees the
- * solid's mean velocity over the step, carried on to its end, and acceleration (T-35). */
+/* n solid steps within a fluid step of dt, with the fluid's force held or answering (T-35a); afterwards the
+ * fluid sees the solid's mean velocity over the step, carried on to its end, and acceleration (T-35). */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
 /* How far the acceleration that the fluid sees of a structure lags, s, and the weight of a new value after

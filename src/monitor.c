@@ -241,12 +241,19 @@ enum err monitor_check(struct simulation *s, struct diag *d)
  * of which are then from nowhere, and is stable; a run that is not gets beyond any such share. */
 #define ENERGY_LIMIT 0.9
 
-/* What may help a run that gains energy. */
-static const char *steadier(const struct simulation *s)
+/* What makes the steps of a run smaller, and what may help it beside that where it gains energy. */
+static const char *step_key(const struct simulation *s)
 {
-    if (!(s->effects & FX_MULTIRATE)) return "a smaller cfl or solid_safety";
-    return s->effects & FX_IMPEDANCE ? "a smaller cfl or numerics.multirate = off"
-                                     : "numerics.interface = impedance or a smaller cfl";
+    if (s->scene->numerics.fixed_step > 0) return "fixed_step";
+    return s->effects & FX_FLUID ? "cfl" : "solid_safety";
+}
+static const char *beside_step(const struct simulation *s)
+{
+    if (!(s->effects & FX_COUPLING)) return "";
+    if (s->effects & FX_MULTIRATE && !(s->effects & FX_IMPEDANCE))
+        return " or numerics.interface = impedance";
+    if (s->scene->numerics.fixed_step > 0) return "";
+    return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
 }
 
 enum err monitor_energy(struct simulation *s, const struct ledger *row, struct diag *d)
@@ -259,15 +266,15 @@ enum err monitor_energy(struct simulation *s, const struct ledger *row, struct d
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
-            "%.3g J/m in motion and strain: the run is unstable; %s may help",
-            s->state.time, gained, active, steadier(s));
+            "%.3g J/m in motion and strain: the run is unstable; a smaller %s%s may help",
+            s->state.time, gained, active, step_key(s), beside_step(s));
     if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(
         d,
         "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
-        "strain: the run is not sound; %s may help",
-        s->state.time, gained, active, steadier(s));
+        "strain: the run is not sound; a smaller %s%s may help",
+        s->state.time, gained, active, step_key(s), beside_step(s));
     return ERR_OK;
 }
 

@@ -205,6 +205,14 @@ struct motion_point {
 };
 struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
 
+/* C_CFL of Eq. 28 where none is given: that of the paper, and that of leapfrog, whose step may be twice as
+ * long (docs/performance.md). */
+#define CFL_PAPER 0.2
+#define CFL_LEAPFROG 0.4
+/* The lightest solid, where it has less than half of the fluid's density; -1: none. Leapfrog's step may drive
+ * bodies of up to 0.35 of it between equal waters (docs/theory.md, Sec. 7). */
+int scene_light_solid(const struct scene *s);
+
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);

@@ -6,6 +6,7 @@
 
 #include "eos.h"
 #include "integrators.h"
+#include "simulation_warn.h"
 #include "smoothing.h"
 #include "timestep.h"
 
@@ -86,14 +87,12 @@ static void start_solid(struct simulation *s)
 
 /* How fluid and bodies meet within sub-steps (docs/theory.md, Sec. 7). What a late answer gives to a mode is
  * at most 0.47 of what a prompt one would take. A body no heavier than the fluid is not expected to go on as
- * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all at steps beyond its
- * default, are driven by half of the impedance and by an acceleration that is carried on; by symplectic the
- * whole impedance drives light ones. */
+ * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all at steps beyond its own,
+ * are driven by half of the impedance and by an acceleration that is carried on; by symplectic the whole
+ * impedance drives light ones. */
 static void set_interface(struct simulation *s)
 {
-    const double fixed = s->scene->numerics.fixed_step;
-    const double cfl = fixed > 0 ? fixed / smoothing_lag(s) : s->scene->numerics.cfl;
-    const bool leaps = s->effects & FX_LEAPFROG, far = leaps && cfl > 0.4 * (1 + 1e-9);
+    const bool leaps = s->effects & FX_LEAPFROG, far = leaps && timestep_beyond(s, CFL_LEAPFROG);
     s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     for (int k = 0; k < s->solid.n_bodies; k++) {
         struct solid_body *const body = &s->solid.body[k];
@@ -277,18 +276,6 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Says once what a scene may expect and does not ask for. */
-static void warn_of_contact(const struct simulation *s, struct diag *d)
-{
-    if (s->effects & FX_CONTACT) return;
-    int loose = 0;
-    for (int k = 0; k < s->scene->n_solid; k++) loose += s->scene->solid[k].clamp.n == 0;
-    if (s->scene->n_solid > 1 || (loose && s->scene->n_wall > 0))
-        diag_warn(d,
-                  "contact is not simulated: solids pass through each other and through walls; a "
-                  "[contact] section calls for it");
-}
-
 static enum err create_contact(struct simulation *s, struct diag *d)
 {
     static const struct particles none = {0};
@@ -303,67 +290,9 @@ static enum err create_contact(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* A body that nothing holds moves away, which is seldom what a case with gravity or a load means. */
-static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
-{
-    for (int k = 0; k < s->scene->n_solid; k++) {
-        const struct scene_solid *const b = &s->scene->solid[k];
-        if (b->clamp.n || b->joined[0]) continue;
-        bool loaded = false;
-        for (int m = 0; m < s->scene->n_load; m++)
-            loaded |= scene_find_solid(s->scene, s->scene->load[m].body) == k;
-        if (b->gravity && s->effects & FX_GRAVITY)
-            diag_warn(
-                d,
-                "[solid %s] is clamped nowhere, and gravity acts on it: it falls unless fluid "
-                "carries it; `clamp` holds it, `gravity = off` spares it",
-                b->common.name);
-        else if (loaded)
-            diag_warn(d,
-                      "[solid %s] is clamped nowhere, and a [load] acts on it: it is driven away; "
-                      "`clamp` holds it",
-                      b->common.name);
-    }
-}
-
-/* Up to these a column of water that falls together (tests/stability/column.cfg) was found stable; for
- * leapfrog the analysis of docs/theory.md says the same. */
-static void warn_of_cfl(const struct simulation *s, struct diag *d)
-{
-    static const double largest[] = {0.4, 0.2, 0.6};
-    const double cfl = s->scene->numerics.cfl, limit = largest[s->scene->top.integrator];
-    if (s->effects & FX_FLUID && !(s->scene->numerics.fixed_step > 0) && cfl > limit)
-        diag_warn(d,
-                  "numerics.cfl = %g is beyond %g, up to which this integrator is stable: the "
-                  "fluid may blow up, and a guard would stop the run",
-                  cfl, limit);
-}
-
-/* fixed_step is taken as it is, also where it must end in a blow-up. */
-static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
-{
-    const double fixed = s->scene->numerics.fixed_step;
-    if (!(fixed > 0)) return;
-    const bool shared = s->effects & FX_SOLID && !(s->effects & FX_MULTIRATE);
-    const double fluid = s->scene->numerics.cfl * s->fluid.k.h / max2(s->fluid.k.c0, 1e-300);
-    if (shared && fixed > s->solid.stable_step)
-        diag_warn(
-            d,
-            "numerics.fixed_step = %g s is beyond the %.4g s of the solid's bound: the run will "
-            "blow up; 0 takes the step from the bounds",
-            fixed, s->solid.stable_step);
-    if (s->effects & FX_FLUID && fixed > fluid * (1 + 1e-9))
-        diag_warn(
-            d,
-            "numerics.fixed_step = %g s is beyond the %.4g s of Eq. 28b with cfl = %g: the fluid "
-            "may become unstable; 0 takes the step from the bounds",
-            fixed, fluid, s->scene->numerics.cfl);
-}
-
 static enum err build(struct simulation *s, struct diag *d)
 {
-    warn_of_contact(s, d);
-    warn_of_loose_bodies(s, d);
+    simulation_warn_of_scene(s, d);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         TRY(fill_kind(s, (enum kind)kind, id, d));
@@ -387,8 +316,7 @@ static enum err build(struct simulation *s, struct diag *d)
         move_walls(s, 0);
     }
     TRY(choose_rate(s, d));
-    warn_of_fixed_step(s, d);
-    warn_of_cfl(s, d);
+    simulation_warn_of_steps(s, d);
     set_guards(s);
     look_at_fluid(s);
     find_speed(s);

@@ -111,6 +111,17 @@ double timestep_fluid_limit(const struct simulation *s)
     return limit;
 }
 
+double timestep_courant(const struct simulation *s)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    return fixed > 0 ? fixed * s->fluid.k.c0 / s->fluid.k.h : s->scene->numerics.cfl;
+}
+
+bool timestep_beyond(const struct simulation *s, double cfl)
+{
+    return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
+}
+
 double timestep_choose(struct simulation *s, double t_limit, bool *hits)
 {
     double dt = (double)INFINITY;

@@ -11,6 +11,11 @@ enum { EQUAL_STEPS = 64 };
 /* Largest step the fluid can ever take, s: Eq. 28b at rest. */
 double timestep_fluid_limit(const struct simulation *s);
 
+/* C_CFL of Eq. 28b at rest, that of a fixed step, too; and whether the fluid's steps are longer than those of
+ * another. */
+double timestep_courant(const struct simulation *s);
+bool timestep_beyond(const struct simulation *s, double cfl);
+
 /* Chooses the next step from the fluid's last evaluation and the solid's bound, ending no later than
  * t_limit and exactly there, by equal steps before it. Fills s->dt_bound. `*hits` is set where the step
  * ends at t_limit. */

@@ -339,7 +339,8 @@ back: 0.8 s, one thread. An integrator whose step is too long shows it in the de
 
 {table(["integrator", "C_CFL", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
 
-The defaults are 0.2 (symplectic, verlet: the paper's) and 0.4 (leapfrog).
+The defaults are 0.2 (symplectic, verlet: the paper's) and 0.4 (leapfrog; 0.2 where a body has less than
+half of the fluid's density).
 
 ## Whole runs
 

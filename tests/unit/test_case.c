@@ -113,6 +113,18 @@ static void test_default_cfl(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.2, scene.numerics.cfl);
     parse(text, 3, sets);
     TEST_ASSERT_EQUAL_DOUBLE(0.3, scene.numerics.cfl);
+    static const char more[] =
+        "[solid cork]\nshape = box 0.2, 0, 0.24, 0.1\nyoung = 1e6\npoisson = 0.3\n"
+        "density = 300\n[solid lid]\nlike = cork\n"
+        "shape = box 0.3, 0, 0.34, 0.1\ndensity = 3000\n";
+    char three[1024];
+    snprintf(three, sizeof three, "%s%s", text, more);
+    parse(three, 1, sets);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0.2, scene.numerics.cfl,
+                                     "the second of three bodies is light");
+    TEST_ASSERT_EQUAL_INT(1, scene_light_solid(&scene));
+    parse(three, 2, (const char *const[]){"integrator=leapfrog", "cork.density=500"});
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0.4, scene.numerics.cfl, "none of three is light");
 }
 
 static void test_like_inherits_values_but_no_regions(void)

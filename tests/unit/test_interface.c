@@ -149,6 +149,26 @@ static void test_who_follows_the_fluid(void)
     open(NULL, NULL);
 }
 
+/* The first body is heavy, the second light: each is met as it is alone. */
+static void test_bodies_are_met_each_its_own_way(void)
+{
+    static const char with_bar[] =
+        "dp = 1 cm\nend_time = 1\nintegrator = leapfrog\n"
+        "[fluid water]\nshape = box 0, 0, 0.24, 0.24\nsound_speed = 20\n"
+        "[solid bar]\nshape = box 0.24, 0, 0.3, 0.24\ndensity = 7800\nyoung = 1e9\npoisson = 0.3\n"
+        "[solid cork]\nshape = box 0, 0.24, 0.24, 0.3\ndensity = 600\nyoung = 1e6\npoisson = 0.3\n"
+        "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n";
+    rig_open(&rig, with_bar, NULL);
+    const struct solid_body *const body = rig.sim.solid.body;
+    for (int k = 0; k < 2; k++) {
+        assert_near(0, k == 0 ? 0.5 : 1, body[k].prompt, "prompt");
+        assert_near(0, k == 0, body[k].expected, "expected");
+        assert_near(0, k == 0, body[k].carried, "carried");
+    }
+    rig_close(&rig);
+    open(NULL, NULL);
+}
+
 /* By hand, of 20 times the fluid's density: k = 0.005, of which 1/201 go. After 0.02 s the fluid expects
  * 0.8 * 1.25 + 0.02 * 50 = 2 m/s along the surface, where there are 5. A clamped particle has no face. */
 static void test_answer_to_what_was_not_expected(void)
@@ -327,6 +347,7 @@ int main(void)
     RUN_TEST(test_answer_and_return_by_hand);
     RUN_TEST(test_light_bodies_by_leapfrog);
     RUN_TEST(test_who_follows_the_fluid);
+    RUN_TEST(test_bodies_are_met_each_its_own_way);
     RUN_TEST(test_answer_to_what_was_not_expected);
     RUN_TEST(test_substeps_by_hand);
     RUN_TEST(test_momentum_closes);

@@ -216,6 +216,37 @@ static void test_energy_from_nowhere(void)
                                  rig.diag.text);
 }
 
+static void advises(const char *text, const char *what, const char *set, const char *another)
+{
+    const struct ledger row = {.kinetic = 3, .dissipated = -3};
+    rig_open(&rig, text, set, another, NULL);
+    rig.diag = (struct diag){.warn = note};
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, monitor_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
+}
+
+/* A setting that is named does something in the run. */
+static void test_what_may_help_is_said(void)
+{
+    static const char water[] =
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.1, 0.1\n"
+        "sound_speed = 20\n";
+    static const char bar[] = "dp = 1 cm\nend_time = 1\n[solid bar]\nshape = box 0, 0, 0.3, 0.05\n"
+                              "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+    static const char fixed[] = "numerics.fixed_step=1e-4", small[] = "numerics.fixed_step=1e-5";
+    advises(water, "; a smaller cfl may help", NULL, NULL);
+    advises(water, "; a smaller fixed_step may help", fixed, NULL);
+    advises(bar, "; a smaller solid_safety may help", NULL, NULL);
+    advises(bar, "; a smaller fixed_step may help", small, NULL);
+    advises(scene, "; a smaller cfl or numerics.multirate = off may help", "gate.young=1e8", NULL);
+    advises(scene, "; a smaller cfl or numerics.interface = impedance may help", "gate.young=1e8",
+            "numerics.interface=held");
+    advises(scene, "; a smaller cfl or solid_safety may help", "numerics.multirate=off", NULL);
+    advises(scene, "; a smaller fixed_step may help", "gate.young=1e8", fixed);
+    advises(scene, "; a smaller fixed_step or numerics.interface = impedance may help", fixed,
+            "numerics.interface=held");
+}
+
 /* Warnings that come before the limits, once each. */
 static void test_warnings_before_the_end(void)
 {
@@ -260,6 +291,7 @@ int main(void)
     RUN_TEST(test_one_warning_for_fast_fluid);
     RUN_TEST(test_fluid_inside_of_bodies);
     RUN_TEST(test_energy_from_nowhere);
+    RUN_TEST(test_what_may_help_is_said);
     RUN_TEST(test_warnings_before_the_end);
     RUN_TEST(test_substeps_without_end);
     RUN_TEST(test_a_run_stops_at_once);
