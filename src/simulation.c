@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "drops.h"
 #include "eos.h"
 #include "integrators.h"
 #include "simulation_warn.h"
@@ -432,6 +433,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     /* Now, so that the cells are good for whoever looks at the state between two steps. */
     if (sorting_due(s)) TRY(sort_particles(s, d));
     clock = phase_add(s, PHASE_sort, clock);
+    drops_let_go(s);
     TRY(monitor_crossing(s, d));
     phase_add(s, PHASE_update, clock);
     return ERR_OK;

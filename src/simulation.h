@@ -115,6 +115,9 @@ struct sample {
 };
 struct sample simulation_sample(const struct simulation *s, double x, double y);
 
+/* Particles of all kinds within reach of a point. */
+int simulation_near(const struct simulation *s, double x, double y);
+
 /* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
 double simulation_pressure_at(const struct simulation *s, double x, double y);
 

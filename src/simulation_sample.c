@@ -58,6 +58,22 @@ static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i,
     sum->vy += w * p->vy[i];
 }
 
+static void count_near(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums)
+{
+    (void)kind;
+    (void)i;
+    *(int *)sums += r < KERNEL_REACH * s->fluid.k.h;
+}
+
+int simulation_near(const struct simulation *s, double x, double y)
+{
+    int n = 0;
+    each_near(s, KIND_FLUID, x, y, count_near, &n);
+    if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, count_near, &n);
+    if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, count_near, &n);
+    return n;
+}
+
 struct sample simulation_sample(const struct simulation *s, double x, double y)
 {
     struct sample sum = {0};

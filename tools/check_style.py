@@ -19,7 +19,8 @@ FLOORS = [
     "fields groups particles morton cells clusters smoothing eos",
     "params presets evidence effects rules phases quantities pointdata case expr units geometry motion scene",
     "fluid variants solid material contact drive interface",
-    "simulation timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds state",
+    "simulation drops timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds "
+    "state",
     "folder json probes reference snapshot checkpoint report series",
     "sphfsi session explain inspect preview manual templates citations examples run "
     "forecast budget refine api main",
