@@ -127,7 +127,7 @@ void drive_place(struct drive *v, struct particles *p, double time)
         p->uy[i] = at.x[1] - p->Y[i];
         p->vx[i] = at.v[0];
         p->vy[i] = at.v[1];
-        if (p->owed_x) p->owed_x[i] = p->owed_y[i] = 0; /* the clamp takes it */
+        if (p->owed_x) p->owed_x[i] = p->owed_y[i] = 0; /* a fork's new clamp takes it */
     }
 }
 

@@ -88,12 +88,13 @@ static void start_solid(struct simulation *s)
 
 /* How fluid and bodies meet within sub-steps (docs/theory.md, Sec. 7). What a late answer gives to a mode is
  * at most 0.47 of what a prompt one would take. A body no heavier than the fluid is not expected to go on as
- * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all at steps beyond its own,
- * are driven by half of the impedance and by an acceleration that is carried on; by symplectic the whole
- * impedance drives light ones. */
+ * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all that answer at steps beyond
+ * its own, are driven by half of the impedance and by an acceleration that is carried on; by symplectic the
+ * whole impedance drives light ones. */
 static void set_interface(struct simulation *s)
 {
-    const bool leaps = s->effects & FX_LEAPFROG, far = leaps && timestep_beyond(s, CFL_LEAPFROG);
+    const bool leaps = s->effects & FX_LEAPFROG;
+    const bool far = leaps && s->effects & FX_IMPEDANCE && timestep_beyond(s, CFL_LEAPFROG);
     s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     for (int k = 0; k < s->solid.n_bodies; k++) {
         struct solid_body *const body = &s->solid.body[k];

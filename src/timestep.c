@@ -113,8 +113,7 @@ double timestep_fluid_limit(const struct simulation *s)
 
 double timestep_courant(const struct simulation *s)
 {
-    const double fixed = s->scene->numerics.fixed_step;
-    return fixed > 0 ? fixed * s->fluid.k.c0 / s->fluid.k.h : s->scene->numerics.cfl;
+    return timestep_fluid_limit(s) * s->fluid.k.c0 / s->fluid.k.h;
 }
 
 bool timestep_beyond(const struct simulation *s, double cfl)

@@ -11,8 +11,8 @@ enum { EQUAL_STEPS = 64 };
 /* Largest step the fluid can ever take, s: Eq. 28b at rest. */
 double timestep_fluid_limit(const struct simulation *s);
 
-/* C_CFL of Eq. 28b at rest, that of a fixed step, too; and whether the fluid's steps are longer than those of
- * another. */
+/* C_CFL of Eq. 28b at rest that the largest step has, whatever bounds it; and whether it is longer than that
+ * of another. */
 double timestep_courant(const struct simulation *s);
 bool timestep_beyond(const struct simulation *s, double cfl);
 

@@ -146,6 +146,15 @@ static void test_who_follows_the_fluid(void)
         assert_near(0, row[k].carried, body->carried, "carried");
         rig_close(&rig);
     }
+    /* Not where a long step is not taken, nor where nothing is answered. */
+    static const char *const others[] = {"water.artificial_viscosity=1", "numerics.interface=held",
+                                         "numerics.multirate=off"};
+    for (size_t k = 0; k < COUNT_OF(others); k++) {
+        rig_open(&rig, block, "integrator=leapfrog", "block.density=1001", "block.young=1e8",
+                 "numerics.cfl=0.5", others[k], NULL);
+        assert_near(0, 1, rig.sim.solid.body[0].carried, others[k]);
+        rig_close(&rig);
+    }
     open(NULL, NULL);
 }
 
