@@ -80,7 +80,7 @@ OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopen
 # Older clang on AArch64 knows -mcpu=native only.
 MARCH := $(or $(shell $(CC) -march=$(ARCH) -E -x c /dev/null >/dev/null 2>&1 && \
                       echo -march=$(ARCH)),-mcpu=$(ARCH))
-COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude $(HDF5_CFLAGS) \
+COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude -Isrc $(HDF5_CFLAGS) \
            $(CPPFLAGS) $(CFLAGS)
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
@@ -94,9 +94,11 @@ FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 LIB     := $(B)/libsphfsi.a
 # One of a build folder of its own (B=...) must not take the place of ./sphfsi.
 PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
-LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
+LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/*.c)))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
+# Tests of one folder of src/ each, and of the tools.
+UNIT_DIRS := base particles case geometry fluid solid time output app tools
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
@@ -121,21 +123,19 @@ STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/nu
 STAMP_TEXT-version := $(FULL_VERSION)
 $(B)/flags $(B)/version: FORCE
 	@mkdir -p $(@D); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
-$(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*.c)): $(B)/version
+$(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*/*.c)): $(B)/version
 
 $(B)/%.o: %.c $(B)/flags
 	@mkdir -p $(@D); $(if $(V),,echo '  CC  $<')
 	$(Q)$(COMPILE) $(EXTRA) -DSPHFSI_VERSION='"$(FULL_VERSION)"' -MMD -MP -c -o $@ $<
 
 $(LIB): $(LIB_OBJ)
-	$(Q)rm -f $@ && $(AR) rcs $@ $^
+	$(Q)rm -f $@ && $(AR) qcs $@ $^
 
-$(PROGRAM): $(B)/src/main.o $(LIB)
+$(PROGRAM): $(B)/src/app/main.o $(LIB)
 	$(Q)$(LINK)
 
-# Benches and tests may look inside the library.
-$(B)/bench/%.o: EXTRA = -Isrc
-$(B)/tests/%.o: EXTRA = -Isrc -Itests/support $(UNITY_CFLAGS)
+$(B)/tests/%.o: EXTRA = -Itests/support $(UNITY_CFLAGS)
 
 # Unity writes to stderr, which is not buffered: a crash loses nothing.
 $(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
@@ -159,7 +159,7 @@ test-neon:
 	@bash tests/neon.sh $(UNITY_SRC)
 
 test-sanitize:
-	@TEST_DIRS='unit agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
+	@TEST_DIRS='$(UNIT_DIRS) agree fault' $(MAKE) --no-print-directory CONFIG=sanitize test
 
 # gcc's OpenMP runtime would be reported itself; clang's tells of its barriers (OMPT, libarcher). Tests
 # that look at files or at long runs say nothing here and would take hours.
@@ -168,7 +168,7 @@ test-thread: export OMP_NUM_THREADS := 2
 test-thread:
 	@$(MAKE) --no-print-directory CONFIG=thread CC=clang all
 	@tools/short_runs.sh build/thread/sphfsi
-	@TEST_DIRS=unit TEST_KINDS=c $(MAKE) --no-print-directory CONFIG=thread CC=clang test
+	@TEST_DIRS='$(UNIT_DIRS)' TEST_KINDS=c $(MAKE) --no-print-directory CONFIG=thread CC=clang test
 
 # valgrind knows no AVX-512.
 memcheck: export OMP_NUM_THREADS := 1
@@ -254,7 +254,7 @@ docs: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM)
 
 format:
-	clang-format -i $(wildcard src/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch] \
+	clang-format -i $(wildcard src/*/*.[ch] include/*.h tests/*/*.[ch] bench/*.[ch] \
 	                         examples/*.c)
 
 info:

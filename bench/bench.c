@@ -3,11 +3,11 @@
  * step, a snapshot and a checkpoint, and the machine's own rates to hold them against. Prints CSV, asserts
  * nothing.
  *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
-#include "checkpoint.h"
+#include "output/checkpoint.h"
 #include "counter.h"
-#include "simd.h"
-#include "simulation.h"
-#include "snapshot.h"
+#include "base/simd.h"
+#include "time/simulation.h"
+#include "output/snapshot.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -242,7 +242,7 @@ static void print_per_particle(const struct bench *b, const struct sim *x, int t
  * out and is not counted. */
 static void bench_output(struct bench *b, struct sim *x, int threads)
 {
-    char folder[] = "bench-XXXXXX", kept[FOLDER_PATH] = "";
+    char folder[] = "bench-XXXXXX", kept[RUN_DIR_PATH] = "";
     struct snapshots snapshots = {.folder = ""};
     struct image image = {NULL, 0, 0};
     if (!mkdtemp(folder)) {
@@ -281,11 +281,11 @@ static double pairs_of(const struct simulation *s)
     static struct surroundings around;
     static struct cluster_list near;
     const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
-    const struct cluster_boxes *const boxes = &s->fluid.lanes[KIND_FLUID].boxes;
+    const struct cluster_boxes *const boxes = &s->fluid.packed[KIND_FLUID].boxes;
     const int32_t n = list->n_active;
     int64_t seen = 0;
-    for (int32_t m = 0; m < fluid_shares(n); m++) {
-        const int32_t first = fluid_share(n, m), end = fluid_share(n, m + 1);
+    for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
+        const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
             clusters_ahead_around(&around, boxes, &s->cells, KIND_FLUID, list->active[k],
                                   s->fluid.k.h, clusters_of(list, first, end));

@@ -3,7 +3,7 @@
 #ifndef SPHFSI_BENCH_COUNTER_H
 #define SPHFSI_BENCH_COUNTER_H
 
-#include "base.h"
+#include "base/base.h"
 
 #ifdef __linux__
 #include <linux/perf_event.h>

@@ -4,8 +4,8 @@
  * list of its own with a skin (Verlet 1967), as most codes do. The bare laws (Eqs. 1 and 3b) over the same
  * particles in single precision, one thread. Prints CSV; all ways give the same sums but for rounding.
  *   bench_neighbours [--reps N] */
-#include "fluid.h"
-#include "morton.h"
+#include "fluid/fluid.h"
+#include "particles/morton.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -243,8 +243,8 @@ static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t seen = near->seen[k];
-        const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
-        me[X] = x[seen_column(seen)], me[Y] = y[seen_row(seen)];
+        const float *const b = lanes + neighbour_number(seen) * FIELDS * CLUSTER;
+        me[X] = x[neighbour_column(seen)], me[Y] = y[neighbour_row(seen)];
         add_pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
                   vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
                   vfour_float(b + P * CLUSTER), vfour_float(b + VOLUME * CLUSTER), sum);
@@ -278,7 +278,7 @@ static void sweep_clusters(void)
 }
 
 /* By cluster of a share and sum: [receiver][candidate]. */
-static float room[1 + SHARE_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
+static float room[1 + CHUNK_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
 
 /* The receivers of a cluster from the r-th on, pairs with those ahead for both sides: with both volumes. */
 static void share_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
@@ -288,12 +288,12 @@ static void share_receivers(const struct cluster_list *near, size_t before, int3
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t seen = near->seen[k];
-        const float *const b = lanes + seen_number(seen) * FIELDS * CLUSTER;
-        me[X] = x[seen_column(seen)], me[Y] = y[seen_row(seen)];
+        const float *const b = lanes + neighbour_number(seen) * FIELDS * CLUSTER;
+        me[X] = x[neighbour_column(seen)], me[Y] = y[neighbour_row(seen)];
         pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
               vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
               vfour_float(b + P * CLUSTER), me[VOLUME] * vfour_float(b + VOLUME * CLUSTER), more);
-        const size_t place = (seen_number(seen) - before) * seen_ahead(seen);
+        const size_t place = (neighbour_number(seen) - before) * neighbour_is_ahead(seen);
         for (int m = 0; m < 3; m++) {
             float *const at = room[place][m][r];
             sum[m] = sum[m] + more[m];
@@ -331,8 +331,8 @@ static void sweep_shares(void)
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     const int32_t n = listed->n_active;
     taken = 0;
-    for (int32_t share = 0; share < fluid_shares(n); share++) {
-        const int32_t begin = fluid_share(n, share), end = fluid_share(n, share + 1);
+    for (int32_t share = 0; share < fluid_chunk_count(n); share++) {
+        const int32_t begin = fluid_chunk_start(n, share), end = fluid_chunk_start(n, share + 1);
         if (begin == end) continue;
         const struct cluster_range range = clusters_of(listed, begin, end);
         for (int32_t k = begin; k < end; k++) {

@@ -7,8 +7,8 @@ set -eu
 cd "$(dirname "$0")/.."
 unity=$1
 shift
-tests=${*:-golden/test_golden unit/test_simd unit/test_fluid unit/test_wall unit/test_solid
-unit/test_integrators unit/test_coupling unit/test_cells agree/test_twin agree/test_twin_solid
+tests=${*:-golden/test_golden base/test_simd fluid/test_fluid fluid/test_wall solid/test_solid
+time/test_integrators time/test_coupling particles/test_cells agree/test_twin agree/test_twin_solid
 agree/test_kernels}
 CC=${NEON_CC:-aarch64-linux-gnu-gcc} RUN=${NEON_RUN:-qemu-aarch64-static} out=build/neon
 for tool in "$CC" "$RUN"; do
@@ -20,10 +20,11 @@ flags="-std=gnu11 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-m
 -Wno-format-truncation -Iinclude -Isrc -Itests/support -isystem $unity
 -DUNITY_INCLUDE_DOUBLE -DSPHFSI_VERSION=\"neon\""
 rm -f $out/lib.a
-for file in src/*.c tests/support/*.c; do
-    if [ "$file" = src/main.c ] || grep -Eq '<hdf5.h>|"snapshot' "$file"; then continue; fi
-    $CC $flags -c "$file" -o "$out/$(basename "$file" .c).o"
-    ${CC%gcc}ar rcs $out/lib.a "$out/$(basename "$file" .c).o"
+for file in src/*/*.c tests/support/*.c; do
+    if [ "$file" = src/app/main.c ] || grep -Eq '<hdf5.h>|"output/snapshot' "$file"; then continue; fi
+    object=$out/$(echo "${file%.c}" | tr / _).o
+    $CC $flags -c "$file" -o "$object"
+    ${CC%gcc}ar rcs $out/lib.a "$object"
 done
 $CC $flags -w -c "$unity"/unity.c -o $out/unity.o
 failed=0

@@ -5,7 +5,7 @@
 set -u
 cd "$(dirname "$0")/.."
 files=("$@")
-[ $# -gt 0 ] || files=(src/*.c)
+[ $# -gt 0 ] || files=(src/*/*.c)
 hdf5=$(sed -n 's/^HDF5_CFLAGS[ :]*= *//p' build/hdf5.mk)
 flags=(-std=gnu11 -O1 -march="${ARCH:-native}" -fopenmp -Iinclude $hdf5 -DSPHFSI_VERSION='"0"')
 findings=$(mktemp)

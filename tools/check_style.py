@@ -12,36 +12,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 
-# An include points to a lower floor, or stays on its own. A new file in src/ is added here, unless
-# its name continues a listed one after an underscore: case_lines is part of case.
-FLOORS = [
-    "base meeting simd real tensor2 errors",
-    "fields groups particles morton cells clusters smoothing eos",
-    "params presets evidence effects rules phases quantities pointdata case expr units geometry motion scene",
-    "fluid variants solid material contact drive interface",
-    "simulation drops timestep integrators symplectic verlet leapfrog coupled moving monitor ledger bounds "
-    "state",
-    "folder json probes reference snapshot checkpoint report series",
-    "sphfsi session explain inspect preview manual templates citations examples run "
-    "forecast budget refine api main",
-]
-FLOOR_OF = {stem: floor for floor, stems in enumerate(FLOORS) for stem in stems.split()}
-
-
-def floor_of(stem):
-    """Number of the floor, None for a stranger."""
-    return FLOOR_OF.get(stem, FLOOR_OF.get(stem.split("_")[0]))
-
-
 MAX_FILE = 600      # lines
 MAX_FUNCTION = 60   # lines; more is a warning
 MAX_COLUMNS = 110   # the formatter aims at 100; comments and tables get some slack
 CLANG_FORMAT = 14   # other versions break lines differently
-LIBC = set("assert ctype errno fenv float getopt inttypes limits locale math signal stdarg stdbool "
-           "stddef stdint stdio stdlib string time unistd".split())
 # Written apart, so that this file does not find itself.
 BANNED = re.compile(r"\bFIX" r"ME\b|\bXX" r"X\b|\bTO" r"DO\b(?!\s*\(#\d+\))")
-INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')
 
 errors = 0
 
@@ -51,24 +27,6 @@ def report(path, line, text, warning=False):
     errors += not warning
     where = f"{path.relative_to(ROOT)}:{line}" if line else f"{path.relative_to(ROOT)}"
     print(f"{where}: {'warning: ' if warning else ''}{text}")
-
-
-def check_layers(path, lines):
-    here = floor_of(path.stem)
-    if here is None:
-        report(path, 0, "has no floor; add it to FLOORS in tools/check_style.py")
-        return
-    for number, line in enumerate(lines, 1):
-        include = INCLUDE.match(line)
-        if not include:
-            continue
-        stem = Path(include[2]).stem
-        if path.name == "main.c" and stem != "sphfsi" and (include[1] == '"' or stem not in LIBC):
-            report(path, number, f"main.c may include sphfsi.h and the C library, not {include[2]}")
-        elif include[1] == '"' and floor_of(stem) is None:
-            report(path, number, f"{include[2]} has no floor; add it to FLOORS in tools/check_style.py")
-        elif include[1] == '"' and floor_of(stem) > here:
-            report(path, number, f"floor {here} includes {include[2]} of floor {floor_of(stem)}")
 
 
 def check_sizes(path, lines):
@@ -165,8 +123,7 @@ def main():
     for path in code + [ROOT / "Makefile", ROOT / "CMakeLists.txt"] + sorted(ROOT.glob("*.md")):
         lines = path.read_text(encoding="utf-8").splitlines()
         check_text(path, lines)
-        if path.parent.name in ("src", "include"):
-            check_layers(path, lines)
+        if path.parts[len(ROOT.parts)] in ("src", "include"):
             check_programs(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)

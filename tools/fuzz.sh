@@ -20,10 +20,10 @@ flags=(-std=gnu11 -O2 -g -ffp-contract=off -fno-math-errno -fno-omit-frame-point
     -fno-sanitize-recover=undefined)
 
 # Objects are made anew when a source, or a header or a table, is newer.
-newest=$(ls -t src/*.h src/*.def tests/support/*.h tools/fuzz.sh | head -n 1)
+newest=$(ls -t src/*/*.h src/*/*.def tests/support/*.h tools/fuzz.sh | head -n 1)
 objects=()
-for file in src/*.c tests/support/fuzz.c; do
-    [ $file != src/main.c ] || continue
+for file in src/*/*.c tests/support/fuzz.c; do
+    [ $file != src/app/main.c ] || continue
     object=$build/$(echo "$file" | tr / _).o
     objects+=("$object")
     [ "$object" -nt "$file" ] && [ "$object" -nt "$newest" ] ||
@@ -33,7 +33,7 @@ done
 # Every key of params.def, so that new ones are tried as soon as they are there.
 {
     cat tests/fuzz/case.dict
-    sed -n 's/^[A-Z_]*([a-z]*, *\([a-z_0-9]*\),.*/"\1 = "/p' src/params.def | sort -u
+    sed -n 's/^[A-Z_]*([a-z]*, *\([a-z_0-9]*\),.*/"\1 = "/p' src/case/params.def | sort -u
 } >$build/dict
 
 version=$(git describe --always --dirty --exclude='*' 2>/dev/null || echo unknown)

@@ -26,7 +26,7 @@ REHEARSALS = [
      "threads instead of one: state, rows and snapshots compared bit for bit"),
     ("agree/test_restart.sh", "cut runs against whole ones, bit for bit; another number of threads"),
     ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
-    ("unit/test_checkpoint.c", "a checkpoint with every byte flipped in turn, cut at every length, of "
+    ("output/test_checkpoint.c", "a checkpoint with every byte flipped in turn, cut at every length, of "
      "another case: found, and the one before it used"),
     ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed under a run"),
     ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file fails, or "
@@ -39,7 +39,7 @@ REHEARSALS = [
     ("fault/test_audit.sh", "what the system says a run touches; clocks that step back"),
     ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
     ("fault/test_fork.sh", "`--inspect`, `--fork`, other formats, byte orders, dp"),
-    ("unit/test_case_errors.c", "bad case files against the exact sentence"),
+    ("case/test_case_errors.c", "bad case files against the exact sentence"),
     ("fault/test_bad_input.c", "damaged, shuffled, huge and cut case files"),
     ("fault/test_corpus.c", "every input that the fuzzers kept"),
 ]

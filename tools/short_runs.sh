@@ -13,7 +13,7 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 runs=0 failures=0
 mapfile -t integrators < <(sed -n 's/^CHOICE(top, *integrator, *[0-9]*, *"\([^"]*\)".*/\1/p' \
-    src/params.def | tr '|' '\n')
+    src/case/params.def | tr '|' '\n')
 
 check() { # NAME ARGUMENTS...
     local name=$1

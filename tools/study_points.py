@@ -154,7 +154,7 @@ def points_of(study):
 def program_hash():
     """Of everything in the program that results can depend on."""
     total = sha256()
-    for path in sorted([*ROOT.glob("src/*"), *ROOT.glob("include/*")]):
+    for path in sorted([*ROOT.glob("src/*/*"), *ROOT.glob("include/*")]):
         if path.suffix in (".c", ".h", ".def") and not ASIDE.fullmatch(path.name):
             total.update(path.name.encode() + b"\0" + path.read_bytes())
     flags = ROOT / "build" / "release" / "flags"

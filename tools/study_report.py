@@ -144,8 +144,8 @@ Settings that finished everywhere.
 
 ## Presets
 
-`accuracy = draft | standard | fine` at the top of a case file sets what `src/presets.def` lists; `standard`
-is the program's defaults.
+`accuracy = draft | standard | fine` at the top of a case file sets what `src/case/presets.def` lists;
+`standard` is the program's defaults.
 
 {fronts}
 

@@ -189,7 +189,7 @@ def main():
     if Path(os.environ.get("SPHFSI", "./sphfsi")).resolve() != Path("sphfsi").resolve():
         print("builds programs of its own: once, beside the release program, is enough")
         return 77
-    effects = re.findall(r"^EFFECT\((\w+)", (ROOT / "src/effects.def").read_text(), re.M)
+    effects = re.findall(r"^EFFECT\((\w+)", (ROOT / "src/case/effects.def").read_text(), re.M)
     reference = build("whole", [])
     long = "--each" in sys.argv
     whole = {name: measure(reference, text) for name, text in SCENES.items()

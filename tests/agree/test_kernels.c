@@ -14,7 +14,7 @@ static const char scene[] =
     "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
     "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
 
-/* The sets of effects of variants.def, as case files ask for them, and one without a kernel. */
+/* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel. */
 static const struct {
     const char *name, *alpha, *delta, *set, *another;
     unsigned effects;
@@ -64,7 +64,7 @@ static void test_mixed(void) { compare("precision=mixed"); }
 
 static void test_double(void) { compare("precision=double"); }
 
-/* Every row of variants.def is in the table above, so that none goes untested. */
+/* Every row of fluid/variants.def is in the table above, so that none goes untested. */
 static void test_every_variant_is_compared(void)
 {
     const struct fluid_sweeps *row = fluid_sweeps_mixed;

@@ -2,7 +2,7 @@
  * A solid that is stepped in parts, one by each thread, has the bits of the whole: every form of the laws,
  * bodies that are joined, a structure in water, and changes between parts and whole. */
 #include "rig.h"
-#include "solid_parts.h"
+#include "solid/parts.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -46,7 +46,7 @@ static uint64_t run(const char *text, int threads, const char *set, const char *
     rig_open(&rig, text, set, other, NULL);
     rig_steps(&rig, 20, 1);
     TEST_ASSERT_EQUAL_INT(threads, rig.sim.solid.threads);
-    TEST_ASSERT_TRUE(threads == 1 || rig.sim.solid.part[threads - 1].told > 100);
+    TEST_ASSERT_TRUE(threads == 1 || rig.sim.solid.part[threads - 1].sequence > 100);
     return simulation_hash(&rig.sim);
 }
 

@@ -3,7 +3,7 @@
  * down or displacement going up, how it grows as a body turns, that both find the same step, and where it
  * is taken. */
 #include "rig.h"
-#include "solid_lanes.h"
+#include "solid/packed.h"
 #include "unity.h"
 
 #include <math.h>

@@ -127,7 +127,7 @@ static void test_periodic_sides(void)
         TEST_ASSERT_EQUAL_HEX64(expected, hash);
     }
     TEST_ASSERT_TRUE(rig.sim.state.sorts > 5);
-    TEST_ASSERT_TRUE(rig.sim.state.carried > 0);
+    TEST_ASSERT_TRUE(rig.sim.state.periodic_energy > 0);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
 }
 

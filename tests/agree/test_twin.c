@@ -83,11 +83,11 @@ static void compare_fluid(double tolerance)
         top_a = fmax(top_a, hypot(p->ax[i] - q->ax, p->ay[i] - q->ay));
         top_rho = fmax(top_rho, fabs(rho0 * p->ddens[i] - q->drho));
         top_p = fmax(top_p, fabs(rig_pressure(&rig.sim, i) - q->p));
-        if (!p->spread) continue;
+        if (!p->div_r) continue;
         /* Both are of the size of 1/h and 1. */
-        assert_near(tolerance / twin.h, q->cx, p->crowd_x[i], "gradient of the concentration, x");
-        assert_near(tolerance / twin.h, q->cy, p->crowd_y[i], "gradient of the concentration, y");
-        assert_near(2 * tolerance, q->spread, p->spread[i], "divergence of the positions");
+        assert_near(tolerance / twin.h, q->cx, p->grad_c_x[i], "gradient of the concentration, x");
+        assert_near(tolerance / twin.h, q->cy, p->grad_c_y[i], "gradient of the concentration, y");
+        assert_near(2 * tolerance, q->div_r, p->div_r[i], "divergence of the positions");
     }
     TEST_ASSERT_TRUE(size_a > 100 && size_rho > 1e4);
     assert_at_most(tolerance, top_a / size_a, "acceleration of the fluid");

@@ -230,9 +230,9 @@ static void test_rolling_tank(void)
         /* 4 degrees (1 - cos(2 pi 0.4/1.6)) = 4 degrees. */
         const double angle = (k ? -4 : 4) * 3.14159265358979323846 / 180;
         const struct particles *const p = &sim.kind[KIND_SOLID];
-        TEST_ASSERT_TRUE(sim.drive.n_held > 0);
-        for (int64_t h = 0; h < sim.drive.n_held; h++) {
-            const int32_t i = sim.drive.held[h];
+        TEST_ASSERT_TRUE(sim.loads.n_held > 0);
+        for (int64_t h = 0; h < sim.loads.n_held; h++) {
+            const int32_t i = sim.loads.held[h];
             assert_near(1e-12, cos(angle) * p->X[i] - sin(angle) * p->Y[i], p->x[i], "foot, x");
             assert_near(1e-12, sin(angle) * p->X[i] + cos(angle) * p->Y[i], p->y[i], "foot, y");
         }

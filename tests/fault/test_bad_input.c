@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The reader under hostile input: damaged text and failing memory. Nothing may crash, leak or hang;
  * a failure always leaves a sentence. */
-#include "scene.h"
+#include "case/scene.h"
 #include "unity.h"
 
 #include <stdio.h>

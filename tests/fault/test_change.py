@@ -26,7 +26,7 @@ def run(*arguments):
 
 def choices():
     """The words that a key of a choice may have."""
-    table = Path("src/params.def").read_text()
+    table = Path("src/case/params.def").read_text()
     return {(section, key): names.split("|") for section, key, names in
             re.findall(r'^CHOICE\((\w+), *(\w+), *\w+, *"([^"]*)"', table, re.M)}
 

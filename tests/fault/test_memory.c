@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Every allocation of an arena fails once: a sentence each time, nothing leaks, nothing crashes. */
-#include "base.h"
+#include "base/base.h"
 #include "sphfsi.h"
 #include "tiny.h"
 #include "unity.h"

@@ -2,7 +2,7 @@
  * libFuzzer's entry to the function TARGET of tests/support/fuzz.h; `make fuzz` links it. */
 #include "fuzz.h"
 
-#include "scene.h"
+#include "case/scene.h"
 
 #include <math.h>
 

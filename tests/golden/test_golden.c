@@ -3,7 +3,7 @@
  * the state of a small gate after 60 steps, held against hashes that are kept here. They change where a law
  * or the order of a sum changes, and then on purpose: the test prints the new ones. */
 #include "rig.h"
-#include "simd.h"
+#include "base/simd.h"
 #include "unity.h"
 
 #include <stdio.h>

@@ -2,7 +2,7 @@
  * Steps that change in a pattern feed oscillations that each of them alone would keep. Steps up to an
  * output time are therefore equal. */
 #include "rig.h"
-#include "timestep.h"
+#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * A solid that is strongly deformed is stiffer than at rest. The bound about the undeformed state is then
  * wrong; looked at again it is right, at no cost while deformations are small. */
-#include "checkpoint.h"
+#include "output/checkpoint.h"
 #include "rig.h"
-#include "timestep.h"
+#include "time/timestep.h"
 #include "unity.h"
 
 #include <math.h>

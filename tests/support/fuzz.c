@@ -2,9 +2,9 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "fuzz.h"
 
-#include "checkpoint.h"
-#include "expr.h"
-#include "scene.h"
+#include "output/checkpoint.h"
+#include "case/expr.h"
+#include "case/scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "rig.h"
 
-#include "eos.h"
+#include "fluid/eos.h"
 #include "unity.h"
 
 #include <stdarg.h>
@@ -76,7 +76,7 @@ void rig_sort(struct rig *r)
             TEST_ASSERT_EQUAL_INT64(0,
                                     cells_sort(&r->sim.cells, (enum kind)kind, &r->sim.kind[kind]));
     fluid_find_near(&r->sim.fluid, &r->sim.cells);
-    r->sim.room = 0;
+    r->sim.skin_left = 0;
 }
 
 double rig_pressure(const struct simulation *s, int64_t i)

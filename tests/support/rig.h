@@ -4,7 +4,7 @@
 #ifndef RIG_H
 #define RIG_H
 
-#include "simulation.h"
+#include "time/simulation.h"
 
 /* A zeroed rig is a valid closed one. */
 struct rig {

@@ -192,7 +192,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
     a->cx += V * gx;
     a->cy += V * gy;
-    a->spread -= V * (dx * gx + dy * gy);
+    a->div_r -= V * (dx * gx + dy * gy);
     a->drho += moved + diffused;
     a->size_a += t->mass *
                  ((fabs(a->p) + fabs(b->p) + fabs(pressure)) / (a->rho * b->rho) + fabs(Pi)) *

@@ -4,16 +4,16 @@
 #ifndef TWIN_H
 #define TWIN_H
 
-#include "simulation.h"
+#include "time/simulation.h"
 
 struct twin_point {
-    double x, y, u, v;     /* m, m/s; of a solid: the velocity that the fluid sees */
-    double ax, ay;         /* m/s^2: of a fluid particle the result, of the others given */
-    double rho, p;         /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
-    double sx, sy;         /* kg/m^4: renormalised gradient of the density */
-    double cx, cy, spread; /* 1/m, 1: gradient of the concentration, divergence of the positions */
-    double drho;           /* kg/(m^3 s) */
-    double mu, mv;         /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
+    double x, y, u, v;    /* m, m/s; of a solid: the velocity that the fluid sees */
+    double ax, ay;        /* m/s^2: of a fluid particle the result, of the others given */
+    double rho, p;        /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
+    double sx, sy;        /* kg/m^4: renormalised gradient of the density */
+    double cx, cy, div_r; /* 1/m, 1: gradient of the concentration, divergence of the positions */
+    double drho;          /* kg/(m^3 s) */
+    double mu, mv;        /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
     bool sticks;
     double fx, fy; /* N/m: force of the fluid on a solid particle, Eq. 21b */
     /* Sums of the sizes of the terms: what round-off is relative to. */

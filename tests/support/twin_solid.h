@@ -4,7 +4,7 @@
 #ifndef TWIN_SOLID_H
 #define TWIN_SOLID_H
 
-#include "simulation.h"
+#include "time/simulation.h"
 
 struct twin_mat {
     double m[2][2];

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT */
+#include "app/explain.h"
+
+#include "app/forecast.h"
+#include "case/params.h"
+#include "output/snapshot_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void say_scene(const struct session *x, const struct sphfsi_options *o)
+{
+    const struct scene *c = &x->scene;
+    session_say(o, "%s: %s", c->path, c->top.title);
+    session_say(o, "  dp %g m, h %g m, %g s to simulate", c->top.dp, c->h, c->top.end_time);
+    if (c->c0 > 0) session_say(o, "  speed of sound %g m/s, density %g kg/m^3", c->c0, c->rho0);
+    for (int k = 0; k < KIND_COUNT; k++)
+        session_say(o, "  %-6s %10lld particles", kind_names[k],
+                    (long long)x->simulation.kind[k].n);
+}
+
+static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
+{
+    session_say(o, "effects that are on, and what called for them");
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        if (!(s->effects & (1u << k))) continue;
+        struct effect_caller by;
+        char text[EFFECT_CALLER_TEXT];
+        snprintf(text, sizeof text, "%s", effect_table[k].key);
+        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, text, effect_table[k].meaning,
+                    effect_table[k].equation[0] ? "; " : "", effect_table[k].equation);
+    }
+    session_say(o, "effects that are off, and what would call for them");
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        if (!(s->effects & (1u << k)))
+            session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
+                        effect_table[k].meaning);
+}
+
+/* Bytes that each group of fields takes; what holds no field is left out. */
+static void say_groups(const struct simulation *s, const struct sphfsi_options *o)
+{
+    for (int g = 0; g < GROUP_COUNT; g++) {
+        size_t bytes[KIND_COUNT] = {0}, all = 0;
+        for (int k = 0; k < KIND_COUNT; k++) {
+            const struct particles *p = &s->kind[k];
+            for (int f = 0; f < field_count; f++)
+                if (field_table[f].group == 1u << g && field_array(p, &field_table[f]))
+                    bytes[k] += field_table[f].size * (size_t)p->capacity;
+            all += bytes[k];
+        }
+        if (all == 0) continue;
+        session_say(o, "  %-12s %10zu bytes: fluid %zu, walls %zu, solids %zu", group_names[g], all,
+                    bytes[KIND_FLUID], bytes[KIND_WALL], bytes[KIND_SOLID]);
+    }
+}
+
+static void say_fields(const struct simulation *s, const struct sphfsi_options *o)
+{
+    session_say(o, "fields");
+    for (int k = 0; k < KIND_COUNT; k++) {
+        const struct particles *p = &s->kind[k];
+        if (p->capacity == 0) continue;
+        char names[1024] = "";
+        size_t at = 0;
+        for (int f = 0; f < field_count; f++)
+            if (field_array(p, &field_table[f]) && at < sizeof names - 32)
+                at += (size_t)snprintf(names + at, sizeof names - at, " %s", field_table[f].name);
+        const size_t bytes = particles_bytes(p);
+        session_say(o, "  %-6s %.3g MB, %zu bytes a particle:%s", kind_names[k],
+                    1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
+    }
+    say_groups(s, o);
+    session_say(o, "  in all %.3g MB with cells, lanes and stencils; %.3g MB for the scene",
+                1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
+}
+
+static void say_output(const struct simulation *s, const struct sphfsi_options *o)
+{
+    const struct snapshot_layout layout = snapshot_file_layout(s->scene);
+    const double end = s->scene->top.end_time, every = s->scene->output.snapshot_interval;
+    const double snapshots = floor(end / every * (1 + 1e-12)) + 1,
+                 point = (double)snapshot_file_point(&layout);
+    double points = 0;
+    for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
+    session_say(o, "output");
+    session_say(o,
+                "  fields.vtkhdf: %.0f snapshots, %.0f points of %.0f bytes: %.3g MB %s; while the "
+                "run lasts "
+                "there are two of it",
+                snapshots, points, point, 1e-6 * snapshots * points * point,
+                layout.deflate ? "before compression" : "(no compression)");
+}
+
+static void say_bounds(const struct simulation *s, const struct sphfsi_options *o)
+{
+    int binding = -1;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (isfinite(s->dt_bound[k]) && s->dt_bound[k] > 0 && k != BOUND_output &&
+            (binding < 0 || s->dt_bound[k] < s->dt_bound[binding]))
+            binding = k;
+    const struct scene *const c = s->scene;
+    const int light = c->top.integrator == INTEGRATOR_LEAPFROG ? scene_light_solid(c) : -1;
+    if (!(s->effects & FX_FLUID))
+        session_say(o, "bounds of the time step");
+    else if (light < 0 || scene_given(c, SECTION_numerics, 0, "cfl"))
+        session_say(o, "bounds of the time step, C_CFL = %g", c->numerics.cfl);
+    else
+        session_say(o, "bounds of the time step, C_CFL = %g as [solid %s] is light",
+                    c->numerics.cfl, c->solid[light].common.name);
+    for (int k = 0; k < BOUND_COUNT; k++) {
+        const bool known = isfinite(s->dt_bound[k]) && s->dt_bound[k] > 0;
+        char value[32] = "-";
+        if (known) snprintf(value, sizeof value, "%.4g s", s->dt_bound[k]);
+        session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
+                    k == binding ? "  <- binds" : "");
+    }
+    if (s->kind[KIND_SOLID].n == 0) return;
+    session_say(o, "  the solid is stable up to %.4g s", s->dt_solid);
+    if (s->effects & FX_COUPLING)
+        session_say(o, "  %d step%s of it in one of the fluid", s->substeps,
+                    s->substeps == 1 ? "" : "s");
+    if (s->effects & FX_CONTACT)
+        session_say(o, "  without contact it would be up to %.4g s", s->dt_lone_solid);
+}
+
+static void text_of_seconds(double seconds, char text[32])
+{
+    if (seconds < 120)
+        snprintf(text, 32, "%.3g s", seconds);
+    else if (seconds < 7200)
+        snprintf(text, 32, "%.3g min", seconds / 60);
+    else
+        snprintf(text, 32, "%.3g h", seconds / 3600);
+}
+
+static void text_of_bytes(double bytes, char text[32])
+{
+    if (bytes < 1e9)
+        snprintf(text, 32, "%.3g MB", 1e-6 * bytes);
+    else
+        snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
+}
+
+static void say_cost(const struct simulation *s, const struct unit_costs *c, int threads,
+                     const struct sphfsi_options *o)
+{
+    const struct forecast f = forecast_run(c, s, threads, 1);
+    session_say(o, "cost with %d thread%s, %s", threads, threads == 1 ? "" : "s",
+                c->cached ? "from an earlier calibration on this machine"
+                          : "from a second of the first steps");
+    for (int k = 0; k < PHASE_COUNT; k++)
+        if (k != PHASE_output && c->phase_fraction[k] > 0)
+            session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
+                        100 * c->phase_fraction[k], phase_table[k].meaning);
+    if (c->fluid > 0) session_say(o, "  %.3g ns a fluid particle and evaluation", 1e9 * c->fluid);
+    if (c->solid > 0) session_say(o, "  %.3g ns a solid particle and step", 1e9 * c->solid);
+    char time[32], memory[32], disk[32];
+    text_of_seconds(f.seconds, time);
+    text_of_bytes(f.memory, memory);
+    text_of_bytes(f.disk, disk);
+    session_say(o, "  about %.3g steps of %.3g s%s", f.steps, f.dt,
+                f.substeps > f.steps ? "" : ", of all particles alike");
+    if (f.substeps > f.steps) session_say(o, "  about %.3g steps of the solid", f.substeps);
+    session_say(o, "  %s on this machine when idle, memory %s, disk at most %s", time, memory,
+                disk);
+}
+
+static enum err say_trial(struct simulation *s, int threads, const struct sphfsi_options *o,
+                          struct diag *d)
+{
+    struct unit_costs c;
+    TRY(forecast_calibrate(&c, s, d));
+    say_bounds(s, o);
+    say_cost(s, &c, threads, o);
+    forecast_say_errors(s->scene, o);
+    return ERR_OK;
+}
+
+enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
+                         struct diag *d)
+{
+    struct simulation *s = &x->simulation;
+    say_scene(x, o);
+    say_effects(s, o);
+    say_fields(s, o);
+    say_output(s, o);
+    char precision[SCENE_NAME], integrator[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
+    param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
+    session_say(o, "integrator %s, precision %s, kernel of the fluid: %s, of the solid: %s",
+                integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none",
+                s->solid.sweeps ? s->solid.sweeps->name : "none");
+    return say_trial(s, threads, o, d);
+}

@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: MIT */
+#include "app/forecast.h"
+
+#include "base/run_dir.h"
+#include "case/params.h"
+#include "time/timestep.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifndef SPHFSI_VERSION
+#define SPHFSI_VERSION "(unversioned build)"
+#endif
+
+enum { CACHE_BYTES = 1 << 20, FIRST_STEPS = 20 };
+/* Part of the ideal speed-up that a further thread brings: assumed; docs/accuracy.md holds what it is. */
+static const double thread_efficiency = 0.93;
+/* Short repeats: some then fall between the slices that other work takes of a busy machine. */
+static const double calibration_seconds = 1.0, repeat_seconds = 0.005;
+
+/* --- the cache: lines of `key numbers`, the last of a key counts --- */
+
+static uint64_t mix(uint64_t h, const void *bytes, size_t n)
+{
+    /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): callers fill all n bytes */
+    for (size_t k = 0; k < n; k++) h = (h ^ ((const unsigned char *)bytes)[k]) * 0x100000001b3u;
+    return h;
+}
+
+static uint64_t mix_file_line(uint64_t h, const char *path, const char *start)
+{
+    char line[256];
+    FILE *file = fopen(path, "r");
+    if (!file) return h;
+    while (fgets(line, sizeof line, file))
+        if (strncmp(line, start, strlen(start)) == 0) {
+            h = mix(h, line, strlen(line));
+            break;
+        }
+    fclose(file);
+    return h;
+}
+
+/* Of the machine, the program and all that decides what its kernels cost for this scene. */
+static uint64_t cache_key(const struct simulation *s)
+{
+    const struct scene *const c = s->scene;
+    uint64_t h = mix(0xcbf29ce484222325u, SPHFSI_VERSION, sizeof SPHFSI_VERSION);
+    struct stat program;
+    h = mix_file_line(h, "/proc/cpuinfo", "model name");
+    if (stat("/proc/self/exe", &program) == 0) {
+        h = mix(h, &program.st_mtime, sizeof program.st_mtime);
+        h = mix(h, &program.st_size, sizeof program.st_size);
+    }
+    const int words[] = {(int)s->effects,    c->top.integrator,
+                         c->top.precision,   s->solid.sweeps ? s->solid.sweeps->lanes : 0,
+                         c->numerics.kernel, c->numerics.suction};
+    h = mix(h, words, sizeof words);
+    const double numbers[] = {c->numerics.h_over_dp, c->numerics.skin};
+    h = mix(h, numbers, sizeof numbers);
+    for (int k = 0; k < c->n_solid; k++) {
+        const int form[] = {c->solid[k].law, c->solid[k].gradient, c->solid[k].hourglass_form};
+        h = mix(h, form, sizeof form);
+    }
+    for (int k = 0; k < KIND_COUNT;
+         k++) { /* sizes by quarters of an octave: caches, walls, overhead */
+        const int size = s->kind[k].n ? (int)lround(4 * log2((double)s->kind[k].n)) : -1;
+        h = mix(h, &size, sizeof size);
+    }
+    return h;
+}
+
+static bool cache_path(char path[RUN_DIR_PATH], bool make)
+{
+    const char *const root = getenv("XDG_CACHE_HOME"), *const home = getenv("HOME");
+    char folder[RUN_DIR_PATH];
+    if (root && root[0] == '/')
+        snprintf(folder, sizeof folder, "%.3000s", root);
+    else if (home && home[0] == '/')
+        snprintf(folder, sizeof folder, "%.3000s/.cache", home);
+    else
+        return false;
+    if (make) mkdir(folder, 0777);
+    const size_t n = strlen(folder);
+    snprintf(folder + n, sizeof folder - n, "/sphfsi");
+    if (make) mkdir(folder, 0777);
+    return path_join(path, folder, "costs", NULL) == ERR_OK;
+}
+
+static bool read_costs(const char *line, uint64_t key, struct unit_costs *c)
+{
+    char *at;
+    if (strtoull(line, &at, 16) != key || *at != ' ') return false;
+    double number[3 + PHASE_COUNT];
+    for (int k = 0; k < 3 + PHASE_COUNT; k++) {
+        char *const start = at;
+        number[k] = strtod(start, &at);
+        if (at == start || !isfinite(number[k]) || number[k] < 0 || number[k] > 1e3) return false;
+    }
+    if (*at != '\n') return false;
+    *c = (struct unit_costs){.fluid = number[0],
+                             .solid = number[1],
+                             .evaluations = number[2],
+                             .cached = true};
+    memcpy(c->phase_fraction, number + 3, sizeof c->phase_fraction);
+    return true;
+}
+
+static bool cache_find(uint64_t key, struct unit_costs *c)
+{
+    char path[RUN_DIR_PATH], *text;
+    size_t size;
+    bool found = false;
+    if (!cache_path(path, false) || file_read(path, &text, &size, NULL)) return false;
+    for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
+        found |= read_costs(line, key, c);
+    free(text);
+    return found;
+}
+
+/* A line is one write; a file that has grown out of hand is begun anew. */
+static void cache_keep(uint64_t key, const struct unit_costs *c)
+{
+    char path[RUN_DIR_PATH], line[64 + 32 * (3 + PHASE_COUNT)];
+    struct stat info;
+    if (!cache_path(path, true)) return;
+    if (stat(path, &info) == 0 && info.st_size > CACHE_BYTES) unlink(path);
+    int n = snprintf(line, sizeof line, "%016llx %.4g %.4g %.4g", (unsigned long long)key, c->fluid,
+                     c->solid, c->evaluations);
+    for (int k = 0; k < PHASE_COUNT; k++)
+        n += snprintf(line + n, sizeof line - (size_t)n, " %.4g", c->phase_fraction[k]);
+    line[n++] = '\n';
+    FILE *file = fopen(path, "a");
+    if (!file) return;
+    setvbuf(file, NULL, _IOFBF, sizeof line);
+    fwrite(line, 1, (size_t)n, file);
+    fclose(file);
+}
+
+/* --- calibration --- */
+
+/* Time that this thread has worked, s: unlike the clock's it does not count what other programs took. */
+static double work_clock(void)
+{
+    struct timespec t;
+    if (clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t) != 0) return wall_clock();
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A step costs the least work of any repeat, other work on the machine only ever adds; its phases share it
+ * as their least times do. Sorting, which not every repeat has, costs its mean, unless that is disturbed
+ * beyond belief. */
+struct least {
+    double step, phase[PHASE_COUNT], sort_mean;
+    int64_t steps, substeps, evaluations;
+};
+
+static enum err take_steps(struct least *least, struct simulation *s, struct diag *d)
+{
+    const double end = s->scene->top.end_time, begin = wall_clock();
+    const double work = work_clock();
+    const struct state before = s->state;
+    double phase[PHASE_COUNT];
+    memcpy(phase, s->phase_seconds, sizeof phase);
+    do {
+        TRY(simulation_step(s, end, d));
+    } while (s->state.time < end && wall_clock() - begin < repeat_seconds);
+    const double steps = (double)(s->state.steps - before.steps);
+    const double each = (work_clock() - work) / steps;
+    least->step = least->steps ? min2(least->step, each) : each;
+    for (int k = 0; k < PHASE_COUNT; k++) {
+        const double seconds = (s->phase_seconds[k] - phase[k]) / steps;
+        least->phase[k] = least->steps ? min2(least->phase[k], seconds) : seconds;
+    }
+    least->sort_mean += s->phase_seconds[PHASE_sort] - phase[PHASE_sort];
+    least->steps += s->state.steps - before.steps;
+    least->substeps += s->state.solid_substeps - before.solid_substeps;
+    least->evaluations += s->state.evaluations - before.evaluations;
+    return ERR_OK;
+}
+
+static void set_costs(struct unit_costs *c, struct least *l, const struct simulation *s)
+{
+    const double n_fluid = (double)s->kind[KIND_FLUID].n, n_solid = (double)s->kind[KIND_SOLID].n;
+    const double steps = (double)l->steps;
+    double all = 0;
+    l->phase[PHASE_sort] = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) all += l->phase[k];
+    l->phase[PHASE_sort] = min2(l->sort_mean / steps, 0.05 * all);
+    all += l->phase[PHASE_sort];
+    for (int k = 0; k < PHASE_COUNT; k++) c->phase_fraction[k] = all > 0 ? l->phase[k] / all : 0;
+    all = min2(all, l->step);
+    const double solid =
+        n_fluid > 0 ? all * (c->phase_fraction[PHASE_solid] + c->phase_fraction[PHASE_contact])
+                    : all;
+    c->evaluations = (double)l->evaluations / steps;
+    if (n_solid > 0 && l->substeps > 0) c->solid = solid * steps / (double)l->substeps / n_solid;
+    if (n_fluid > 0) c->fluid = (all - solid) / c->evaluations / n_fluid;
+}
+
+static enum err calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
+{
+    const uint64_t key = cache_key(s);
+    const double end = s->scene->top.end_time;
+    struct least least = {.steps = 0};
+    /* The first step pays for first touch and first sort; it also finds the bounds. */
+    TRY(simulation_step(s, end, d));
+    /* A state that a guard stops this early is worth telling. */
+    const double start = wall_clock();
+    for (int k = 0; k < FIRST_STEPS && s->state.time < end; k++) {
+        if (wall_clock() - start > 0.5 * calibration_seconds) break;
+        TRY(simulation_step(s, end, d));
+    }
+    if (cache_find(key, c)) return ERR_OK;
+    const double begin = wall_clock();
+    /* Later it is found by the run, not by the look ahead of it. */
+    struct diag quiet = {.code = ERR_OK};
+    enum err e = ERR_OK;
+    while (!e && s->state.time < end && wall_clock() - begin < calibration_seconds)
+        e = take_steps(&least, s, &quiet);
+    if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", quiet.text);
+    if (least.steps == 0) return ERR_OK;
+    set_costs(c, &least, s);
+    cache_keep(key, c);
+    return ERR_OK;
+}
+
+enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
+{
+    *c = (struct unit_costs){0};
+    return calibrate(c, s, d);
+}
+
+enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *threads,
+                       struct diag *d)
+{
+    struct sphfsi_options one = *o;
+    if (o->threads > 0 && o->threads <= 4096) thread_use(o->threads);
+    *threads = thread_count();
+    if (o->threads >= 0 && o->threads <= 4096) one.threads = 1;
+    const enum err e = session_open(x, &one, d);
+    if (e) thread_use(*threads);
+    return e;
+}
+
+void forecast_close(struct session *x, int threads)
+{
+    session_close(x);
+    thread_use(threads);
+}
+
+/* --- the run --- */
+
+/* Eq. 28b with the speeds that are expected. Its approach of pairs over all five shipped flows was 0.6 to
+ * 0.9 of `max_speed`, averaged over the run; a flow that has none named keeps what it has shown so far. */
+static double expected_step(const struct simulation *s)
+{
+    const double limit = timestep_fluid_limit(s), fixed = s->scene->numerics.fixed_step;
+    if (fixed > 0) return fixed;
+    double speed = 0;
+    for (int k = 0; k < s->scene->n_fluid; k++) speed = max2(speed, s->scene->fluid[k].max_speed);
+    const double approach = max2(0.75 * speed, s->fluid.extremes.approach);
+    return limit * s->fluid.k.c0 / (s->fluid.k.c0 + approach);
+}
+
+/* Steps up to `end` that hit all multiples of the intervals: every piece between two of them is cut into
+ * equal parts. Pieces are those of the shortest interval; longer ones are mostly multiples of it. */
+static double count_steps(const struct simulation *s, double dt)
+{
+    const struct scene_output *const out = &s->scene->output;
+    double piece = s->scene->top.end_time;
+    if (s->scene->n_probe > 0) piece = min2(piece, out->probe_interval);
+    piece = min2(piece, min2(out->ledger_interval, out->snapshot_interval));
+    if (out->checkpoint_interval > 0) piece = min2(piece, out->checkpoint_interval);
+    return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
+}
+
+/* Bytes of all files: rows, snapshots without compression, twice while the run lasts, and two checkpoints. */
+static double disk_bytes(const struct simulation *s, double scale)
+{
+    enum { BYTES_OF_SNAPSHOT = 140, BYTES_OF_ROW = 18 }; /* a particle; a number */
+    const struct scene_output *const out = &s->scene->output;
+    double particles = 0, state = 0;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        particles += (double)s->kind[k].n;
+        state += (double)particles_bytes(&s->kind[k]);
+    }
+    const double end = s->scene->top.end_time;
+    const double rows =
+        end / out->ledger_interval * 12 +
+        (s->scene->n_probe ? end / out->probe_interval * (1 + 2 * s->scene->n_probe) : 0);
+    return (2 * (end / out->snapshot_interval + 1) * BYTES_OF_SNAPSHOT * particles + 2 * state) /
+               (scale * scale) +
+           BYTES_OF_ROW * rows;
+}
+
+struct forecast forecast_run(const struct unit_costs *c, const struct simulation *s, int threads,
+                             double scale)
+{
+    const double n_fluid = (double)s->kind[KIND_FLUID].n / (scale * scale);
+    const double n_solid = (double)s->kind[KIND_SOLID].n / (scale * scale);
+    const double dt_solid = scale * s->dt_solid;
+    struct forecast f = {.dt = scale * (n_fluid > 0 ? expected_step(s) : s->dt_solid),
+                         .particles = n_fluid + n_solid};
+    if (n_fluid > 0 && n_solid > 0 && !(s->effects & FX_MULTIRATE)) f.dt = min2(f.dt, dt_solid);
+    const double end = s->scene->top.end_time;
+    f.steps = count_steps(s, f.dt);
+    f.dt = end / f.steps;
+    if (n_solid > 0)
+        f.substeps = f.steps * (s->effects & FX_MULTIRATE ? max2(1, ceil(f.dt / dt_solid)) : 1);
+    f.evaluations = f.steps * c->evaluations;
+    /* A row of the ledger looks at the fluid once more. */
+    const double looks = end / s->scene->output.ledger_interval;
+    f.seconds = (f.evaluations + looks) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
+    f.seconds /= 1 + thread_efficiency * (threads - 1);
+    /* Opened for one thread. */
+    const double shared = (double)(s->arena.bytes + s->scene->arena.bytes - s->fluid.thread_bytes);
+    f.memory = shared / (scale * scale) + threads * (double)s->fluid.thread_bytes;
+    f.disk = disk_bytes(s, scale);
+    return f;
+}
+
+/* --- the error --- */
+
+static const struct evidence {
+    enum scene_kind kind;
+    int accuracy;
+    const char *name, *error;
+    double resolution;
+    const char *what;
+    double percent;
+} evidence[] = {
+#define EVIDENCE(scene, accuracy, name, error, resolution, what, percent) \
+    {SCENE_##scene, ACCURACY_##accuracy, name, error, resolution, what, percent},
+#include "app/evidence.def"
+#undef EVIDENCE
+};
+
+void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
+{
+    const enum scene_kind kind = s->n_fluid && s->n_solid ? SCENE_COUPLED
+                                 : s->n_fluid             ? SCENE_FLUID
+                                                          : SCENE_SOLID;
+    char accuracy[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
+    session_say(o, "expected error at accuracy = %s, from the study in docs/accuracy.md", accuracy);
+    const char *before = "";
+    char line[512] = "";
+    size_t at = 0;
+    for (size_t k = 0; k < COUNT_OF(evidence); k++) {
+        const struct evidence *const row = &evidence[k];
+        if (row->kind != kind || row->accuracy != s->top.accuracy) continue;
+        if (strcmp(before, row->name) != 0) {
+            if (at > 0) session_say(o, "%s", line);
+            at = (size_t)snprintf(line, sizeof line, "  %s, %s:", row->name, row->error);
+            before = row->name;
+        }
+        if (at < sizeof line - 100)
+            at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;",
+                                   row->percent, row->resolution, row->what);
+    }
+    session_say(o, "%s", at > 0 ? line : "  the study has no such scene");
+}
+
+void forecast_say_preset(const struct scene *s, const struct sphfsi_options *o)
+{
+    if (scene_given(s, SECTION_top, 0, "accuracy")) forecast_say_errors(s, o);
+}

@@ -1,0 +1,365 @@
+/* SPDX-License-Identifier: MIT
+ * The command line. */
+#include "sphfsi.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char usage[] =
+    "usage: sphfsi CASE.cfg [options]\n"
+    "  --out DIR         folder of the results (runs/<case name>)\n"
+    "  --threads N       threads to use (all)\n"
+    "  --until TIME      simulated time in s to end at (end_time of the case)\n"
+    "  --set KEY=VALUE   value in effect over the case: dp=1mm, \"solid gate.young=12MPa\"; "
+    "repeatable\n"
+    "  --restart [FILE]  go on from the newest valid checkpoint of the run, or from FILE\n"
+    "  --fork FILE       start a new run, with other physics, from the checkpoint (or a run's "
+    "newest)\n"
+    "  --quiet           no progress, warnings only\n"
+    "instead of running:\n"
+    "  --preview         draw the scene with names, sizes, clamps and probes: preview-<case "
+    "name>.svg,\n"
+    "                    or the file that --out names\n"
+    "  --explain         say what would be simulated and what it would cost\n"
+    "  --effective       print the case in effect, every default spelled out\n"
+    "  --cite            print the sources of the methods that the case uses\n"
+    "  --budget TIME     say which is the finest dp that runs within the time: 90s, 10min, 2h\n"
+    "  --refine N        run in N resolutions (3 to 6), coarsest first, and say what probes\n"
+    "                    and energies converge to, with order and error band; goes on where it "
+    "was\n"
+    "                    (--ratio R: of neighbouring resolutions, 2)\n"
+    "  --inspect FILE    say what a checkpoint holds\n"
+    "  --new NAME        print a commented case to start from; without a name they are listed\n"
+    "  --keys            print all sections and keys of a case file\n"
+    "  --version, --help\n"
+    "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
+    "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
+
+/* What the program does: RUN unless an option says otherwise. */
+enum mode {
+    RUN,
+    PREVIEW,
+    EXPLAIN,
+    EFFECTIVE,
+    CITE,
+    INSPECT,
+    NEW,
+    KEYS,
+    REFINE,
+    BUDGET,
+    VERSION,
+    HELP
+};
+
+/* Whether an option takes an operand. */
+enum takes { NOTHING, OPERAND, MAYBE };
+
+static const struct option {
+    const char *name;
+    enum takes takes;
+    enum mode mode;
+} options[] = {
+    {"--out", OPERAND, RUN},         {"--threads", OPERAND, RUN},
+    {"--until", OPERAND, RUN},       {"--set", OPERAND, RUN},
+    {"--restart", MAYBE, RUN},       {"--fork", OPERAND, RUN},
+    {"--quiet", NOTHING, RUN},       {"--preview", NOTHING, PREVIEW},
+    {"--explain", NOTHING, EXPLAIN}, {"--effective", NOTHING, EFFECTIVE},
+    {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
+    {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
+    {"--refine", OPERAND, REFINE},   {"--ratio", OPERAND, RUN},
+    {"--budget", OPERAND, BUDGET},   {"--version", NOTHING, VERSION},
+    {"--help", NOTHING, HELP},
+};
+enum { OPTION_COUNT = sizeof options / sizeof options[0] };
+
+struct command {
+    struct sphfsi_options options;
+    enum mode mode;
+    const char *operand; /* of the option that chose the mode */
+    double runs, ratio;  /* of --refine */
+    double budget;       /* of --budget, s */
+    int quiet;
+    int terminal, line_open; /* a progress line stands on the terminal */
+    double last_fraction, last_line;
+};
+
+static struct sphfsi_requests requests;
+
+static void on_signal(int number)
+{
+    if (number == SIGUSR1)
+        requests.checkpoint = 1;
+    else
+        requests.stop = number;
+}
+
+/* A second SIGINT while the checkpoint is written ends the program at once, for whoever cannot wait;
+ * a second SIGTERM does not, since batch systems send several. */
+static void install_signals(void)
+{
+    struct sigaction once = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+    struct sigaction again = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+    sigaction(SIGINT, &once, NULL);
+    sigaction(SIGTERM, &again, NULL);
+    sigaction(SIGUSR1, &again, NULL);
+    /* A file that may not grow further is a failed write, which is reported; so is a closed pipe. */
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+}
+
+static void clear_line(struct command *c)
+{
+    if (c->line_open) fputs("\r\033[K", stderr);
+    c->line_open = 0;
+}
+
+static void on_message(void *context, enum sphfsi_message kind, const char *text)
+{
+    struct command *c = context;
+    clear_line(c);
+    if (kind == SPHFSI_WARNING)
+        fprintf(stderr, "warning: %s\n", text);
+    else if (!c->quiet)
+        printf("%s\n", text);
+    fflush(stdout);
+}
+
+static void remaining(double seconds, char text[32])
+{
+    if (seconds < 0)
+        snprintf(text, 32, "?");
+    else if (seconds < 3600)
+        snprintf(text, 32, "%d:%02d", (int)seconds / 60, (int)seconds % 60);
+    else
+        snprintf(text, 32, "%.1f h", seconds / 3600);
+}
+
+/* One live line on a terminal; elsewhere a line for every tenth of the way or half a minute. */
+static void on_progress(void *context, const struct sphfsi_progress *p)
+{
+    struct command *c = context;
+    const double way = p->end_time - p->start_time;
+    const double share = way > 0 ? (p->time - p->start_time) / way : 1;
+    if (!c->terminal && !p->finished && floor(10 * share) <= floor(10 * c->last_fraction) &&
+        p->wall_seconds - c->last_line < 30)
+        return;
+    c->last_fraction = share;
+    c->last_line = p->wall_seconds;
+    if (p->finished) {
+        clear_line(c);
+        return;
+    }
+    char left[32];
+    remaining(p->seconds_left, left);
+    fprintf(stderr, "%s%5.1f %%  t %.5g s  dt %.3g s (%s)  %.3g M particle steps/s  %s left%s",
+            c->terminal ? "\r" : "", 100 * share, p->time, p->dt, p->bound,
+            1e-6 * p->particle_steps_per_second, left, c->terminal ? "\033[K" : "\n");
+    fflush(stderr);
+    c->line_open = c->terminal;
+}
+
+static int complain(const char *format, const char *a, const char *b)
+{
+    fputs("sphfsi: ", stderr);
+    fprintf(stderr, format, a, b);
+    fputs("; --help lists the options\n", stderr);
+    return 1;
+}
+
+static int read_number(const char *option, const char *text, double low, double high, double *value)
+{
+    char *end;
+    *value = strtod(text, &end);
+    if (end != text && *end == '\0' && *value >= low && *value <= high) return 0;
+    return complain(strcmp(option, "--threads") == 0  ? "%s %s: a number from 1 to 4096 is wanted"
+                    : strcmp(option, "--refine") == 0 ? "%s %s: a number from 3 to 6 is wanted"
+                    : strcmp(option, "--ratio") == 0  ? "%s %s: a number from 1.1 to 4 is wanted"
+                                                     : "%s %s: a time in seconds above 0 is wanted",
+                    option, text);
+}
+
+/* Wall time: a number with s, min or h behind it. */
+static int read_duration(const char *text, double *seconds)
+{
+    static const struct {
+        const char *unit;
+        double seconds;
+    } units[] = {{"s", 1}, {"min", 60}, {"h", 3600}};
+    char *end;
+    *seconds = strtod(text, &end);
+    while (end != text && *end == ' ') end++;
+    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++)
+        if (end != text && strcmp(end, units[k].unit) == 0 && *seconds > 0) {
+            *seconds *= units[k].seconds;
+            return 0;
+        }
+    return complain("--budget %s: a time such as 90s, 10min or 2h is wanted%s", text, "");
+}
+
+static int is_checkpoint(const char *text)
+{
+    const size_t n = strlen(text);
+    return n > 5 && strcmp(text + n - 5, ".ckpt") == 0;
+}
+
+static int apply(struct command *c, const struct option *option, const char *operand)
+{
+    struct sphfsi_options *o = &c->options;
+    const char *const name = option->name;
+    const char *const word = operand ? operand : ""; /* only --restart may go without */
+    double number = 0;
+    if (option->mode != RUN) {
+        c->mode = option->mode;
+        c->operand = operand;
+        if (option->mode == BUDGET) return read_duration(word, &c->budget);
+        if (option->mode == REFINE) return read_number(name, word, 3, 6, &c->runs);
+    } else if (strcmp(name, "--out") == 0) {
+        o->out = operand;
+    } else if (strcmp(name, "--threads") == 0) {
+        if (read_number(name, word, 1, 4096, &number)) return 1;
+        o->threads = (int)number;
+    } else if (strcmp(name, "--until") == 0) {
+        if (read_number(name, word, 1e-300, 1e9, &number)) return 1;
+        o->until = number;
+    } else if (strcmp(name, "--set") == 0) {
+        if (!strchr(word, '='))
+            return complain("%s %s: key=value or section.key=value is wanted", name, operand);
+        ((const char **)(uintptr_t)o->sets)[o->n_sets++] = operand;
+    } else if (strcmp(name, "--restart") == 0) {
+        o->restart = 1;
+        o->restart_file = operand;
+    } else if (strcmp(name, "--ratio") == 0) {
+        if (read_number(name, word, 1.1, 4, &c->ratio)) return 1;
+    } else if (strcmp(name, "--fork") == 0) {
+        o->fork = operand;
+    } else {
+        c->quiet = 1;
+    }
+    return 0;
+}
+
+/* The known option in `argument`, "--name" or "--name=operand", or NULL. */
+static const struct option *find_option(const char *argument, const char **operand)
+{
+    const size_t length = strcspn(argument, "=");
+    *operand = argument[length] == '=' ? argument + length + 1 : NULL;
+    for (int k = 0; k < OPTION_COUNT; k++)
+        if (strlen(options[k].name) == length && strncmp(options[k].name, argument, length) == 0)
+            return &options[k];
+    return NULL;
+}
+
+static int unknown_option(const char *argument)
+{
+    const char *names[OPTION_COUNT];
+    for (int k = 0; k < OPTION_COUNT; k++) names[k] = options[k].name;
+    const char *near = sphfsi_nearest(argument, names, OPTION_COUNT);
+    return near ? complain("unknown option %s; the nearest one is %s", argument, near)
+                : complain("unknown option %s%s", argument, "");
+}
+
+/* Whether the word behind an option that may have an operand is one. Behind --restart stands a
+ * checkpoint, unless it can only be the case. */
+static int is_operand(const struct command *c, const struct option *option, const char *next)
+{
+    if (!next || next[0] == '-') return 0;
+    return option->mode == NEW || c->options.case_path || is_checkpoint(next);
+}
+
+static int parse_option(struct command *c, const char *argument, const char *next, int *used_next)
+{
+    const char *operand;
+    const struct option *option = find_option(argument, &operand);
+    if (!option) return unknown_option(argument);
+    if (option->takes == NOTHING && operand)
+        return complain("%s takes no operand, not '%s'", option->name, operand);
+    if (option->takes == OPERAND && !operand && !next)
+        return complain("%s: its operand is missing%s", option->name, "");
+    *used_next = !operand && (option->takes == OPERAND ||
+                              (option->takes == MAYBE && is_operand(c, option, next)));
+    return apply(c, option, *used_next ? next : operand);
+}
+
+static int parse(struct command *c, int argc, char **argv)
+{
+    for (int k = 1; k < argc; k++) {
+        int used_next = 0;
+        /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): argv has argc words */
+        if (argv[k][0] == '-') {
+            if (parse_option(c, argv[k], k + 1 < argc ? argv[k + 1] : NULL, &used_next)) return 1;
+            if (c->mode == HELP || c->mode == VERSION) return 0;
+        } else if (c->options.case_path) {
+            return complain("one case at a time is run, not %s and %s", c->options.case_path,
+                            argv[k]);
+        } else {
+            c->options.case_path = argv[k];
+        }
+        k += used_next;
+    }
+    if (c->mode >= INSPECT || c->options.case_path) return 0;
+    fputs(usage, stderr);
+    return complain("%s%s", "no case is given", "");
+}
+
+/* A template on the standard output, or the names of all. */
+static enum sphfsi_status print_template(const struct command *c)
+{
+    const char *text = c->operand ? sphfsi_template(c->operand) : NULL;
+    if (text) fputs(text, stdout);
+    if (text || c->operand) return text ? SPHFSI_OK : SPHFSI_INPUT;
+    for (int k = 0; sphfsi_template_name(k); k++) puts(sphfsi_template_name(k));
+    return SPHFSI_OK;
+}
+
+static enum sphfsi_status carry_out(struct command *c)
+{
+    struct sphfsi_options *const o = &c->options;
+    switch (c->mode) {
+    case RUN: install_signals(); return sphfsi_run(o);
+    case PREVIEW: return sphfsi_preview(o);
+    case EXPLAIN: return sphfsi_explain(o);
+    case EFFECTIVE: return sphfsi_effective(o, "/dev/stdout");
+    case CITE: return sphfsi_cite(o);
+    case INSPECT: return sphfsi_inspect(c->operand, o);
+    case NEW: return print_template(c);
+    case BUDGET: return sphfsi_budget(o, c->budget);
+    case REFINE: install_signals(); return sphfsi_refine(o, (int)c->runs, c->ratio);
+    case KEYS: sphfsi_keys(o); break;
+    case VERSION: puts(sphfsi_version()); break;
+    case HELP: fputs(usage, stdout); break;
+    }
+    return SPHFSI_OK;
+}
+
+static int execute(struct command *c)
+{
+    c->terminal = isatty(STDERR_FILENO);
+    c->options.message = on_message;
+    c->options.progress = c->quiet ? NULL : on_progress;
+    c->options.context = c;
+    c->options.requests = &requests;
+    const enum sphfsi_status status = carry_out(c);
+    clear_line(c);
+    if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
+    return sphfsi_exit_status(status, requests.stop);
+}
+
+int main(int argc, char **argv)
+{
+    struct command c = {0};
+    const char **sets = calloc((size_t)argc + 1, sizeof *sets);
+    if (!sets) return complain("%s%s", "no memory", "");
+    c.options.sets = sets;
+    c.ratio = 2;
+    int status = parse(&c, argc, argv);
+    if (!status) status = execute(&c);
+    free(sets);
+    if (status != 2) return status;
+    /* HDF5 may crash at the end of the program after one of its writes has failed: then there is no
+     * end, and the status is that of the failure. */
+    fflush(NULL);
+    _exit(status);
+}

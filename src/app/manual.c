@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT
+ * The reference of keys, from the tables that the reader of cases works with. */
+#include "app/manual.h"
+
+#include "case/effects.h"
+#include "case/params.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *section, *key, *value;
+} examples[] = {
+#define EXAMPLE(section, key, value) {#section, #key, value},
+#include "app/examples.def"
+#undef EXAMPLE
+};
+
+static const char *const section_meanings[][2] = {
+    {"top", "Keys before the first section."},
+    {"numerics", "How it is computed; the defaults are those of the article or better."},
+    {"domain", "Where fluid may be."},
+    {"output", "What is written and how often."},
+    {"fluid", "Water at the start. Several sections may differ in region, surface, pressure and "
+              "velocity, not in kind."},
+    {"wall", "Rigid bodies, at rest or driven."},
+    {"solid", "Elastic bodies."},
+    {"motion", "A prescribed motion of walls, as a displacement from their place in the case."},
+    {"probe", "A measurement."},
+    {"reference", "A curve that a probe is compared with, in the summary and in plots."},
+};
+
+static bool pure(const struct param *p) { return !p->unit || strcmp(p->unit, "1") == 0; }
+
+/* The default as it would be written; "" where there is none. */
+static void default_of(const struct param *p, char *text, size_t size)
+{
+    const double *const v = p->number_default;
+    const char *const space = pure(p) ? "" : " ", *const unit = pure(p) ? "" : p->unit;
+    text[0] = '\0';
+    switch (p->type) {
+    case PARAM_REAL:
+        if (!isnan(v[0]))
+            snprintf(text, size, "%g%s%s", v[0], v[0] == 0 ? "" : space, v[0] == 0 ? "" : unit);
+        break;
+    case PARAM_INTEGER: snprintf(text, size, "%d", (int)v[0]); break;
+    case PARAM_CHOICE: {
+        char name[SCENE_NAME];
+        param_choice_name(p, (int)v[0], name);
+        snprintf(text, size, "%s", name);
+        break;
+    }
+    case PARAM_VECTOR: snprintf(text, size, "%g, %g", v[0], v[1]); break;
+    case PARAM_TEXT: snprintf(text, size, "%s", p->text_default); break;
+    default: break;
+    }
+}
+
+void manual_example(const struct param *p, char *text, size_t size)
+{
+    for (size_t k = 0; k < COUNT_OF(examples); k++)
+        if (strcmp(examples[k].section, section_table[p->section].word) == 0 &&
+            strcmp(examples[k].key, p->key) == 0) {
+            snprintf(text, size, "%s", examples[k].value);
+            return;
+        }
+    default_of(p, text, size);
+}
+
+static void type_of(const struct param *p, char *text, size_t size)
+{
+    static const char *const names[] = {
+        [PARAM_REAL] = "number",
+        [PARAM_INTEGER] = "whole number",
+        [PARAM_CHOICE] = "choice",
+        [PARAM_TEXT] = "text",
+        [PARAM_VECTOR] = "two numbers",
+        [PARAM_FIELD_EXPR] = "expression in x, y",
+        [PARAM_SHAPES] = "shape, may be repeated",
+        [PARAM_NUMBERS] = "numbers",
+        [PARAM_TIME_EXPR] = "expression in t",
+    };
+    if (p->type == PARAM_FIELD_EXPR && p->count == 2)
+        snprintf(text, size, "two expressions in x, y");
+    else
+        snprintf(text, size, "%s", names[p->type]);
+}
+
+/* "> 0, <= 1000", the names of a choice joined by "or", or nothing. */
+static void range_of(const struct param *p, char *text, size_t size)
+{
+    text[0] = '\0';
+    if (p->type == PARAM_REAL || p->type == PARAM_INTEGER) {
+        snprintf(text, size, "%s %g, %s %g", p->low_open ? ">" : "≥", p->low,
+                 p->high_open ? "<" : "≤", p->high);
+    } else if (p->type == PARAM_CHOICE) {
+        size_t at = 0;
+        for (const char *c = p->choices; *c && at + 8 < size; c++)
+            at += (size_t)snprintf(text + at, size - at, *c == '|' ? ", " : "%c", *c);
+    }
+}
+
+/* A | would end a cell of the table. */
+static void in_cell(const char *text, char *cell, size_t size)
+{
+    size_t at = 0;
+    for (; *text && at + 3 < size; text++) {
+        if (*text == '|') cell[at++] = '\\';
+        cell[at++] = *text;
+    }
+    cell[at] = '\0';
+}
+
+static void say_key(const struct param *p, const struct sphfsi_options *o)
+{
+    char type[64], fallback[SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
+    type_of(p, type, sizeof type);
+    default_of(p, fallback, sizeof fallback);
+    range_of(p, range, sizeof range);
+    manual_example(p, example, sizeof example);
+    in_cell(p->meaning, meaning, sizeof meaning);
+    const char *const tick = fallback[0] ? "`" : "";
+    session_say(o, "| `%s` | %s | %s | %s%s%s | %s | %s | %s%s%s%s%s |", p->key, type,
+                pure(p) ? "" : p->unit, tick, p->needed ? "**needed**" : fallback, tick, range,
+                meaning, example[0] ? "`" : "", example[0] ? p->key : "", example[0] ? " = " : "",
+                example, example[0] ? "`" : "");
+}
+
+static void say_section(enum section_id id, const struct sphfsi_options *o)
+{
+    const struct section_info *const info = &section_table[id];
+    session_say(o, "%s", "");
+    if (id == SECTION_top)
+        session_say(o, "### Top of the file");
+    else
+        session_say(o, "### [%s%s]", info->word, info->named ? " NAME" : "");
+    session_say(o, "%s", "");
+    for (size_t k = 0; k < COUNT_OF(section_meanings); k++)
+        if (strcmp(section_meanings[k][0], info->word) == 0) {
+            session_say(o, "%s", section_meanings[k][1]);
+            session_say(o, "%s", "");
+        }
+    session_say(o, "| key | type | unit | default | range | meaning | example |");
+    session_say(o, "|---|---|---|---|---|---|---|");
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (param_table[k].section == id) say_key(&param_table[k], o);
+}
+
+static void say_quantities(const struct sphfsi_options *o)
+{
+    static const char *const rows[][3] = {
+#define QUANTITY(NAME, name, target, columns, meaning) {#name, columns, meaning},
+#include "case/quantities.def"
+#undef QUANTITY
+    };
+    static const char *const needs[] = {
+        [TARGET_SOLID_POINT] = "`body` (solid), `point`",
+        [TARGET_FLUID_POINT] = "`point`",
+        [TARGET_ANY_POINT] = "`point`; `body`",
+        [TARGET_SOLID] = "`body` (solid)",
+        [TARGET_BODY] = "`body`; `point` of the moment",
+        [TARGET_FLUID] = "",
+        [TARGET_FLUID_LINE] = "`point`, `to`",
+    };
+    static const enum probe_target targets[] = {
+#define QUANTITY(NAME, name, target, columns, meaning) TARGET_##target,
+#include "case/quantities.def"
+#undef QUANTITY
+    };
+    session_say(o, "%s", "");
+    session_say(o, "### Quantities of a probe");
+    session_say(o, "%s", "");
+    session_say(o,
+                "A column is called PROBE_COLUMN, such as `tip_dx_m`. All are per metre of depth.");
+    session_say(o, "%s", "");
+    session_say(o, "| quantity | needs | columns | meaning |");
+    session_say(o, "|---|---|---|---|");
+    for (size_t k = 0; k < COUNT_OF(rows); k++)
+        session_say(o, "| `%s` | %s | `%s` | %s |", rows[k][0], needs[targets[k]], rows[k][1],
+                    rows[k][2]);
+}
+
+static void say_effects(const struct sphfsi_options *o)
+{
+    session_say(o, "%s", "");
+    session_say(o, "### Effects");
+    session_say(o, "%s", "");
+    session_say(o, "What a case calls for is simulated, and nothing else; `--explain` says which.");
+    session_say(o, "%s", "");
+    session_say(o, "| effect | called for by | meaning | source |");
+    session_say(o, "|---|---|---|---|");
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        char meaning[512];
+        in_cell(effect_table[k].meaning, meaning, sizeof meaning);
+        session_say(o, "| %s | %s | %s | %s |", effect_table[k].name, effect_table[k].key, meaning,
+                    effect_table[k].equation);
+    }
+}
+
+void manual_keys(const struct sphfsi_options *o)
+{
+    session_say(o, "## Sections and keys");
+    for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
+    say_quantities(o);
+    say_effects(o);
+}

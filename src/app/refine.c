@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: MIT */
+#include "app/refine.h"
+
+#include "base/run_dir.h"
+#include "output/json.h"
+#include "app/run.h"
+#include "app/session.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_RUNS = 6 };
+
+struct refinement {
+    const struct sphfsi_options *options;
+    struct diag *diag;
+    char folder[RUN_DIR_PATH];
+    int runs;
+    double ratio, dp; /* dp: of the finest */
+    bool off_lattice; /* a body is not the same in all resolutions */
+};
+
+/* Values of a column that are refined. */
+enum measure { FINAL, PEAK, SETTLED, MEASURES };
+static const char *const measure_names[MEASURES] = {"final", "peak", "settled"};
+
+/* Richardson extrapolation; band: grid convergence index with a factor of 1.25 (Roache 1994; Celik et
+ * al. 2008), the order taken as 2 at most. Where the values do not converge monotonically, or slower
+ * than with order 0.5, three times the largest difference (after Eca and Hoekstra 2014). */
+struct convergence converge(const double value[3], double ratio)
+{
+    const double fine = value[1] - value[0], coarse = value[2] - value[1];
+    const double widest = max2(max2(fabs(fine), fabs(coarse)), fabs(value[2] - value[0]));
+    struct convergence c = {.extrapolated = value[0], .band = 3 * widest, .order = NAN};
+    c.why = widest > 0 ? "not monotone" : "no difference";
+    if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
+        c.why = "not finite";
+        c.band = NAN;
+        return c;
+    }
+    if (!(fine / coarse > 0)) return c;
+    c.order = log(coarse / fine) / log(ratio);
+    c.ordered = c.order >= 0.5;
+    c.why = c.ordered ? "" : "slower than order 0.5";
+    if (!c.ordered) return c;
+    const double gain = pow(ratio, min2(c.order, 2)) - 1;
+    c.extrapolated = value[0] - fine / gain;
+    c.band = 1.25 * fabs(fine) / gain;
+    return c;
+}
+
+/* --- the runs --- */
+
+static double spacing(const struct refinement *x, int k)
+{
+    return x->dp * pow(x->ratio, x->runs - 1 - k);
+}
+
+/* Options of one run: the dp set last, its own folder. */
+struct one_run {
+    struct sphfsi_options options;
+    char dp[40], out[RUN_DIR_PATH];
+    const char **sets;
+};
+
+static enum err prepare(struct one_run *one, const struct refinement *x, int k)
+{
+    char name[40];
+    snprintf(one->dp, sizeof one->dp, "dp=%.17g", spacing(x, k));
+    snprintf(name, sizeof name, "dp-%.6g", spacing(x, k));
+    TRY(path_join(one->out, x->folder, name, x->diag));
+    const int n = x->options->n_sets;
+    one->sets = calloc((size_t)n + 1, sizeof *one->sets);
+    if (!one->sets) return diag_fail(x->diag, ERR_MEMORY, "refine: no memory");
+    for (int i = 0; i < n; i++) one->sets[i] = x->options->sets[i];
+    one->sets[n] = one->dp;
+    one->options = *x->options;
+    one->options.sets = one->sets;
+    one->options.n_sets = n + 1;
+    one->options.out = one->out;
+    return ERR_OK;
+}
+
+static void look_for_lattice(void *context, const char *text)
+{
+    struct refinement *x = context;
+    if (strstr(text, "off the lattice")) x->off_lattice = true;
+}
+
+/* Whether the case can be had in this resolution; before any run, not after hours of the others. */
+static enum err try_case(struct refinement *x, int k)
+{
+    struct one_run one = {.dp = ""};
+    struct session *const s = calloc(1, sizeof *s);
+    struct diag why = {.code = ERR_OK, .warn = look_for_lattice, .warn_context = x};
+    enum err e = s ? prepare(&one, x, k) : diag_fail(x->diag, ERR_MEMORY, "refine: no memory");
+    if (!e && (e = session_read(s, &one.options, &why)) == ERR_OK)
+        scene_free(&s->scene);
+    else if (why.code)
+        diag_fail(x->diag, e, "refine: at dp = %.6g m, %.4g times the case's: %.500s",
+                  spacing(x, k), spacing(x, k) / x->dp, why.text);
+    free(one.sets);
+    free(s);
+    return e;
+}
+
+static bool has(const char *folder, const char *name)
+{
+    char path[RUN_DIR_PATH];
+    struct stat info;
+    return path_join(path, folder, name, NULL) == ERR_OK && stat(path, &info) == 0;
+}
+
+/* What a run leaves that was killed before its first checkpoint is begun anew. */
+static void remove_partial_run(const char *folder)
+{
+    static const char *const names[] = {"probes.csv", "ledger.csv", "fields.vtkhdf",
+                                        "fields.vtkhdf.spare", "case.cfg"};
+    char path[RUN_DIR_PATH];
+    if (has(folder, "summary.json")) return;
+    for (size_t k = 0; k < COUNT_OF(names); k++)
+        if (path_join(path, folder, names[k], NULL) == ERR_OK) unlink(path);
+}
+
+/* Whether the folder holds this very run, finished. Another case is left to the restart to refuse. */
+static bool is_done(const struct refinement *x, const struct one_run *one)
+{
+    char summary[RUN_DIR_PATH], path[RUN_DIR_PATH], part[RUN_DIR_PATH];
+    char *text = NULL, *there = NULL, *here = NULL;
+    size_t size;
+    struct diag quiet = {.code = ERR_OK};
+    struct session *const s = calloc(1, sizeof *s);
+    bool done = s && path_join(summary, one->out, "summary.json", &quiet) == ERR_OK &&
+                path_join(path, one->out, "case.cfg", &quiet) == ERR_OK &&
+                path_join(part, one->out, "case.cfg.part", &quiet) == ERR_OK &&
+                file_read(summary, &text, &size, &quiet) == ERR_OK &&
+                strstr(text, "\"exit_reason\": \"finished\"") &&
+                session_read(s, &one->options, &quiet) == ERR_OK;
+    if (done) {
+        done = scene_write(&s->scene, part, &quiet) == ERR_OK &&
+               file_read(part, &here, &size, &quiet) == ERR_OK &&
+               file_read(path, &there, &size, &quiet) == ERR_OK &&
+               strcmp(here + strcspn(here, "\n"), there + strcspn(there, "\n")) == 0;
+        unlink(part);
+        scene_free(&s->scene);
+    }
+    free(text);
+    free(there);
+    free(here);
+    free(s);
+    if (done) session_say(x->options, "%s is finished already", one->out);
+    return done;
+}
+
+static enum err run_one(struct refinement *x, int k)
+{
+    struct one_run one = {.dp = ""};
+    TRY(prepare(&one, x, k));
+    session_say(x->options, "run %d of %d: dp = %.6g m in %s", k + 1, x->runs, spacing(x, k),
+                one.out);
+    one.options.restart = has(one.out, "summary.json");
+    if (!one.options.restart) remove_partial_run(one.out);
+    const enum err e = is_done(x, &one) ? ERR_OK : run_case(&one.options, x->diag);
+    free(one.sets);
+    return e;
+}
+
+/* --- their values --- */
+
+/* A file of a run in the folder of its resolution; k = runs - 1: the finest. */
+static enum err path_of(const struct refinement *x, int k, const char *file,
+                        char path[RUN_DIR_PATH])
+{
+    char name[40], folder[RUN_DIR_PATH];
+    snprintf(name, sizeof name, "dp-%.6g", spacing(x, k));
+    TRY(path_join(folder, x->folder, name, x->diag));
+    return path_join(path, folder, file, x->diag);
+}
+
+/* The three measures of each column of a file; the number of columns, the time's not counted. */
+static enum err measure_run(const struct refinement *x, int k, const char *file, int columns,
+                            double (*value)[MEASURES])
+{
+    char path[RUN_DIR_PATH], *csv;
+    size_t size;
+    TRY(path_of(x, k, file, path));
+    TRY(file_read(path, &csv, &size, x->diag));
+    const char *const last = strrchr(csv, '\n') ? csv : NULL;
+    double end = 0;
+    for (const char *at = csv; last && (at = strchr(at, '\n')) != NULL && at[1]; at++)
+        end = strtod(at + 1, NULL);
+    memset(value, 0, (size_t)columns * sizeof *value);
+    int settled = 0;
+    for (const char *at = csv; last && (at = strchr(at, '\n')) != NULL && at[1]; at++) {
+        char *stop;
+        const double t = strtod(at + 1, &stop);
+        settled += t >= 0.75 * end;
+        for (int c = 0; c < columns && *stop == ','; c++) {
+            const double v = strtod(stop + 1, &stop);
+            value[c][FINAL] = v;
+            if (fabs(v) > fabs(value[c][PEAK])) value[c][PEAK] = v;
+            if (t >= 0.75 * end) value[c][SETTLED] += v;
+        }
+    }
+    for (int c = 0; c < columns && settled > 0; c++) value[c][SETTLED] /= settled;
+    free(csv);
+    return ERR_OK;
+}
+
+static void say_value(const struct refinement *x, struct json *j, const char *name,
+                      const double value[3], bool aloud)
+{
+    const struct convergence c = converge(value, x->ratio);
+    char order[32] = "none";
+    if (c.ordered) snprintf(order, sizeof order, "%.2f", c.order);
+    const double percent = value[0] != 0 ? 100 / fabs(value[0]) : 0;
+    if (aloud)
+        session_say(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
+                    name, value[2], value[1], value[0], c.extrapolated, order, c.band,
+                    percent * c.band, *c.why ? "; " : "", c.why);
+    json_open(j, name, '{');
+    json_numbers(j, "values", value, 3);
+    json_number(j, "order", c.ordered ? c.order : (double)NAN);
+    json_text(j, "why_no_order", c.why);
+    json_number(j, "extrapolated", c.extrapolated);
+    json_number(j, "band", c.band);
+    json_close(j, '}');
+}
+
+/* Columns of one file of the runs. Of the ledger only what ends at other than zero is said aloud. */
+static void say_columns(const struct refinement *x, struct json *j, const char *header, int columns,
+                        bool ledger, double (*value[3])[MEASURES])
+{
+    const char *name = header;
+    for (int c = 0; c < columns; c++) {
+        char text[2 * SCENE_NAME];
+        name += strcspn(name, ",") + 1;
+        snprintf(text, sizeof text, "%.*s", (int)strcspn(name, ","), name);
+        const bool energy = strstr(text, "_J_per_m") && value[0][c][FINAL] != 0;
+        if (!ledger || energy) session_say(x->options, "%s", text);
+        json_open(j, text, '{');
+        for (int m = 0; m < MEASURES; m++)
+            say_value(x, j, measure_names[m],
+                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]},
+                      !ledger || energy);
+        json_close(j, '}');
+    }
+}
+
+static enum err tell_file(const struct refinement *x, struct json *j, const char *file, bool ledger)
+{
+    struct arena arena = {0};
+    char path[RUN_DIR_PATH], *header;
+    size_t size;
+    TRY(path_of(x, x->runs - 1, file, path));
+    TRY(file_read(path, &header, &size, x->diag));
+    header[strcspn(header, "\n")] = '\0';
+    int columns = 0;
+    for (const char *at = header; (at = strchr(at, ',')) != NULL; at++) columns++;
+    double(*value[3])[MEASURES];
+    enum err e = ERR_OK;
+    for (int k = 0; k < 3 && !e; k++) {
+        value[k] = arena_alloc(&arena, (size_t)columns, sizeof *value[k], "values", x->diag);
+        e = value[k] ? measure_run(x, x->runs - 1 - k, file, columns, value[k]) : ERR_MEMORY;
+    }
+    if (!e) say_columns(x, j, header, columns, ledger, value);
+    arena_free(&arena);
+    free(header);
+    return e;
+}
+
+static enum err tell_probes(const struct refinement *x, const struct scene *scene, struct json *j)
+{
+    bool shared = false;
+    for (int k = 0; k < scene->n_probe; k++) shared |= !(scene->probe[k].interval > 0);
+    if (shared) TRY(tell_file(x, j, "probes.csv", false));
+    for (int k = 0; k < scene->n_probe; k++) {
+        char file[SCENE_NAME + 16];
+        snprintf(file, sizeof file, "probes_%s.csv", scene->probe[k].common.name);
+        if (scene->probe[k].interval > 0) TRY(tell_file(x, j, file, false));
+    }
+    return ERR_OK;
+}
+
+static void say_head(const struct refinement *x, struct json *j)
+{
+    const double dp[3] = {x->dp, x->dp * x->ratio, x->dp * x->ratio * x->ratio};
+    json_numbers(j, "dp", dp, 3);
+    json_integer(j, "off_lattice", x->off_lattice);
+    session_say(x->options,
+                "dp (m)     %12.5g %12.5g %12.5g extrapolated  order  band of the finest", dp[2],
+                dp[1], dp[0]);
+}
+
+static void say_foot(const struct refinement *x)
+{
+    session_say(x->options,
+                "peak: value of largest size; settled: mean of the last quarter; band: "
+                "grid convergence index, or 3 times the largest difference without order");
+    if (x->off_lattice)
+        session_say(
+            x->options,
+            "bodies are off the lattice in some of these resolutions and so differ from one to "
+            "the next: the orders mean little");
+}
+
+static enum err tell(const struct refinement *x, const struct scene *scene)
+{
+    struct atomic_file out;
+    TRY(atomic_file_open(&out, x->folder, "refine.json", x->diag));
+    struct json j = {.file = out.file};
+    json_open(&j, NULL, '{');
+    say_head(x, &j);
+    enum err e = tell_probes(x, scene, &j);
+    json_open(&j, "ledger", '{');
+    if (!e) e = tell_file(x, &j, "ledger.csv", true);
+    json_close(&j, '}');
+    json_close(&j, '}');
+    say_foot(x);
+    if (!e) return atomic_file_commit(&out, x->diag);
+    atomic_file_abandon(&out);
+    return e;
+}
+
+static enum err check(struct refinement *x)
+{
+    if (x->options->restart || x->options->fork)
+        return diag_fail(
+            x->diag, ERR_INPUT,
+            "refine: goes on by itself where it was; neither restart nor fork go with it");
+    if (x->runs < 3 || x->runs > MOST_RUNS)
+        return diag_fail(x->diag, ERR_INPUT, "refine: %d resolutions; from 3 to %d are possible",
+                         x->runs, MOST_RUNS);
+    if (!(x->ratio >= 1.1 && x->ratio <= 4))
+        return diag_fail(x->diag, ERR_INPUT, "refine: a ratio of %g; from 1.1 to 4 are possible",
+                         x->ratio);
+    for (int k = 0; k < x->runs; k++) TRY(try_case(x, k));
+    return ERR_OK;
+}
+
+enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, struct diag *d)
+{
+    struct refinement x = {.options = o, .diag = d, .runs = runs, .ratio = ratio};
+    TRY(run_dir_of_case(o, x.folder, d));
+    struct session *const s = calloc(1, sizeof *s);
+    if (!s) return diag_fail(d, ERR_MEMORY, "refine: no memory for %zu bytes", sizeof *s);
+    struct diag quiet = {.code = ERR_OK}; /* each run has its own warnings */
+    enum err e = session_read(s, o, &quiet);
+    if (e) {
+        free(s);
+        return diag_fail(d, e, "%s", quiet.text);
+    }
+    x.dp = s->scene.top.dp;
+    e = check(&x);
+    for (int k = 0; k < runs && !e; k++) e = run_one(&x, k);
+    if (!e) e = tell(&x, &s->scene);
+    scene_free(&s->scene);
+    free(s);
+    return e;
+}

@@ -1,0 +1,582 @@
+/* SPDX-License-Identifier: MIT */
+#include "app/run.h"
+
+#include "output/checkpoint.h"
+#include "app/forecast.h"
+#include "output/probes.h"
+#include "output/report.h"
+#include "app/case_change.h"
+#include "app/due.h"
+#include "output/series.h"
+#include "output/snapshot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum output { OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
+
+struct run {
+    const struct sphfsi_options *options;
+    struct diag *diag;
+    struct session session;
+    struct simulation *s; /* the session's */
+    struct run_dir folder;
+    struct arena arena;
+    struct probes probes;
+    struct references references;
+    struct score *score;       /* of each reference */
+    struct series *probe_rows; /* [probes.n_files] */
+    struct series ledger_rows;
+    struct snapshots snapshots;
+    bool snapshot_lost; /* one that was written has not got its place, and that ends the run */
+    struct image image; /* state that was sound, for the guard */
+    char *case_text;    /* effective case */
+    char restarted_from[RUN_DIR_PATH], checkpoint[RUN_DIR_PATH];
+    struct due *probe_due; /* [probes.n_files] */
+    struct due due[OUT_COUNT];
+    struct record record;
+    double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
+};
+
+/* Copies of a sound state in memory take this share of the time at most. */
+static const double image_share = 0.0025;
+static const double progress_seconds = 0.25;
+
+static const char ledger_header[] =
+#define LEDGER(name, unit, meaning) "," #name "_" unit
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    ;
+
+/* --- when --- */
+
+static void set_intervals(struct run *r, double time)
+{
+    const struct scene_output *out = &r->session.scene.output;
+    const bool again = r->options->restart;
+    const double interval[OUT_COUNT] = {
+        [OUT_LEDGER] = out->ledger_interval,
+        [OUT_SNAPSHOT] = out->snapshot_interval,
+        [OUT_CHECKPOINT] = out->checkpoint_interval,
+    };
+    for (int k = 0; k < OUT_COUNT; k++) due_begin(&r->due[k], interval[k], time, again);
+    for (int k = 0; k < r->probes.n_files; k++)
+        due_begin(&r->probe_due[k], r->probes.file[k].interval, time, again);
+    /* The state at the beginning is the case itself, or the checkpoint that is forked. */
+    r->due[OUT_CHECKPOINT].k += !r->options->restart;
+}
+
+static double next_time(const struct run *r)
+{
+    double next = r->session.scene.top.end_time;
+    for (int k = 0; k < OUT_COUNT; k++) next = min2(next, due_time(&r->due[k]));
+    for (int k = 0; k < r->probes.n_files; k++) next = min2(next, due_time(&r->probe_due[k]));
+    return next;
+}
+
+/* --- what --- */
+
+static enum err write_probes(struct run *r, int file)
+{
+    double row[SERIES_MAX_COLUMNS];
+    probes_sample(&r->probes, r->s, file, row);
+    return series_row(&r->probe_rows[file], row, r->diag);
+}
+
+static enum err write_ledger(struct run *r)
+{
+    r->record.last = simulation_ledger(r->s);
+    const enum err e = guards_energy(r->s, &r->record.last, r->diag);
+    const double row[] = {
+#define LEDGER(name, unit, meaning) r->record.last.name,
+        LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    };
+    TRY(series_row(&r->ledger_rows, row, r->diag));
+    return e;
+}
+
+/* How far the probes are off their references; that it cannot be told is no failure of the run. */
+static void compare(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    r->record.references = &r->references;
+    r->record.score = NULL;
+    if (r->references.n == 0) return;
+    r->record.score = r->score;
+    for (int k = 0; k < r->probes.n_files; k++) {
+        if (!references_score(&r->references, k, r->probe_rows[k].path, r->score, &why)) continue;
+        diag_warn(&why, "the references were not compared: %s", why.text);
+        r->record.score = NULL;
+    }
+}
+
+static enum err write_summary(struct run *r, const char *exit_reason, const char *message,
+                              struct diag *d)
+{
+    r->record.exit_reason = exit_reason;
+    r->record.message = message;
+    r->record.wall_seconds = wall_clock() - r->wall_start;
+    r->record.last = simulation_ledger(r->s);
+    return report_summary(r->folder.path, r->s, &r->record, d);
+}
+
+static enum err capture(struct run *r, struct diag *d)
+{
+    const double begin = wall_clock();
+    TRY(checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d));
+    r->wall_image = wall_clock();
+    r->image_cost = r->wall_image - begin;
+    return ERR_OK;
+}
+
+/* A checkpoint must not outlive the rows before it through a power cut: they are synced first. */
+static enum err store(struct run *r, struct diag *d)
+{
+    for (int k = 0; k < r->probes.n_files; k++) TRY(series_sync(&r->probe_rows[k], d));
+    TRY(series_sync(&r->ledger_rows, d));
+    return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
+}
+
+/* A full disk need not end a run whose user wants its rows more than its pictures; the next snapshot
+ * is tried again. The file with the name stays as it was. */
+static enum err judge_snapshot(struct run *r, enum err e, double time, struct diag *why)
+{
+    if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
+        return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
+    r->record.snapshots_missed++;
+    diag_warn(why, "the snapshot at %.6g s is left out, the run goes on: %s", time, why->text);
+    return ERR_OK;
+}
+
+static enum err settle_snapshot(struct run *r)
+{
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_settle(&r->snapshots, &why);
+    const enum err judged = judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
+    r->snapshot_lost |= judged != ERR_OK;
+    return judged;
+}
+
+static enum err write_snapshot(struct run *r)
+{
+    TRY(settle_snapshot(r));
+    struct diag why = session_diag(r->options);
+    const enum err e = snapshots_write(&r->snapshots, r->s, &why);
+    return judge_snapshot(r, e, r->s->state.time, &why);
+}
+
+static enum err write_checkpoint(struct run *r)
+{
+    r->wall_checkpoint = wall_clock();
+    TRY(settle_snapshot(r));
+    TRY(capture(r, r->diag));
+    TRY(store(r, r->diag));
+    return write_summary(r, "running", "", r->diag);
+}
+
+static enum err write_output(struct run *r, enum output what)
+{
+    switch (what) {
+    case OUT_LEDGER: return write_ledger(r);
+    case OUT_SNAPSHOT: return write_snapshot(r);
+    case OUT_CHECKPOINT: return write_checkpoint(r);
+    case OUT_COUNT: break;
+    }
+    return ERR_OK;
+}
+
+static double phases_so_far(const struct simulation *s)
+{
+    double sum = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) sum += s->phase_seconds[k];
+    return sum;
+}
+
+/* Writes what is due now; at the end of the run everything that was not just written. The checkpoint
+ * comes last: a restart takes it that all else has been written. */
+static enum err write_due(struct run *r, bool at_end)
+{
+    const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
+    for (int k = 0; k < r->probes.n_files; k++) {
+        if (!due_now(&r->probe_due[k], time, at_end)) continue;
+        TRY(write_probes(r, k));
+        due_pass(&r->probe_due[k], time);
+    }
+    for (int k = 0; k < OUT_COUNT; k++) {
+        if (!due_now(&r->due[k], time, at_end)) continue;
+        TRY(write_output(r, (enum output)k));
+        due_pass(&r->due[k], time);
+    }
+    if (!at_end && image_share * (wall_clock() - r->wall_image) > r->image_cost)
+        TRY(capture(r, r->diag));
+    /* An evaluation that the next step takes over has booked itself. */
+    r->s->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->s) - before);
+    return ERR_OK;
+}
+
+/* --- the way --- */
+
+/* Seconds since a mark, which follows a clock that steps back: that of a guest does, when it is moved
+ * to another machine. */
+static double since(double *mark)
+{
+    const double now = wall_clock();
+    if (now < *mark) *mark = now;
+    return now - *mark;
+}
+
+static void show_progress(struct run *r, bool finished)
+{
+    const struct sphfsi_options *o = r->options;
+    const double interval = o->progress_interval > 0 ? o->progress_interval : progress_seconds;
+    if (!o->progress || (!finished && since(&r->wall_progress) < interval)) return;
+    const double now = wall_clock();
+    r->wall_progress = now;
+    r->record.wall_seconds = now - r->wall_start;
+    const struct state *st = &r->s->state;
+    int binding = 0;
+    for (int k = 1; k < BOUND_COUNT; k++)
+        if (k != BOUND_output && r->s->dt_bound[k] < r->s->dt_bound[binding]) binding = k;
+    const double done = st->time - r->record.start_time;
+    const double end = r->session.scene.top.end_time;
+    const struct sphfsi_progress p = {
+        .time = st->time,
+        .end_time = end,
+        .start_time = r->record.start_time,
+        .dt = st->dt,
+        .bound = bound_names[binding],
+        .particle_steps_per_second = report_rate(r->s, &r->record),
+        .wall_seconds = r->record.wall_seconds,
+        .seconds_left = done > 0 ? r->record.wall_seconds * (end - st->time) / done : -1,
+        .steps = st->steps,
+        .finished = finished,
+    };
+    o->progress(o->context, &p);
+}
+
+/* Wishes from outside and the cadence by wall time; neither changes a step. */
+static enum err between_steps(struct run *r)
+{
+    struct sphfsi_requests *wish = r->options->requests;
+    const double minutes = r->session.scene.output.checkpoint_minutes;
+    const bool by_clock = minutes > 0 && since(&r->wall_checkpoint) > 60 * minutes;
+    if (by_clock || (wish && wish->checkpoint)) {
+        if (wish) wish->checkpoint = 0;
+        const double begin = wall_clock();
+        TRY(write_checkpoint(r));
+        r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
+    }
+    show_progress(r, false);
+    if (!wish || !wish->stop) return ERR_OK;
+    TRY(write_checkpoint(r));
+    return diag_fail(r->diag, ERR_INTERRUPT,
+                     "stopped by signal %d at %.6g s; --restart goes on from %s", (int)wish->stop,
+                     r->s->state.time, r->checkpoint);
+}
+
+static enum err advance(struct run *r)
+{
+    const double end = r->session.scene.top.end_time;
+    TRY(write_due(r, false));
+    while (r->s->state.time < end) {
+        const double next = next_time(r);
+        while (r->s->state.time < next) {
+            TRY(simulation_step(r->s, next, r->diag));
+            TRY(between_steps(r));
+        }
+        TRY(write_due(r, false));
+    }
+    TRY(write_due(r, true));
+    return settle_snapshot(r);
+}
+
+/* After a failure: what can still be left behind. The failure itself stays the message. */
+static void save_last_state(struct run *r, enum err why)
+{
+    struct diag second = session_diag(r->options);
+    /* All rows and snapshots up to the image have been written, so that a restart from it leaves no gap. */
+    const bool whole = !r->snapshot_lost && settle_snapshot(r) == ERR_OK;
+    if (why != ERR_INTERRUPT && whole && r->image.size > 0 && store(r, &second))
+        diag_warn(&second, "the last sound state could not be kept: %s", second.text);
+    second.code = ERR_OK;
+    if (why == ERR_GUARD &&
+        (snapshots_write(&r->snapshots, r->s, &second) || snapshots_settle(&r->snapshots, &second)))
+        diag_warn(&second, "the state at the stop could not be kept: %s", second.text);
+    second.code = ERR_OK;
+    const char *reason = why == ERR_GUARD       ? "guard"
+                         : why == ERR_INTERRUPT ? "interrupted"
+                         : why == ERR_MEMORY    ? "memory"
+                                                : "input_output";
+    if (write_summary(r, reason, r->diag->text, &second))
+        diag_warn(&second, "summary.json could not be written: %s", second.text);
+    if (why == ERR_GUARD && r->checkpoint[0])
+        session_say(r->options, "the last sound state is in %s, the state at the stop in %s",
+                    r->checkpoint, r->snapshots.path);
+}
+
+/* --- the beginning --- */
+
+enum err run_dir_of_case(const struct sphfsi_options *o, char path[RUN_DIR_PATH], struct diag *d)
+{
+    if (o->out) {
+        if (o->out[0] && strlen(o->out) < RUN_DIR_PATH - 300) {
+            memcpy(path, o->out, strlen(o->out) + 1);
+            for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
+            return ERR_OK;
+        }
+        return diag_fail(d, ERR_INPUT,
+                         "out: the path has %zu characters, from 1 to %d are possible",
+                         strlen(o->out), RUN_DIR_PATH - 301);
+    }
+    const char *name = o->case_path ? o->case_path : "case";
+    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
+    const size_t whole = strlen(name);
+    const size_t length = whole > 4 && strcmp(name + whole - 4, ".cfg") == 0 ? whole - 4 : whole;
+    /* A name of dots would be another folder than one in runs/. */
+    if (strspn(name, ".") >= length)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: the folder of the results takes its name from the case, and '%.*s' is "
+            "none; choose one with --out",
+            o->case_path, (int)length, name);
+    snprintf(path, RUN_DIR_PATH, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
+    return ERR_OK;
+}
+
+/* Writes case.cfg beside the one that may be there; its text stays in r->case_text. */
+static enum err write_case(struct run *r, char part[RUN_DIR_PATH])
+{
+    TRY(path_join(part, r->folder.path, "case.cfg.part", r->diag));
+    unlink(part); /* of a run that was killed, or a link */
+    TRY(scene_write(&r->session.scene, part, r->diag));
+    size_t size;
+    const enum err e = file_read(part, &r->case_text, &size, r->diag);
+    if (e) unlink(part);
+    return e;
+}
+
+static enum err put_case(struct run *r, const char *part)
+{
+    char path[RUN_DIR_PATH];
+    TRY(path_join(path, r->folder.path, "case.cfg", r->diag));
+    if (rename(part, path) != 0)
+        return diag_fail(r->diag, ERR_IO, "%s: cannot be put in place", path);
+    return run_dir_sync(r->folder.path, r->diag);
+}
+
+static enum err start_fresh(struct run *r)
+{
+    TRY(snapshots_create(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
+                         r->diag));
+    TRY(series_create(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1, r->diag));
+    for (int k = 0; k < r->probes.n_files; k++) {
+        const struct probe_file *const f = &r->probes.file[k];
+        TRY(series_create(&r->probe_rows[k], r->folder.path, f->name, f->header, r->diag));
+        r->probe_due[k].written = -1;
+    }
+    for (int k = 0; k < OUT_COUNT; k++) r->due[k].written = -1;
+    r->record.first = simulation_ledger(r->s);
+    return ERR_OK;
+}
+
+static enum err start_again(struct run *r)
+{
+    const double time = r->s->state.time;
+    const struct scene_output *const out = &r->session.scene.output;
+    double row[SERIES_MAX_COLUMNS];
+    /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
+    TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
+    TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
+                         due_kept_until(out->snapshot_interval, time),
+                         &r->due[OUT_SNAPSHOT].written, r->diag));
+    TRY(series_resume(&r->ledger_rows, r->folder.path, "ledger.csv", ledger_header + 1,
+                      due_kept_until(out->ledger_interval, time), row, &r->due[OUT_LEDGER].written,
+                      r->diag));
+    for (int k = 0; k < r->probes.n_files; k++) {
+        const struct probe_file *const f = &r->probes.file[k];
+        TRY(series_resume(&r->probe_rows[k], r->folder.path, f->name, f->header,
+                          due_kept_until(f->interval, time), NULL, &r->probe_due[k].written,
+                          r->diag));
+    }
+    r->due[OUT_CHECKPOINT].written = time;
+    int k = 0;
+#define LEDGER(name, unit, meaning) r->record.first.name = row[k++];
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    return ERR_OK;
+}
+
+/* A fork's may be a file or the folder of a run. */
+static enum err find_checkpoint(struct run *r)
+{
+    const struct sphfsi_options *o = r->options;
+    const char *file = o->fork ? o->fork : o->restart_file;
+    struct stat info;
+    if (!file) return checkpoint_newest(&r->image, r->folder.path, r->restarted_from, r->diag);
+    if (o->fork && stat(file, &info) == 0 && S_ISDIR(info.st_mode))
+        return checkpoint_newest(&r->image, file, r->restarted_from, r->diag);
+    snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
+    return checkpoint_read(&r->image, file, r->diag);
+}
+
+static enum err load_checkpoint(struct run *r)
+{
+    const enum err missing = find_checkpoint(r);
+    if (missing == ERR_MEMORY) return missing;
+    if (missing) {
+        /* One that is not there or not sound is wrong input: nothing was started. */
+        r->diag->code = ERR_INPUT;
+        return ERR_INPUT;
+    }
+    const struct image_info info = checkpoint_info(&r->image);
+    const bool fork = r->options->fork != NULL;
+    const char *what = fork ? "fork" : "restart";
+    TRY(fork ? change_for_fork(info.case_text, r->case_text, r->diag)
+             : change_for_restart(info.case_text, r->case_text, r->diag));
+    if (strcmp(info.version, SPHFSI_VERSION) != 0)
+        diag_warn(r->diag, "%s was written by version %s, this is %s: the bits may differ",
+                  r->restarted_from, info.version, SPHFSI_VERSION);
+    TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
+             : checkpoint_apply(&r->image, r->s, r->diag));
+    if (r->s->state.time > r->session.scene.top.end_time)
+        return diag_fail(r->diag, ERR_INPUT, "%s: %s is at %.6g s, beyond the end at %.6g s", what,
+                         r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
+    session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
+                r->s->state.time, (long long)r->s->state.steps);
+    return ERR_OK;
+}
+
+/* A restart touches the files of the run only after its checkpoint has been found sound. */
+static enum err begin(struct run *r)
+{
+    char part[RUN_DIR_PATH];
+    TRY(write_case(r, part));
+    const enum err e = r->options->restart || r->options->fork ? load_checkpoint(r) : ERR_OK;
+    if (e) {
+        unlink(part);
+        return e;
+    }
+    TRY(put_case(r, part));
+    TRY(r->options->restart ? start_again(r) : start_fresh(r));
+    const double time = r->s->state.time;
+    set_intervals(r, time);
+    r->record.version = SPHFSI_VERSION;
+    r->record.restarted_from = r->options->fork ? "" : r->restarted_from;
+    r->record.forked_from = r->options->fork ? r->restarted_from : "";
+    r->record.threads = thread_count();
+    r->record.start_time = time;
+    r->record.start_particle_steps = r->s->state.particle_steps;
+    r->wall_start = r->wall_checkpoint = wall_clock();
+    forecast_say_preset(&r->session.scene, r->options);
+    return ERR_OK;
+}
+
+/* What it cost by phase, and how far off it was. */
+static void say_close(const struct run *r)
+{
+    char text[1024] = "";
+    size_t at = 0;
+    double all = 0;
+    for (int k = 0; k < PHASE_COUNT; k++) all += r->s->phase_seconds[k];
+    for (int k = 0; k < PHASE_COUNT && all > 0; k++)
+        if (r->s->phase_seconds[k] >= 0.005 * all)
+            at += (size_t)snprintf(text + at, sizeof text - at, "%s%s %.0f %%", at ? ", " : "",
+                                   phase_table[k].name, 100 * r->s->phase_seconds[k] / all);
+    if (r->s->state.particle_steps > r->record.start_particle_steps)
+        session_say(r->options, "%.3g million particle steps a second: %s",
+                    1e-6 * report_rate(r->s, &r->record), text);
+    for (int k = 0; k < r->references.n && r->record.score; k++) {
+        reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
+        session_say(r->options, "%s", text);
+    }
+}
+
+static enum err carry_out(struct run *r)
+{
+    const enum err failed = advance(r);
+    if (failed) {
+        save_last_state(r, failed);
+        return failed;
+    }
+    compare(r);
+    TRY(write_summary(r, "finished", "", r->diag));
+    show_progress(r, true);
+    session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
+                r->folder.path, r->s->state.time, (long long)r->s->state.steps,
+                r->record.wall_seconds);
+    say_close(r);
+    if (r->session.scene.n_probe > 0)
+        session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
+    return ERR_OK;
+}
+
+static void end(struct run *r)
+{
+    for (int k = 0; r->probe_rows && k < r->probes.n_files; k++) series_close(&r->probe_rows[k]);
+    series_close(&r->ledger_rows);
+    snapshots_close(&r->snapshots);
+    checkpoint_free(&r->image);
+    arena_free(&r->arena);
+    free(r->case_text);
+    run_dir_close(&r->folder);
+}
+
+static enum err create_probes(struct run *r)
+{
+    TRY(probes_create(&r->probes, r->s, &r->arena, r->diag));
+    const size_t n = (size_t)r->probes.n_files;
+    r->probe_rows = arena_alloc(&r->arena, n, sizeof *r->probe_rows, "probes", r->diag);
+    for (size_t k = 0; r->probe_rows && k < n; k++) r->probe_rows[k].fd = -1;
+    r->probe_due = arena_alloc(&r->arena, n, sizeof *r->probe_due, "probes", r->diag);
+    return r->probe_rows && r->probe_due ? ERR_OK : ERR_MEMORY;
+}
+
+static enum err open_references(struct run *r)
+{
+    const int n = r->probes.n_files;
+    const char **const header =
+        arena_alloc(&r->arena, (size_t)n, sizeof *header, "headers", r->diag);
+    if (!header) return ERR_MEMORY;
+    for (int k = 0; k < n; k++) header[k] = r->probes.file[k].header;
+    TRY(references_open(&r->references, &r->session.scene, n, header, &r->arena, r->diag));
+    r->score = arena_alloc(&r->arena, (size_t)r->references.n, sizeof *r->score, "scores", r->diag);
+    return r->score ? ERR_OK : ERR_MEMORY;
+}
+
+static enum err run_session(struct run *r, const char *path, enum run_dir_use use)
+{
+    TRY(create_probes(r));
+    TRY(open_references(r));
+    TRY(run_dir_open(&r->folder, path, use, r->diag));
+    TRY(begin(r));
+    return carry_out(r);
+}
+
+enum err run_case(const struct sphfsi_options *o, struct diag *d)
+{
+    char path[RUN_DIR_PATH];
+    const enum run_dir_use use = o->restart ? RUN_DIR_CONTINUE : RUN_DIR_FRESH;
+    if (o->restart && o->fork)
+        return diag_fail(d, ERR_INPUT,
+                         "options: a restart continues a run, a fork starts one: choose one");
+    TRY(run_dir_of_case(o, path, d));
+    TRY(run_dir_check(path, use, d)); /* before the work of building the simulation */
+    struct run *r = calloc(1, sizeof *r);
+    if (!r) return diag_fail(d, ERR_MEMORY, "run: no memory for %zu bytes", sizeof *r);
+    r->options = o;
+    r->diag = d;
+    r->s = &r->session.simulation;
+    r->folder.lock = r->ledger_rows.fd = -1;
+    enum err e = session_open(&r->session, o, d);
+    if (!e) {
+        e = run_session(r, path, use);
+        end(r);
+        session_close(&r->session);
+    }
+    free(r);
+    return e;
+}

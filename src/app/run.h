@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ * A run from its case to its files: which output is due when, wishes from outside, the way out. */
+#ifndef SPHFSI_APP_RUN_H
+#define SPHFSI_APP_RUN_H
+
+#include "base/run_dir.h"
+#include "app/session.h"
+
+/* What the public sphfsi_run does. */
+enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
+
+/* The folder of a run: as the options say, or named after the case. */
+enum err run_dir_of_case(const struct sphfsi_options *o, char path[RUN_DIR_PATH], struct diag *d)
+    SPHFSI_CHECKED;
+
+#endif

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT
+ * What the texts of the sweeps and laws call their arithmetic where it is done in float: pairs of particles
+ * in mixed precision. A file takes this or base/real_double.h. */
+#ifndef SPHFSI_BASE_REAL_FLOAT_H
+#define SPHFSI_BASE_REAL_FLOAT_H
+
+#include "base/simd.h"
+
+#define real float
+#define vreal vfloat
+#define four_real four_float_at
+#define LANES LANES_FLOAT
+#define GROUPS GROUPS_FLOAT
+#define SWEEP(name) name##_mixed
+#define SWEEP_LABEL "mixed"
+#define vset vset_float
+#define vload vload_float
+#define vstore vstore_float
+#define vfma vfma_float
+#define vmin vmin_float
+#define vmax vmax_float
+#define vsqrt vsqrt_float
+#define vabs vabs_float
+#define vfour vfour_float
+#define vspread vspread_float
+#define vsum_four vsum_four_float
+#define vtop vtop_float
+#define vput vput_float
+#define vwiden vwiden_float
+
+#endif

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * Inside of the reader of case files: what its rooms share. Others use case/scene.h.
+ *
+ * The format. Lines of `key = value`, `[section]` or `[section NAME]`, and comments from # to the end
+ * of the line. Keys before the first section are the top of the file. [constants] names free numbers;
+ * a constant may use others, in any order, and the numbers at the top. Which keys there are, their
+ * units, ranges and defaults: case/params.def. Values by type:
+ *
+ *   number       arithmetic with units, functions, constants: case/expr.h
+ *   vector       two numbers with a comma between them
+ *   numbers      numbers with commas between them
+ *   choice       one of the names of case/params.def
+ *   text         as it is; between double quotes it may hold # or be empty
+ *   expressions  one or two, with a comma between them; in x and y (metres), evaluated per particle
+ *   shape        box, circle, polygon, polyline: case/shapes.c; the key may be repeated, the shapes
+ *                unite (`minus` regions are taken out of all of them)
+ *
+ * `like = NAME` takes the values, but not the regions, of an earlier section of the same kind as
+ * defaults. --set key=value and --set section.key=value replace an entry, or add it, before anything
+ * is evaluated; the section is NAME, `kind NAME`, or the word of an unnamed section. */
+#ifndef SPHFSI_CASE_CASE_H
+#define SPHFSI_CASE_CASE_H
+
+#include "case/expr.h"
+#include "case/params.h"
+
+enum { SECTION_constants = SECTION_COUNT }; /* free names: no row of case/params.def */
+enum {
+    CASE_MAX_BYTES = 4 << 20,
+    CASE_MAX_LINES = 20000,
+    CASE_MAX_CONSTANTS = 512,
+    CASE_MAX_POINTS = 4096, /* of a polygon; numbers of a list */
+};
+
+/* One `key = value`. */
+struct entry {
+    int section;     /* index into reader.sections */
+    int line;        /* 0 if it came from --set */
+    const char *set; /* the --set argument, or NULL */
+    const char *key;
+    const char *value;
+};
+
+struct case_section {
+    int id; /* enum section_id or SECTION_constants */
+    const char *name;
+    int line;
+    int index; /* among those of its kind */
+};
+
+struct constant {
+    const struct entry *entry;
+    enum { CONSTANT_TEXT, CONSTANT_BUSY, CONSTANT_DONE } state;
+    struct quantity q;
+};
+
+struct reader {
+    struct scene *scene;
+    struct diag *diag;
+    struct arena temp; /* lives until the scene is read */
+    const char *path;  /* as messages show it */
+    int n_entries, n_sections, n_constants;
+    struct entry *entries;
+    struct case_section *sections; /* the first one is the top of the file */
+    struct constant *constants;    /* constants, and the numbers at the top, which are names too */
+    int depth;                     /* of constants that wait for constants */
+};
+
+/* Room for any path in front of a message. */
+enum { LOCATION_TEXT = 300 };
+/* FILE:LINE, the path cut short if it is very long. */
+void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
+
+/* Fails with "FILE:LINE: ..." or "--set ...: ...". */
+enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
+enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
+    SPHFSI_PRINTF(3, 4);
+/* Fails with "FILE:LINE: key = value: ...". */
+enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
+    SPHFSI_PRINTF(3, 4);
+
+/* case/lines.c: text to sections and entries; --set arguments on top of them. */
+enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
+enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
+
+/* case/values.c: an entry's text to its value in a section's struct. */
+enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
+enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
+    SPHFSI_CHECKED;
+enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
+
+/* case/shapes.c: one shape more for a list. */
+enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+    SPHFSI_CHECKED;
+/* A number of the dimension `unit` from a piece of an entry's value. */
+enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
+                     double *value) SPHFSI_CHECKED;
+/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
+ * is left. */
+bool slice_next(struct slice *rest, char separator, struct slice *piece);
+int slice_count(struct slice text, char separator);
+
+/* case/check.c: what concerns several values at once. */
+enum err case_check(struct reader *r) SPHFSI_CHECKED;
+/* case/check_output.c */
+enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
+/* case/check_probes.c */
+enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
+
+/* case/motion.c */
+enum err motion_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* A file name as the case file gives it, seen from the working directory; false: too long. */
+bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
+
+#endif

@@ -1,0 +1,465 @@
+/* SPDX-License-Identifier: MIT
+ * What a scene must satisfy beyond the range of each value: names that refer to something, values
+ * that go together. */
+#include "case/case.h"
+
+#include "case/effects.h"
+#include "case/expr.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static void warn(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
+static void warn(struct reader *r, int line, const char *format, ...)
+{
+    char text[600], place[LOCATION_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    scene_location(r->scene, line, place);
+    diag_warn(r->diag, "%s: %s", place, text);
+}
+
+/* --- fluid --- */
+
+/* c0 as given, or from Eq. 3. */
+static enum err sound_speed(struct reader *r, const struct scene_fluid *f, double *c0)
+{
+    const double least = 10 * max2(f->max_speed, sqrt(f->max_pressure / f->density));
+    const int line = f->common.line;
+    *c0 = f->sound_speed > 0 ? f->sound_speed : r->scene->numerics.sound_factor / 10 * least;
+    if (*c0 == 0)
+        return bad_line(r, line,
+                        "[fluid %s] needs `sound_speed`, or `max_speed` and `max_pressure` "
+                        "for Eq. 3",
+                        f->common.name);
+    if (*c0 > 1e7)
+        return bad_line(r, line, "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above 1e7",
+                        f->common.name, *c0);
+    if (*c0 < least * (1 - 1e-9))
+        warn(r, line, "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3",
+             f->common.name, *c0, least);
+    if (f->pressure.e[0] && !isnan(f->surface))
+        return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; one is to go",
+                        f->common.name);
+    if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
+        warn(r, line,
+             "[fluid %s] has a `surface`, but gravity has no vertical part: its pressure "
+             "starts at zero",
+             f->common.name);
+    return ERR_OK;
+}
+
+static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
+{
+    const double *const gravity = r->scene->top.gravity, cfl = r->scene->numerics.cfl;
+    const int line = f->common.line;
+    if (f->shifting_speed != SHIFTING_LARGEST) return;
+    if (gravity[0] != 0 || gravity[1] != 0)
+        warn(r, line,
+             "[fluid %s] shifting_speed = largest under gravity lifts a free surface, which gains "
+             "energy, the more the larger `shifting` is; it is for fluid that fills its domain",
+             f->common.name);
+    if (f->shifting * cfl > 5 * (1 + 1e-9))
+        warn(r, line,
+             "[fluid %s] shifting = %g with numerics.cfl = %g: their product is beyond 5, up to "
+             "which shifting_speed = largest is a stable diffusion",
+             f->common.name, f->shifting, cfl);
+}
+
+/* All fluid is of one kind. */
+static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
+                       double its)
+{
+    const struct param *const p = param_find(SECTION_fluid, key);
+    char mine_text[SCENE_NAME], its_text[SCENE_NAME];
+    if (p->type == PARAM_CHOICE) {
+        param_choice_name(p, (int)mine, mine_text);
+        param_choice_name(p, (int)its, its_text);
+    } else {
+        snprintf(mine_text, sizeof mine_text, "%g", mine);
+        snprintf(its_text, sizeof its_text, "%g", its);
+    }
+    return bad_line(r, f->common.line,
+                    "[fluid %s] and [fluid %s] differ in `%s`: %s and %s; all fluid is of one kind",
+                    f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
+}
+
+static enum err check_fluids(struct reader *r)
+{
+    struct scene *s = r->scene;
+    for (int k = 0; k < s->n_fluid; k++) {
+        const struct scene_fluid *f = &s->fluid[k], *first = &s->fluid[0];
+        double c0;
+        TRY(sound_speed(r, f, &c0));
+        if (k == 0) {
+            s->c0 = c0;
+            s->rho0 = f->density;
+            warn_of_shift(r, f);
+        }
+        const struct {
+            const char *key;
+            double mine, its;
+        } same[] = {
+            {"density", f->density, first->density},
+            {"sound_speed", c0, s->c0},
+            {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
+            {"tensile_control", f->tensile_control, first->tensile_control},
+            {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
+            {"shifting", f->shifting, first->shifting},
+            {"shifting_speed", f->shifting_speed, first->shifting_speed},
+            {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
+            {"density_diffusion", f->density_diffusion, first->density_diffusion},
+            {"diffusion_form", f->diffusion_form, first->diffusion_form},
+        };
+        for (size_t j = 0; j < COUNT_OF(same); j++)
+            if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
+                return differ(r, f, same[j].key, same[j].mine, same[j].its);
+    }
+    return ERR_OK;
+}
+
+/* --- references between sections --- */
+
+static enum err no_such(struct reader *r, int line, const char *what, const char *given,
+                        enum section_id kind)
+{
+    struct nearest near = {0};
+    for (int k = 0; k < section_count(r->scene, kind); k++) {
+        const struct scene_section_common *c = section_at(r->scene, kind, k);
+        nearest_offer(&near, given, c->name);
+    }
+    const char *word = section_table[kind].word;
+    if (near.name)
+        return bad_line(r, line, "%s = %.60s: no [%s] of that name; did you mean `%s`?", what,
+                        given, word, near.name);
+    return bad_line(r, line, "%s = %.60s: no [%s] of that name", what, given, word);
+}
+
+/* A key that says something to some kinds of motion only. */
+static enum err check_motion_keys(struct reader *r, const struct scene_motion *m)
+{
+#define KIND(kind) (1u << MOTION_##kind)
+    static const struct {
+        const char *key, *kinds;
+        unsigned of;
+    } owned[] = {
+        {"velocity", "velocity", KIND(VELOCITY)},
+        {"poly_x", "polynomial", KIND(POLYNOMIAL)},
+        {"poly_y", "polynomial", KIND(POLYNOMIAL)},
+        {"amplitude", "sine", KIND(SINE)},
+        {"period", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
+        {"phase", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
+        {"centre", "rotation and expression", KIND(ROTATION) | KIND(EXPRESSION)},
+        {"angle", "rotation", KIND(ROTATION)},
+        {"angle_amplitude", "rotation", KIND(ROTATION)},
+        {"file", "table and rotation", KIND(TABLE) | KIND(ROTATION)},
+        {"x", "expression", KIND(EXPRESSION)},
+        {"y", "expression", KIND(EXPRESSION)},
+        {"turn", "expression", KIND(EXPRESSION)},
+    };
+#undef KIND
+    for (size_t k = 0; k < COUNT_OF(owned); k++) {
+        const struct param *const p = param_find(SECTION_motion, owned[k].key);
+        if (owned[k].of & (1u << m->kind) || param_is_default(p, m)) continue;
+        char name[SCENE_NAME];
+        param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
+        const struct scene_given *const given =
+            scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), owned[k].key);
+        return bad_line(r, given ? given->line : m->common.line,
+                        "[motion %s] `%s` is of kind = %s, and this one is of kind = %s",
+                        m->common.name, owned[k].key, owned[k].kinds, name);
+    }
+    return ERR_OK;
+}
+
+enum { MOTION_TIMES = 1000 };
+
+/* A jump would move a body without a velocity. */
+static enum err check_motion_jumps(struct reader *r, const struct scene_motion *m, const char *key,
+                                   const struct expr *e, double length)
+{
+    const struct scene_given *const given =
+        scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), key);
+    const int line = given ? given->line : m->common.line;
+    if (expr_steps(e))
+        return bad_line(r, line,
+                        "[motion %s] %s = %.200s jumps where it rounds what depends on t, and a "
+                        "motion needs a velocity",
+                        m->common.name, key, expr_source(e));
+    double size = 0, at;
+    for (int n = 0; n <= MOTION_TIMES; n++)
+        size = max2(size, 1e-6 * fabs(expr_jet_at(e, length * n / MOTION_TIMES).value));
+    for (int n = 0; n < MOTION_TIMES; n++)
+        if (expr_jumps(e, length * n / MOTION_TIMES, length * (n + 1) / MOTION_TIMES, size, &at))
+            return bad_line(r, line,
+                            "[motion %s] %s = %.200s jumps or is not finite at t = %g s since "
+                            "start, and a motion needs a velocity",
+                            m->common.name, key, expr_source(e), at);
+    return ERR_OK;
+}
+
+/* Finite with its derivatives at the start and at a thousand times until the end, without jumps between. */
+static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
+{
+    const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
+    static const char *const keys[] = {"x", "y", "turn"};
+    if (!m->x.e[0] && !m->y.e[0] && !m->turn.e[0])
+        return bad_line(r, m->common.line,
+                        "[motion %s] kind = expression needs `x`, `y` or `turn`, expressions in t",
+                        m->common.name);
+    const double length = fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        for (int n = 0; each[k]->e[0] && n <= MOTION_TIMES; n++) {
+            const double t = length * n / MOTION_TIMES;
+            const struct expr_jet at = expr_jet_at(each[k]->e[0], t);
+            if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
+                return bad_line(
+                    r, m->common.line,
+                    "[motion %s] %.200s is not finite, or its velocity or acceleration is "
+                    "not, at t = %g s since start",
+                    m->common.name, expr_source(each[k]->e[0]), t);
+        }
+        if (each[k]->e[0]) TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], length));
+    }
+    return ERR_OK;
+}
+
+static enum err check_motions(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_wall; k++)
+        if (*s->wall[k].motion && scene_find_motion(s, s->wall[k].motion) < 0)
+            return no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion, SECTION_motion);
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *b = &s->solid[k];
+        if (!*b->clamp_motion) continue;
+        if (scene_find_motion(s, b->clamp_motion) < 0)
+            return no_such(r, b->common.line, "clamp_motion", b->clamp_motion, SECTION_motion);
+        if (b->clamp.n == 0)
+            return bad_line(r, b->common.line, "[solid %s] has a `clamp_motion` but no `clamp`",
+                            b->common.name);
+    }
+    for (int k = 0; k < s->n_motion; k++) {
+        const struct scene_motion *m = &s->motion[k];
+        const int line = m->common.line;
+        bool used = false;
+        for (int w = 0; w < s->n_wall; w++) used |= strcmp(s->wall[w].motion, m->common.name) == 0;
+        for (int b = 0; b < s->n_solid; b++)
+            used |= strcmp(s->solid[b].clamp_motion, m->common.name) == 0;
+        if (!used) warn(r, line, "[motion %s] moves no wall and no clamp", m->common.name);
+        if (!(m->start < m->stop))
+            return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
+                            m->common.name, m->start, m->stop);
+        TRY(check_motion_keys(r, m));
+        if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
+        if (m->kind == MOTION_SINE && m->period == 0)
+            return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
+        if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)
+            return bad_line(r, line, "[motion %s] angle_amplitude needs `period`", m->common.name);
+        if (m->kind == MOTION_ROTATION && m->angle_amplitude == 0 && m->angle.n == 0 && !*m->file)
+            return bad_line(
+                r, line, "[motion %s] kind = rotation needs `angle`, `angle_amplitude` or `file`",
+                m->common.name);
+        if (m->kind == MOTION_TABLE && !*m->file)
+            return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
+        if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)
+            return bad_line(r, line, "[motion %s] kind = polynomial needs `poly_x` or `poly_y`",
+                            m->common.name);
+    }
+    return ERR_OK;
+}
+
+/* What a pair across the interface needs one value of. */
+static enum err check_joint(struct reader *r, const struct scene_solid *a,
+                            const struct scene_solid *b)
+{
+    const struct {
+        const char *key;
+        double mine, its;
+    } same[] = {
+        {"dp", a->dp, b->dp},
+        {"hourglass", a->hourglass, b->hourglass},
+        {"hourglass_form", a->hourglass_form, b->hourglass_form},
+        {"viscosity_form", a->viscosity_form, b->viscosity_form},
+    };
+    for (size_t k = 0; k < COUNT_OF(same); k++)
+        if (same[k].mine != same[k].its)
+            return bad_line(r, a->common.line,
+                            "[solid %s] is joined to [solid %s] and differs in `%s`, of which a "
+                            "bond has one only",
+                            a->common.name, b->common.name, same[k].key);
+    return ERR_OK;
+}
+
+/* Cells hold room for so many. */
+static enum err check_spacing(struct reader *r, int solid)
+{
+    const struct scene *s = r->scene;
+    const double ratio = s->top.dp / scene_solid_dp(s, solid);
+    if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || s->n_fluid == 0)) return ERR_OK;
+    return bad_line(
+        r, s->solid[solid].common.line,
+        "[solid %s] dp = %g m: from a third of the dp at the top, %g m, to all of it is "
+        "possible%s",
+        s->solid[solid].common.name, s->solid[solid].dp, s->top.dp,
+        s->n_fluid ? "" : ", or finer without fluid");
+}
+
+static enum err check_joined(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *a = &s->solid[k];
+        TRY(check_spacing(r, k));
+        if (!*a->joined) continue;
+        const int other = scene_find_solid(s, a->joined);
+        if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
+        if (other == k)
+            return bad_line(r, a->common.line, "[solid %s] joined = %s: a body is one with itself",
+                            a->common.name, a->joined);
+        TRY(check_joint(r, a, &s->solid[other]));
+    }
+    return ERR_OK;
+}
+
+/* A surface particle has room for so many partners. */
+static enum err check_gap(struct reader *r, const struct scene_contact *c)
+{
+    const double most = 4;
+    double dp = r->scene->top.dp;
+    for (int k = 0; k < r->scene->n_solid; k++) dp = min2(dp, scene_solid_dp(r->scene, k));
+    if (c->gap <= most * dp * (1 + 1e-9)) return ERR_OK;
+    return bad_line(
+        r, c->common.line,
+        "[contact %s] gap = %g m is more than %g spacings of %g m: a layer of fluid needs "
+        "one of its own, and at most %g m are meant",
+        c->common.name, c->gap, most, dp, most * dp);
+}
+
+/* Two different bodies, one of them a solid. */
+static enum err check_contacts(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_contact; k++) {
+        const struct scene_contact *c = &s->contact[k];
+        const int line = c->common.line;
+        char name[2][SCENE_TEXT];
+        if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
+            return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
+                            c->common.name);
+        TRY(check_gap(r, c));
+        if (!*c->between) continue;
+        if (!scene_pair(c->between, name))
+            return bad_line(r, line, "between = %.100s: two names with a comma between them",
+                            c->between);
+        bool solid = false;
+        for (int j = 0; j < 2; j++) {
+            solid |= scene_find_solid(s, name[j]) >= 0;
+            if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
+                return no_such(r, line, "between", name[j], SECTION_solid);
+        }
+        if (!solid)
+            return bad_line(r, line,
+                            "between = %.100s: walls do not move each other; one of the two "
+                            "must be a solid",
+                            c->between);
+        if (strcmp(name[0], name[1]) == 0)
+            return bad_line(r, line, "between = %.100s: a body does not touch itself", c->between);
+    }
+    return ERR_OK;
+}
+
+static enum err check_loads(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_load; k++) {
+        const struct scene_load *l = &s->load[k];
+        const int line = l->common.line;
+        if (!*l->body)
+            return bad_line(r, line, "[load %s] needs `body`, the solid it acts on",
+                            l->common.name);
+        if (scene_find_solid(s, l->body) < 0)
+            return no_such(r, line, "body", l->body, SECTION_solid);
+        if (l->shape.n == 0)
+            return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
+                            l->common.name);
+        if (!l->force.e[0] == !l->traction.e[0])
+            return bad_line(r, line, "[load %s] needs one of `force` and `traction`",
+                            l->common.name);
+    }
+    return ERR_OK;
+}
+
+/* A reference names a column: <probe>_<quantity>_<unit>. */
+static enum err check_references(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    for (int k = 0; k < s->n_reference; k++) {
+        const struct scene_reference *ref = &s->reference[k];
+        const int line = ref->common.line;
+        const bool formula = ref->formula.e[0] != NULL;
+        if (!*ref->probe || (!*ref->file && !formula))
+            return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
+                            *ref->probe ? "file` or `formula" : "probe");
+        if (*ref->file && formula)
+            return bad_line(r, line, "[reference %s] has both `file` and `formula`; one is to go",
+                            ref->common.name);
+        if (!(ref->from < ref->until))
+            return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
+                            ref->common.name, ref->from, ref->until);
+        bool found = false;
+        for (int p = 0; p < s->n_probe; p++) {
+            const char *name = s->probe[p].common.name;
+            const size_t length = strlen(name);
+            found |= strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_';
+        }
+        if (!found)
+            return bad_line(r, line,
+                            "[reference %s] probe = %.80s: no probe has such a column; a "
+                            "column is PROBE_QUANTITY_UNIT, such as M1_dx_m",
+                            ref->common.name, ref->probe);
+    }
+    return ERR_OK;
+}
+
+/* Named for nothing; without fluid or solid case/rules.def refuses it. */
+static void check_interface(struct reader *r)
+{
+    const struct scene *s = r->scene;
+    const struct scene_given *const given = scene_given(s, SECTION_numerics, 0, "interface");
+    if (s->numerics.multirate == MULTIRATE_OFF && given)
+        warn(r, given->line,
+             "`interface` does nothing with multirate = off: it is the fluid's force within the "
+             "solid's sub-steps, and there are none");
+}
+
+/* The largest steps that keep the accuracy of each integrator, and light bodies sound. */
+static void choose_cfl(struct scene *s)
+{
+    if (s->numerics.cfl != 0) return;
+    const bool leaps = s->top.integrator == INTEGRATOR_LEAPFROG && scene_light_solid(s) < 0;
+    s->numerics.cfl = leaps ? CFL_LEAPFROG : CFL_PAPER;
+}
+
+enum err case_check(struct reader *r)
+{
+    struct scene *const s = r->scene;
+    choose_cfl(s);
+    if (s->n_fluid == 0 && s->n_solid == 0)
+        return bad_line(r, 1,
+                        "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
+    TRY(check_fluids(r));
+    TRY(check_motions(r));
+    TRY(check_joined(r));
+    TRY(case_check_output(r));
+    TRY(case_check_probes(r));
+    TRY(check_contacts(r));
+    TRY(check_loads(r));
+    TRY(check_references(r));
+    check_interface(r);
+    return effects_check(s, r->diag);
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ * What a probe must satisfy: the section it looks at, and the keys that go with its quantity. */
+#include "case/case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const enum probe_target targets[PROBE_QUANTITIES] = {
+#define QUANTITY(NAME, name, target, columns, meaning) TARGET_##target,
+#include "case/quantities.def"
+#undef QUANTITY
+};
+
+enum probe_target scene_probe_target(const struct scene_probe *probe)
+{
+    const enum probe_target target = targets[probe->quantity];
+    if (target != TARGET_ANY_POINT) return target;
+    return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
+}
+
+static enum err no_section(struct reader *r, const struct scene_probe *p, bool walls_too)
+{
+    struct nearest near = {0};
+    for (int k = 0; k < r->scene->n_solid; k++)
+        nearest_offer(&near, p->body, r->scene->solid[k].common.name);
+    for (int k = 0; walls_too && k < r->scene->n_wall; k++)
+        nearest_offer(&near, p->body, r->scene->wall[k].common.name);
+    return bad_line(r, p->common.line, "body = %.60s: no [solid]%s of that name%s%s%s", p->body,
+                    walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
+                    near.name ? near.name : "", near.name ? "`?" : "");
+}
+
+static enum err check_body(struct reader *r, const struct scene_probe *p, bool walls_too)
+{
+    if (!*p->body)
+        return bad_line(r, p->common.line, "[probe %s] needs `body`, the solid%s it belongs to",
+                        p->common.name, walls_too ? " or wall" : "");
+    if (scene_find_solid(r->scene, p->body) >= 0) return ERR_OK;
+    if (walls_too && scene_find_wall(r->scene, p->body) >= 0) return ERR_OK;
+    return no_section(r, p, walls_too);
+}
+
+static enum err check_fluid(struct reader *r, const struct scene_probe *p)
+{
+    char quantity[SCENE_NAME];
+    param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
+    const enum probe_target target = targets[p->quantity];
+    if (*p->body && target != TARGET_BODY)
+        return bad_line(r, p->common.line,
+                        "[probe %s] measures %s of the fluid, at a fixed place; `body` is to go",
+                        p->common.name, quantity);
+    if (r->scene->n_fluid == 0)
+        return bad_line(r, p->common.line, "[probe %s] measures %s, but there is no fluid",
+                        p->common.name, quantity);
+    if (target == TARGET_FLUID_LINE && p->point[0] == p->to[0] && p->point[1] == p->to[1])
+        return bad_line(r, p->common.line,
+                        "[probe %s] measures through a line: `point` and `to` are its ends and "
+                        "must differ",
+                        p->common.name);
+    return ERR_OK;
+}
+
+enum err case_check_probes(struct reader *r)
+{
+    for (int k = 0; k < r->scene->n_probe; k++) {
+        const struct scene_probe *p = &r->scene->probe[k];
+        switch (scene_probe_target(p)) {
+        case TARGET_BODY:
+            TRY(check_body(r, p, true));
+            TRY(check_fluid(r, p));
+            break;
+        case TARGET_SOLID:
+        case TARGET_SOLID_POINT: TRY(check_body(r, p, false)); break;
+        default: TRY(check_fluid(r, p));
+        }
+    }
+    return ERR_OK;
+}

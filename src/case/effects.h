@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ * The effects of a scene as a set of bits, from case/effects.def. */
+#ifndef SPHFSI_CASE_EFFECTS_H
+#define SPHFSI_CASE_EFFECTS_H
+
+#include "case/params.h"
+#include "particles/particles.h"
+
+enum effect {
+#define EFFECT(name, when, key, equation, groups, kind, meaning) EFFECT_##name,
+#include "case/effects.def"
+#undef EFFECT
+    EFFECT_COUNT
+};
+
+/* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP leaves effects out of the program: their bits are no bits, and
+ * the compiler takes out what asks for them. For the proof that an effect costs nothing where it is off
+ * (tests/agree/test_absence.py). */
+enum {
+#define EFFECT(name, when, key, equation, groups, kind, meaning) OUT_##name = 1 << EFFECT_##name,
+#include "case/effects.def"
+#undef EFFECT
+};
+#ifndef SPHFSI_WITHOUT
+#define SPHFSI_WITHOUT 0
+#endif
+
+enum {
+#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+    FX_##name = 1 << EFFECT_##name & ~(SPHFSI_WITHOUT),
+#include "case/effects.def"
+#undef EFFECT
+};
+
+/* One row of case/effects.def as data. */
+struct effect_info {
+    const char *name, *key, *equation, *meaning;
+    unsigned groups;
+    enum kind kind;
+};
+extern const struct effect_info effect_table[EFFECT_COUNT];
+
+/* Where in the scene an effect is called for. */
+struct effect_caller {
+    enum section_id section;
+    int index;
+    const char *key; /* "": the section itself */
+};
+
+/* Whether the scene calls for an effect, and where first. */
+bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by);
+
+/* "line 12: [wall bed] slip", or "--set: ...". */
+enum { EFFECT_CALLER_TEXT = 300 };
+void effect_caller_text(const struct scene *s, const struct effect_caller *by,
+                        char text[EFFECT_CALLER_TEXT]);
+
+/* Refuses what case/rules.def says does not go together. */
+enum err effects_check(const struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* The set that a scene calls for. MULTIRATE is decided by the simulation, which knows the bounds. */
+unsigned effects_of_scene(const struct scene *s);
+
+/* The passes of a step, case/phases.def. */
+enum phase {
+#define PHASE(name, when, meaning) PHASE_##name,
+#include "case/phases.def"
+#undef PHASE
+    PHASE_COUNT
+};
+struct phase_info {
+    const char *name, *meaning;
+    unsigned when; /* runs where any of these effects is on */
+};
+extern const struct phase_info phase_table[PHASE_COUNT];
+SPHFSI_INLINE bool phase_runs(enum phase phase, unsigned effects)
+{
+    return phase_table[phase].when == ~0u || phase_table[phase].when & effects;
+}
+
+/* Field groups that the set needs for particles of one kind with the scene's integrator. */
+unsigned effects_groups(unsigned effects, enum kind kind, int integrator);
+
+#endif

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT
+ * Arithmetic of case files: numbers with units, named constants, functions, and, where a value may
+ * vary in space or time, the coordinates x and y in metres or the time t in seconds.
+ *
+ *   sum     = product { (+|-) product }
+ *   product = factor { (*|/) factor }
+ *   factor  = (+|-) factor | primary [ ^ factor ]
+ *   primary = number [ unit ] | unit | name | function ( sum [, sum] ) | ( sum )
+ *   unit    = symbol [ ^ number ] { (*|/) symbol [ ^ number ] } | %
+ *
+ * A unit belongs to the number before it: 1/2 m is 1/(2 m). Symbols: m km cm mm um, s min ms us,
+ * kg g (after a number), N, Pa kPa MPa GPa, Hz kHz, rad deg. Functions: sqrt sin cos tan sinh cosh
+ * tanh exp log abs min max; pi is a name.
+ *
+ * Dimensions are carried along. A plain number, written without a unit, may stand for any dimension
+ * (it is SI); in a product with a number that has a unit it is a pure number. */
+#ifndef SPHFSI_CASE_EXPR_H
+#define SPHFSI_CASE_EXPR_H
+
+#include "base/base.h"
+
+enum dim_kind {
+    DIM_PLAIN, /* no unit given: fits everywhere */
+    DIM_KNOWN, /* powers of metre, kilogram, second */
+    DIM_ANY    /* depends on x, y or t: not tracked, fits everywhere */
+};
+
+struct dim {
+    enum dim_kind kind;
+    double m, kg, s;
+};
+
+struct quantity {
+    double value; /* in SI units */
+    struct dim dim;
+};
+
+/* A piece of the case file's text. */
+struct slice {
+    const char *at;
+    size_t length;
+};
+
+enum { EXPR_WHY = 320, EXPR_NAME = 64 };
+
+enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME }; /* none; x and y; t */
+
+/* What names mean: `find` returns true and the quantity, or false; then it has written why, or
+ * nothing if the name is simply unknown. */
+struct expr_names {
+    void *context;
+    bool (*find)(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
+    enum expr_scope scope; /* which coordinates are known besides */
+};
+
+/* Compiled: evaluated at many points. */
+struct expr;
+
+/* The value of an expression without x and y; false: `why` says what is wrong with it. */
+bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
+                char why[EXPR_WHY]);
+
+/* Compiles for scene_expr_at. ERR_INPUT: `why` says what is wrong; ERR_MEMORY: in d. */
+enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
+                      struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
+    SPHFSI_CHECKED;
+
+/* The value of an expression in t with its first two derivatives, which are exact; where min, max, abs and
+ * round have a kink or a step, those of one side. */
+struct expr_jet {
+    double value, d1, d2;
+};
+struct expr_jet expr_jet_at(const struct expr *e, double t);
+
+/* Whether it rounds what depends on t. */
+bool expr_steps(const struct expr *e);
+
+/* Whether its value changes by more than `size` in no time between two times, `at` being where, or has no
+ * value there. The interval is halved as long as the slopes do not explain the change: what is smooth is
+ * never taken for a jump, however steep; where much else goes on in the interval, it may be missed. */
+bool expr_jumps(const struct expr *e, double from, double to, double size, double *at);
+
+/* The text it was compiled from. */
+const char *expr_source(const struct expr *e);
+
+/* Whether a dimension may stand where a unit of case/params.def is expected ("SI": any). */
+bool dim_fits(const struct dim *dim, const char *unit);
+
+/* Names a dimension: "a pressure (Pa)". */
+enum { DIM_TEXT = 96 };
+void dim_text(const struct dim *dim, char text[DIM_TEXT]);
+void unit_dim_text(const char *unit, char text[DIM_TEXT]);
+
+/* What a name must not be, because it means something else already: NULL or the meaning. */
+const char *expr_reserved(const char *name);
+
+/* --- case/units.c --- */
+/* Reads a unit ("kg/m^3") from the front of the text and applies it to q; false: no unit there, or
+ * a wrong one, then `why` is written. */
+bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
+bool unit_known(const char *name);
+
+/* The identifier at the front of the text: its length; 0: none. */
+size_t identifier_length(struct slice text);
+
+#endif

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT
+ * The stack program that an expression is compiled to (case/expr.c), for those who run it. */
+#ifndef SPHFSI_CASE_EXPR_OPS_H
+#define SPHFSI_CASE_EXPR_OPS_H
+
+#include "case/expr.h"
+
+enum op_code {
+    OP_NUMBER,
+    OP_X,
+    OP_Y,
+    OP_ADD,
+    OP_SUB,
+    OP_MUL,
+    OP_DIV,
+    OP_POW,
+    OP_MIN,
+    OP_MAX, /* two operands, from OP_ADD on */
+    OP_NEG,
+    OP_SQRT,
+    OP_SIN,
+    OP_COS,
+    OP_TAN,
+    OP_SINH,
+    OP_COSH,
+    OP_TANH,
+    OP_EXP,
+    OP_LOG,
+    OP_ROUND,
+    OP_ABS
+};
+
+struct op {
+    enum op_code code;
+    double value;
+};
+
+struct expr {
+    int n;
+    struct op *op;
+    char *source;
+};
+
+/* Operands that may wait for each other; the compiler has counted. */
+enum { MAX_STACK = 64 };
+
+SPHFSI_INLINE bool is_binary(enum op_code code) { return code >= OP_ADD && code <= OP_MAX; }
+
+#endif

@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: MIT
+ * Lines of a case file: sections, keys and their values as text; --set arguments. */
+#include "case/case.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool blank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+static char *trim(char *text)
+{
+    while (blank(*text)) text++;
+    char *end = text + strlen(text);
+    while (end > text && blank(end[-1])) *--end = '\0';
+    return text;
+}
+
+static bool is_name(const char *text)
+{
+    if (!*text) return false;
+    for (const char *c = text; *c; c++)
+        if (!isalnum((unsigned char)*c) && *c != '_' && *c != '-') return false;
+    return true;
+}
+
+static bool is_identifier(const char *text)
+{
+    const struct slice slice = {text, strlen(text)};
+    return slice.length && identifier_length(slice) == slice.length;
+}
+
+/* Cuts the comment off a value; text between quotes is kept as it is, without its quotes. */
+static const char *cut_value(char *value, const char **why)
+{
+    *why = NULL;
+    value = trim(value);
+    if (*value != '"') {
+        char *comment = strchr(value, '#');
+        if (comment) *comment = '\0';
+        value = trim(value);
+        if (!*value) *why = "has no value";
+        return value;
+    }
+    char *close = strchr(value + 1, '"');
+    if (!close) {
+        *why = "has a quote that is not closed";
+        return value;
+    }
+    char *const rest = trim(close + 1);
+    if (*rest && *rest != '#') *why = "has text behind the closing quote";
+    close[1] = '\0';
+    return value;
+}
+
+static int find_section_id(const char *word)
+{
+    if (strcmp(word, "constants") == 0) return SECTION_constants;
+    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
+        if (strcmp(section_table[id].word, word) == 0) return id;
+    return -1;
+}
+
+static const char *section_word(int id)
+{
+    return id == SECTION_constants ? "constants" : section_table[id].word;
+}
+
+static enum err unknown_section(struct reader *r, int line, const char *word)
+{
+    struct nearest near = {0};
+    nearest_offer(&near, word, "constants");
+    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
+        nearest_offer(&near, word, section_table[id].word);
+    if (near.name)
+        return bad_line(r, line, "unknown section [%.60s]; did you mean [%s]?", word, near.name);
+    return bad_line(r, line,
+                    "unknown section [%.60s]; known: constants, numerics, domain, output, "
+                    "fluid, wall, solid, motion, probe, reference",
+                    word);
+}
+
+static enum err add_section(struct reader *r, int line, int id, const char *name)
+{
+    const bool named = id != SECTION_constants && section_table[id].named;
+    const char *const word = section_word(id);
+    if (named && !*name) return bad_line(r, line, "[%s] needs a name: [%s NAME]", word, word);
+    if (!named && *name) return bad_line(r, line, "[%s] takes no name", word);
+    if (named && (!is_name(name) || strlen(name) >= SCENE_NAME))
+        return bad_line(r, line, "[%s %.70s]: a name has up to %d letters, digits, _ and -", word,
+                        name, SCENE_NAME - 1);
+    int index = 0;
+    for (int k = 0; k < r->n_sections; k++) {
+        if (r->sections[k].id != id) continue;
+        if (strcmp(r->sections[k].name, name) == 0)
+            return bad_line(r, line, "[%s%s%s] is there already, in line %d", word,
+                            named ? " " : "", name, r->sections[k].line);
+        index++;
+    }
+    if (index == SCENE_MAX_SECTIONS)
+        return bad_line(r, line, "more than %d [%s] sections", SCENE_MAX_SECTIONS, word);
+    r->sections[r->n_sections++] = (struct case_section){id, name, line, index};
+    return ERR_OK;
+}
+
+static enum err read_header(struct reader *r, int line, char *text)
+{
+    char *close = strchr(text, ']');
+    if (!close) return bad_line(r, line, "`[` without `]`");
+    char *const rest = trim(close + 1);
+    if (*rest && *rest != '#') return bad_line(r, line, "text behind the section's `]`");
+    *close = '\0';
+    char *word = trim(text + 1), *name = word;
+    while (*name && !blank(*name)) name++;
+    if (*name) *name++ = '\0';
+    const int id = find_section_id(word);
+    if (id < 0) return unknown_section(r, line, word);
+    return add_section(r, line, id, trim(name));
+}
+
+static enum err read_entry(struct reader *r, int line, char *text)
+{
+    char *equals = strchr(text, '=');
+    const char *const comment = strchr(text, '#');
+    if (!equals || (comment && comment < equals))
+        return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`", text);
+    *equals = '\0';
+    const char *const key = trim(text);
+    if (!is_identifier(key) || strlen(key) >= SCENE_NAME)
+        return bad_line(r, line, "`%.40s` is no name of a key: up to %d letters, digits and _", key,
+                        SCENE_NAME - 1);
+    const char *why;
+    const char *const value = cut_value(equals + 1, &why);
+    if (why) return bad_line(r, line, "%s %s", key, why);
+    r->entries[r->n_entries++] = (struct entry){r->n_sections - 1, line, NULL, key, value};
+    return ERR_OK;
+}
+
+static enum err read_line(struct reader *r, int line, char *text)
+{
+    for (const char *c = text; *c; c++)
+        if ((unsigned char)*c < ' ' && !blank(*c))
+            return bad_line(r, line, "control byte %d; a case file is plain text", *c);
+    text = trim(text);
+    if (!*text || *text == '#') return ERR_OK;
+    return *text == '[' ? read_header(r, line, text) : read_entry(r, line, text);
+}
+
+enum err case_split(struct reader *r, const char *text)
+{
+    int n_lines = 1;
+    for (const char *c = text; *c; c++) n_lines += *c == '\n';
+    if (n_lines > CASE_MAX_LINES)
+        return bad_line(r, CASE_MAX_LINES, "the case file has more than %d lines", CASE_MAX_LINES);
+    const size_t room = (size_t)n_lines + 1;
+    r->entries = arena_alloc(&r->temp, room, sizeof *r->entries, "case file", r->diag);
+    r->sections = arena_alloc(&r->temp, room, sizeof *r->sections, "case file", r->diag);
+    const size_t bytes = strlen(text) + 1;
+    char *copy = arena_alloc(&r->temp, bytes, 1, "case file", r->diag);
+    if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
+    memcpy(copy, text, bytes);
+    if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
+    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
+    int line = 1;
+    for (char *next; copy; copy = next, line++) {
+        next = strchr(copy, '\n');
+        if (next) *next++ = '\0';
+        TRY(read_line(r, line, copy));
+    }
+    return ERR_OK;
+}
+
+/* --- --set --- */
+
+/* Whether a section takes a key: of case/params.def, or a constant that the file has. */
+static bool takes_key(const struct reader *r, int section, const char *key, struct nearest *near)
+{
+    const int id = r->sections[section].id;
+    if (id == SECTION_constants) {
+        for (int k = 0; k < r->n_entries; k++) {
+            if (r->entries[k].section != section) continue;
+            if (strcmp(r->entries[k].key, key) == 0) return true;
+            nearest_offer(near, key, r->entries[k].key);
+        }
+        return false;
+    }
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        if ((int)param_table[k].section != id) continue;
+        if (strcmp(param_table[k].key, key) == 0) return true;
+        nearest_offer(near, key, param_table[k].key);
+    }
+    return false;
+}
+
+/* Whether "solid gate", "gate", "numerics" or "" (top and constants) means a section. */
+static bool means_section(const struct case_section *s, const char *prefix)
+{
+    if (!*prefix) return s->id == SECTION_top || s->id == SECTION_constants;
+    const char *const word = section_word(s->id);
+    if (!*s->name) return s->id != SECTION_top && strcmp(word, prefix) == 0;
+    if (strcmp(s->name, prefix) == 0) return true;
+    const size_t length = strlen(word);
+    if (strncmp(prefix, word, length) != 0 || !blank(prefix[length])) return false;
+    while (blank(prefix[length])) prefix++;
+    return strcmp(prefix + length, s->name) == 0;
+}
+
+/* The section of an unnamed kind that the file leaves out may be set all the same. */
+static enum err add_missing(struct reader *r, const char *prefix)
+{
+    const int id = *prefix ? find_section_id(prefix) : -1;
+    if (id < 0 || id == SECTION_constants || section_table[id].named) return ERR_OK;
+    for (int k = 0; k < r->n_sections; k++)
+        if (r->sections[k].id == id) return ERR_OK;
+    return add_section(r, 0, id, "");
+}
+
+static enum err find_target(struct reader *r, const struct entry *e, const char *prefix,
+                            int *target)
+{
+    TRY(add_missing(r, prefix));
+    int meant = 0;
+    struct nearest near = {0}, near_section = {0};
+    *target = -1;
+    for (int k = 0; k < r->n_sections; k++) {
+        const struct case_section *s = &r->sections[k];
+        if (*prefix && s->id != SECTION_top)
+            nearest_offer(&near_section, prefix, *s->name ? s->name : section_word(s->id));
+        if (!means_section(s, prefix)) continue;
+        meant++;
+        if (!takes_key(r, k, e->key, &near)) continue;
+        if (*target >= 0)
+            return bad_entry(r, e,
+                             "[%s %s] and [%s %s] both have `%s`; write the section's kind too",
+                             section_word(r->sections[*target].id), r->sections[*target].name,
+                             section_word(s->id), s->name, e->key);
+        *target = k;
+    }
+    if (*target >= 0) return ERR_OK;
+    if (!meant && near_section.name)
+        return bad_entry(r, e, "no section `%.60s`; did you mean `%s`?", prefix, near_section.name);
+    if (!meant) return bad_entry(r, e, "the case has no section `%.60s`", prefix);
+    if (near.name)
+        return bad_entry(r, e, "unknown key `%.60s`; did you mean `%s`?", e->key, near.name);
+    return bad_entry(r, e, "unknown %s `%.60s`", *prefix ? "key" : "key or constant", e->key);
+}
+
+/* Takes the place of what the file says for the key (all of a list of shapes). */
+static void put_entry(struct reader *r, const struct entry *e)
+{
+    int kept = 0;
+    for (int k = 0; k < r->n_entries; k++) {
+        const struct entry *old = &r->entries[k];
+        if (old->section != e->section || strcmp(old->key, e->key) != 0) r->entries[kept++] = *old;
+    }
+    r->n_entries = kept;
+    r->entries[r->n_entries++] = *e;
+}
+
+static enum err apply_set(struct reader *r, const char *set)
+{
+    struct entry e = {.set = set, .key = ""};
+    const size_t bytes = strlen(set) + 1;
+    char *copy = arena_alloc(&r->temp, bytes, 1, "--set", r->diag);
+    if (!copy) return ERR_MEMORY;
+    memcpy(copy, set, bytes);
+    for (const char *c = copy; *c; c++)
+        if ((unsigned char)*c < ' ' && *c != '\t') return bad_entry(r, &e, "control byte %d", *c);
+    char *value = strchr(copy, '=');
+    if (!value) return bad_entry(r, &e, "write key=value or section.key=value");
+    *value++ = '\0';
+    char *key = trim(copy), *prefix = copy + strlen(copy);
+    char *const dot = strrchr(key, '.');
+    if (dot) {
+        *dot = '\0';
+        prefix = trim(key);
+        key = trim(dot + 1);
+    }
+    if (!is_identifier(key) || strlen(key) >= SCENE_NAME || (dot && !*prefix))
+        return bad_entry(r, &e, "write key=value or section.key=value");
+    e.key = key;
+    const char *why;
+    e.value = cut_value(value, &why);
+    if (why) return bad_entry(r, &e, "%s %s", key, why);
+    TRY(find_target(r, &e, prefix, &e.section));
+    put_entry(r, &e);
+    return ERR_OK;
+}
+
+enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
+{
+    if (n_sets <= 0) return ERR_OK;
+    const size_t room = (size_t)r->n_entries + (size_t)n_sets;
+    const size_t sections = (size_t)r->n_sections + SECTION_COUNT;
+    struct entry *entries = arena_alloc(&r->temp, room, sizeof *entries, "case file", r->diag);
+    struct case_section *more = arena_alloc(&r->temp, sections, sizeof *more, "case file", r->diag);
+    if (!entries || !more) return ERR_MEMORY;
+    memcpy(entries, r->entries, (size_t)r->n_entries * sizeof *entries);
+    memcpy(more, r->sections, (size_t)r->n_sections * sizeof *more);
+    r->entries = entries;
+    r->sections = more;
+    for (int k = 0; k < n_sets; k++) TRY(apply_set(r, sets[k]));
+    return ERR_OK;
+}

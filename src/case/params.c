@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+#include "case/params.h"
+
+#include <math.h>
+#include <string.h>
+
+#define WHERE_0(section) offsetof(struct scene, section), 0
+#define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
+
+const struct section_info section_table[SECTION_COUNT] = {
+#define SECTION(section, named) \
+    {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
+#include "case/params.def"
+};
+
+/* In the table a bound is its value; whether it is open shows in how it is spelled. */
+#define NEEDED NAN
+#define OVER(v) (v)
+#define UNDER(v) (v)
+#define ROW(section_, type_, key_, meaning_)                                                 \
+    .section = SECTION_##section_, .type = PARAM_##type_, .key = #key_, .meaning = meaning_, \
+    .offset = offsetof(struct scene_##section_, key_)
+
+const struct param param_table[PARAM_COUNT] = {
+#define REAL(section, key, def, lo, hi, unit_, meaning)          \
+    {ROW(section, REAL, key, meaning),                           \
+     .unit = unit_,                                              \
+     .number_default = {(double)(def)},                          \
+     .low = lo,                                                  \
+     .high = hi,                                                 \
+     .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', \
+     .low_open = #lo[0] == 'O',                                  \
+     .high_open = #hi[0] == 'U'},
+#define INTEGER(section, key, def, lo, hi, meaning) \
+    {ROW(section, INTEGER, key, meaning), .number_default = {def}, .low = lo, .high = hi},
+#define CHOICE(section, key, def, names, meaning) \
+    {ROW(section, CHOICE, key, meaning), .choices = names, .number_default = {def}},
+#define TEXT(section, key, def, meaning) {ROW(section, TEXT, key, meaning), .text_default = def},
+#define VECTOR(section, key, dx, dy, unit_, meaning) \
+    {ROW(section, VECTOR, key, meaning), .unit = unit_, .number_default = {dx, dy}},
+#define FIELD_EXPR(section, key, count_, unit_, meaning) \
+    {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
+#define TIME_EXPR(section, key, unit_, meaning) \
+    {ROW(section, TIME_EXPR, key, meaning), .unit = unit_, .count = 1},
+#define SHAPES(section, key, meaning) {ROW(section, SHAPES, key, meaning), .unit = "m"},
+#define NUMBERS(section, key, unit_, meaning) {ROW(section, NUMBERS, key, meaning), .unit = unit_},
+#include "case/params.def"
+};
+
+int section_count(const struct scene *s, enum section_id id)
+{
+    const struct section_info *info = &section_table[id];
+    if (!info->named) return 1;
+    return *(const int *)(const void *)((const char *)s + info->count_offset);
+}
+
+const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+                                      const char *key)
+{
+    for (int k = 0; k < s->n_given; k++)
+        if (s->given[k].section == (int)section && s->given[k].index == index &&
+            strcmp(s->given[k].key, key) == 0)
+            return &s->given[k];
+    return NULL;
+}
+
+void *section_at(const struct scene *s, enum section_id id, int index)
+{
+    const struct section_info *info = &section_table[id];
+    char *const place = (char *)(uintptr_t)s + info->offset;
+    if (!info->named) return place;
+    char *array;
+    memcpy(&array, place, sizeof array);
+    return array + (size_t)index * info->size;
+}
+
+const struct param *param_find(enum section_id section, const char *key)
+{
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *p = &param_table[k];
+        if (p->section == section && strcmp(p->key, key) == 0) return p;
+    }
+    return NULL;
+}
+
+void param_choice_name(const struct param *p, int value, char name[SCENE_NAME])
+{
+    const char *start = p->choices;
+    for (int k = 0; k < value; k++) start = strchr(start, '|') + 1;
+    const size_t length = strcspn(start, "|");
+    memcpy(name, start, length);
+    name[length] = '\0';
+}
+
+/* Edit distance: insertions, deletions and replacements that turn one word into the other. */
+static int edit_distance(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+    int row[SCENE_NAME + 1];
+    for (size_t j = 0; j <= b_length; j++) row[j] = (int)j;
+    for (size_t i = 1; i <= a_length; i++) {
+        int diagonal = row[0];
+        row[0] = (int)i;
+        for (size_t j = 1; j <= b_length; j++) {
+            const int replaced = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            const int shorter = (row[j] < row[j - 1] ? row[j] : row[j - 1]) + 1;
+            row[j] = replaced < shorter ? replaced : shorter;
+        }
+    }
+    return row[b_length];
+}
+
+void nearest_offer(struct nearest *best, const char *word, const char *candidate)
+{
+    const size_t word_length = strlen(word), length = strlen(candidate);
+    if (word_length == 0 || word_length > SCENE_NAME || length > SCENE_NAME) return;
+    const int distance = edit_distance(word, word_length, candidate, length);
+    const int tolerance = word_length < 3 ? 1 : word_length < 5 ? 2 : word_length < 8 ? 3 : 4;
+    if (distance > tolerance || (size_t)distance >= length) return;
+    if (best->name && best->distance <= distance) return;
+    *best = (struct nearest){candidate, distance};
+}
+
+bool param_is_default(const struct param *p, const void *section)
+{
+    const char *const value = (const char *)section + p->offset;
+    double number[2];
+    int choice;
+    switch (p->type) {
+    case PARAM_REAL:
+        memcpy(number, value, sizeof *number);
+        return number[0] == p->number_default[0] || isnan(number[0]);
+    case PARAM_VECTOR:
+        memcpy(number, value, sizeof number);
+        return number[0] == p->number_default[0] && number[1] == p->number_default[1];
+    case PARAM_INTEGER:
+    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number_default[0];
+    case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
+    case PARAM_SHAPES: return ((const struct shape_list *)(const void *)value)->n == 0;
+    case PARAM_NUMBERS: return ((const struct number_list *)(const void *)value)->n == 0;
+    }
+    return true;
+}

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT
+ * case/params.def as data: one row for each section and each key, for everything that reads, checks,
+ * writes or lists the values of a scene. */
+#ifndef SPHFSI_CASE_PARAMS_H
+#define SPHFSI_CASE_PARAMS_H
+
+#include "case/scene.h"
+
+enum section_id {
+#define SECTION(section, named) SECTION_##section,
+#include "case/params.def"
+    SECTION_COUNT
+};
+
+struct section_info {
+    const char *word;
+    bool named;          /* an array of them in struct scene, with its count */
+    size_t offset;       /* in struct scene: of the struct, or of the pointer to the array */
+    size_t count_offset; /* in struct scene: of the count (named only) */
+    size_t size;         /* of one struct */
+};
+extern const struct section_info section_table[SECTION_COUNT];
+
+/* Where a key is given in a section, or NULL. */
+const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
+                                      const char *key);
+
+enum param_type {
+    PARAM_REAL,
+    PARAM_INTEGER,
+    PARAM_CHOICE,
+    PARAM_TEXT,
+    PARAM_VECTOR,
+    PARAM_FIELD_EXPR,
+    PARAM_TIME_EXPR,
+    PARAM_SHAPES,
+    PARAM_NUMBERS
+};
+
+struct param {
+    enum section_id section;
+    enum param_type type;
+    const char *key, *meaning;
+    const char *unit;         /* NULL where the type has none */
+    const char *choices;      /* "a|b|c" of a CHOICE */
+    const char *text_default; /* of a TEXT */
+    double number_default[2]; /* one for REAL, INTEGER and CHOICE (index), two for VECTOR */
+    bool needed;
+    double low, high;
+    bool low_open, high_open; /* the bound itself is excluded */
+    int count;                /* expressions of a FIELD_EXPR or TIME_EXPR */
+    size_t offset;            /* in the section's struct */
+};
+/* The number of keys in all. */
+enum {
+#define ONE(section, key) PARAM_NUMBER_##section##_##key,
+#define REAL(section, key, def, lo, hi, unit, meaning) ONE(section, key)
+#define INTEGER(section, key, def, lo, hi, meaning) ONE(section, key)
+#define CHOICE(section, key, def, names, meaning) ONE(section, key)
+#define TEXT(section, key, def, meaning) ONE(section, key)
+#define VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
+#define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
+#define TIME_EXPR(section, key, unit, meaning) ONE(section, key)
+#define SHAPES(section, key, meaning) ONE(section, key)
+#define NUMBERS(section, key, unit, meaning) ONE(section, key)
+#include "case/params.def"
+#undef ONE
+    PARAM_COUNT
+};
+extern const struct param param_table[PARAM_COUNT];
+
+/* How many sections of a kind the scene has; the index-th struct of them. */
+int section_count(const struct scene *s, enum section_id id);
+void *section_at(const struct scene *s, enum section_id id, int index);
+
+/* The row of a key, or NULL. */
+const struct param *param_find(enum section_id section, const char *key);
+
+/* Whether a section has the value that the key has when it is left out. */
+bool param_is_default(const struct param *p, const void *section);
+
+/* The name of a CHOICE's value, copied into `name`. */
+void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
+
+/* The candidate nearest to a misspelt word, or NULL if none is near. Call for each candidate with
+ * the same `best`, which starts as {0}. */
+struct nearest {
+    const char *name;
+    int distance;
+};
+void nearest_offer(struct nearest *best, const char *word, const char *candidate);
+
+#endif

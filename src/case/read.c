@@ -1,0 +1,461 @@
+/* SPDX-License-Identifier: MIT
+ * From a case file to a scene: defaults, values in the order of the file, checks, sampling. */
+#include "case/case.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* --- messages --- */
+
+void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT])
+{
+    if (line == 0) {
+        snprintf(place, LOCATION_TEXT, "--set");
+        return;
+    }
+    const size_t length = strlen(s->path), most = 270;
+    const bool cut = length > most;
+    snprintf(place, LOCATION_TEXT, "%s%.270s:%d", cut ? "..." : "",
+             s->path + (cut ? length - most : 0), line);
+}
+
+enum err bad_line(struct reader *r, int line, const char *format, ...)
+{
+    char text[700], place[LOCATION_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    scene_location(r->scene, line, place);
+    return diag_fail(r->diag, ERR_INPUT, "%s: %s", place, text);
+}
+
+enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
+{
+    char text[700];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (!e->set) return bad_line(r, e->line, "%s", text);
+    return diag_fail(r->diag, ERR_INPUT, "--set %.100s: %s", e->set, text);
+}
+
+enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
+{
+    char text[600];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    const bool cut = strlen(e->value) > 60;
+    return bad_entry(r, e, "%s = %.60s%s: %s", e->key, e->value, cut ? "..." : "", text);
+}
+
+bool scene_file(const struct scene *s, const char *name, char *path, size_t size)
+{
+    const char *slash = strrchr(s->path, '/');
+    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - s->path) + 1;
+    const int n = snprintf(path, size, "%.*s%s", folder, s->path, name);
+    return n >= 0 && (size_t)n < size;
+}
+
+/* --- sections --- */
+
+static void set_defaults(void *section, enum section_id id)
+{
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *p = &param_table[k];
+        if (p->section != id) continue;
+        char *const place = (char *)section + p->offset;
+        switch (p->type) {
+        case PARAM_REAL: memcpy(place, p->number_default, sizeof(double)); break;
+        case PARAM_VECTOR: memcpy(place, p->number_default, 2 * sizeof(double)); break;
+        case PARAM_INTEGER:
+        case PARAM_CHOICE: *(int *)(void *)place = (int)p->number_default[0]; break;
+        case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
+        case PARAM_FIELD_EXPR:
+        case PARAM_TIME_EXPR:
+        case PARAM_SHAPES:
+        case PARAM_NUMBERS: break; /* absent */
+        }
+    }
+}
+
+enum { ANY = -1 };
+
+static enum scene_kind kind_of_scene(const struct reader *r)
+{
+    bool fluid = false, solid = false;
+    for (int k = 0; k < r->n_sections; k++) {
+        fluid |= r->sections[k].id == SECTION_fluid;
+        solid |= r->sections[k].id == SECTION_solid;
+    }
+    return fluid && solid ? SCENE_COUPLED : fluid ? SCENE_FLUID : SCENE_SOLID;
+}
+
+static const struct preset {
+    enum scene_kind kind;
+    enum accuracy accuracy;
+    int integrator; /* that the case uses; ANY: whichever */
+    enum section_id section;
+    const char *key;
+    double value;
+} presets[] = {
+#define PRESET(scene, accuracy, integrator, section, key, value) \
+    {SCENE_##scene, ACCURACY_##accuracy, integrator, SECTION_##section, #key, value},
+#include "case/presets.def"
+#undef PRESET
+};
+
+/* The value of a choice at the top of the file, before it is read; a wrong word is found there. */
+static int top_choice(const struct reader *r, const char *key)
+{
+    const struct param *const p = param_find(SECTION_top, key);
+    int found = (int)p->number_default[0];
+    for (int k = 0; k < r->n_entries; k++) {
+        const struct entry *const e = &r->entries[k];
+        char name[SCENE_NAME];
+        if (r->sections[e->section].id != SECTION_top || strcmp(e->key, key) != 0) continue;
+        for (int c = 0; p->choices && c < 3; c++) {
+            param_choice_name(p, c, name);
+            if (strcmp(e->value, name) == 0) found = c;
+        }
+    }
+    return found;
+}
+
+/* What `accuracy` chooses stands in for the defaults, so that a key of the case wins. A wrong word is
+ * found where the key is read. */
+static void apply_presets(struct reader *r)
+{
+    const int accuracy = top_choice(r, "accuracy"), integrator = top_choice(r, "integrator");
+    for (size_t k = 0; k < COUNT_OF(presets); k++) {
+        const struct preset *const row = &presets[k];
+        if (row->kind != kind_of_scene(r) || (int)row->accuracy != accuracy) continue;
+        if (row->integrator != ANY && row->integrator != integrator) continue;
+        const struct param *const p = param_find(row->section, row->key);
+        for (int i = 0; i < section_count(r->scene, row->section); i++) {
+            char *const place = (char *)section_at(r->scene, row->section, i) + p->offset;
+            if (p->type == PARAM_REAL)
+                memcpy(place, &row->value, sizeof row->value);
+            else
+                *(int *)(void *)place = (int)row->value;
+        }
+    }
+}
+
+static enum err allocate_sections(struct reader *r)
+{
+    struct scene *s = r->scene;
+    int count[SECTION_COUNT] = {0};
+    for (int k = 0; k < r->n_sections; k++)
+        if (r->sections[k].id < SECTION_COUNT) count[r->sections[k].id]++;
+    for (int id = 0; id < SECTION_COUNT; id++) {
+        const struct section_info *info = &section_table[id];
+        if (info->named) {
+            void *array =
+                arena_alloc(&s->arena, (size_t)count[id], info->size, "sections", r->diag);
+            if (!array) return ERR_MEMORY;
+            memcpy((char *)s + info->offset, &array, sizeof array);
+            memcpy((char *)s + info->count_offset, &count[id], sizeof count[id]);
+        }
+        for (int k = 0; k < section_count(s, (enum section_id)id); k++)
+            set_defaults(section_at(s, (enum section_id)id, k), (enum section_id)id);
+    }
+    for (int k = 0; k < r->n_sections; k++) {
+        const struct case_section *from = &r->sections[k];
+        if (from->id == SECTION_constants) continue;
+        struct scene_section_common *common = section_at(s, (enum section_id)from->id, from->index);
+        snprintf(common->name, sizeof common->name, "%s", from->name);
+        common->line = from->line;
+    }
+    return ERR_OK;
+}
+
+/* `like = NAME`: the values of an earlier section of the kind become the defaults; its regions do
+ * not, since two bodies are not in one place. */
+static enum err inherit(struct reader *r, int section)
+{
+    const struct case_section *to = &r->sections[section];
+    const struct param *like = param_find((enum section_id)to->id, "like");
+    const struct entry *e = NULL;
+    for (int k = 0; like && k < r->n_entries; k++)
+        if (r->entries[k].section == section && strcmp(r->entries[k].key, "like") == 0)
+            e = &r->entries[k];
+    if (!e) return ERR_OK;
+    char *const target = section_at(r->scene, (enum section_id)to->id, to->index);
+    TRY(case_value(r, e, like, target));
+    struct nearest near = {0};
+    for (int k = 0; k < to->index; k++) {
+        const char *source = section_at(r->scene, (enum section_id)to->id, k);
+        const struct scene_section_common *common = (const void *)source;
+        nearest_offer(&near, target + like->offset, common->name);
+        if (strcmp(common->name, target + like->offset) != 0) continue;
+        const size_t head = sizeof(struct scene_section_common);
+        memcpy(target + head, source + head, section_table[to->id].size - head);
+        memset(target + like->offset, 0, SCENE_TEXT);
+        for (int p = 0; p < PARAM_COUNT; p++)
+            if ((int)param_table[p].section == to->id && param_table[p].type == PARAM_SHAPES)
+                memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
+        return ERR_OK;
+    }
+    if (near.name)
+        return bad_value(r, e, "no earlier [%s] of that name; did you mean `%s`?",
+                         section_table[to->id].word, near.name);
+    return bad_value(r, e, "no earlier [%s] of that name", section_table[to->id].word);
+}
+
+static enum err unknown_key(struct reader *r, const struct entry *e, int id)
+{
+    struct nearest near = {0};
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if ((int)param_table[k].section == id) nearest_offer(&near, e->key, param_table[k].key);
+    const char *word = id == SECTION_top ? "at the top of the file" : section_table[id].word;
+    char place[80];
+    snprintf(place, sizeof place, id == SECTION_top ? "%s" : "in [%s]", word);
+    if (near.name)
+        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (strcmp(param_table[k].key, e->key) == 0)
+            return bad_entry(r, e, "unknown key `%s` %s; it belongs in [%s]", e->key, place,
+                             section_table[param_table[k].section].word);
+    return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
+}
+
+/* An inherited pressure gives way to a surface that is given, and the other way round. */
+static void drop_rivals(struct reader *r, int section)
+{
+    const struct case_section *cs = &r->sections[section];
+    if (cs->id != SECTION_fluid) return;
+    struct scene_fluid *f = &r->scene->fluid[cs->index];
+    for (int k = 0; k < r->n_entries; k++) {
+        if (r->entries[k].section != section) continue;
+        if (strcmp(r->entries[k].key, "surface") == 0) f->pressure.e[0] = NULL;
+        if (strcmp(r->entries[k].key, "pressure") == 0) f->surface = (double)NAN;
+    }
+}
+
+/* `like` takes over no regions: a copy of a clamped body that has no clamp of its own is loose. */
+static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
+{
+    const struct case_section *cs = &r->sections[section];
+    if (cs->id != SECTION_solid || !like) return;
+    const struct scene_solid *const copy = &r->scene->solid[cs->index];
+    char place[LOCATION_TEXT];
+    scene_location(r->scene, cs->line, place);
+    for (int k = 0; k < cs->index; k++) {
+        const struct scene_solid *const from = &r->scene->solid[k];
+        if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
+            diag_warn(r->diag,
+                      "%s: [solid %s] is like [solid %s], but has no `clamp` of its own, since "
+                      "regions are "
+                      "not taken over: it moves freely",
+                      place, copy->common.name, from->common.name);
+    }
+}
+
+static enum err read_section(struct reader *r, int section)
+{
+    const struct case_section *cs = &r->sections[section];
+    if (cs->id == SECTION_constants) return ERR_OK;
+    TRY(inherit(r, section));
+    drop_rivals(r, section);
+    const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
+    void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
+    const struct entry *given[PARAM_COUNT] = {NULL};
+    for (int k = 0; k < r->n_entries; k++) {
+        const struct entry *e = &r->entries[k];
+        if (e->section != section) continue;
+        const struct param *p = param_find((enum section_id)cs->id, e->key);
+        if (!p) return unknown_key(r, e, cs->id);
+        const struct entry **before = &given[p - param_table];
+        if (*before && p->type != PARAM_SHAPES)
+            return bad_entry(r, e, "%s is given already, in line %d", e->key, (*before)->line);
+        *before = e;
+        r->scene->given[r->scene->n_given++] =
+            (struct scene_given){cs->id, cs->index, p->key, e->line};
+        if (inherited && strcmp(e->key, "like") == 0) continue;
+        TRY(case_value(r, e, p, target));
+    }
+    const struct param *const like = param_find((enum section_id)cs->id, "like");
+    if (like) warn_of_lost_clamp(r, section, given[like - param_table]);
+    return ERR_OK;
+}
+
+/* Values that must be given, and were not, are still NaN. */
+static enum err check_needed(struct reader *r)
+{
+    for (int k = 0; k < r->n_sections; k++) {
+        const struct case_section *cs = &r->sections[k];
+        if (cs->id == SECTION_constants) continue;
+        const char *section = section_at(r->scene, (enum section_id)cs->id, cs->index);
+        for (int j = 0; j < PARAM_COUNT; j++) {
+            const struct param *p = &param_table[j];
+            if ((int)p->section != cs->id || !p->needed) continue;
+            double value;
+            memcpy(&value, section + p->offset, sizeof value);
+            if (!isnan(value)) continue;
+            char unit[40] = "";
+            if (strcmp(p->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", p->unit);
+            if (cs->id == SECTION_top)
+                return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", p->key,
+                                p->meaning, unit);
+            return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word,
+                            cs->name, p->key, p->meaning, unit);
+        }
+    }
+    return ERR_OK;
+}
+
+static enum err read_all(struct reader *r, const char *text, int n_sets, const char *const *sets)
+{
+    TRY(case_split(r, text));
+    TRY(case_apply_sets(r, n_sets, sets));
+    TRY(case_collect_constants(r));
+    TRY(allocate_sections(r));
+    apply_presets(r);
+    TRY(case_all_constants(r));
+    r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
+                                  sizeof *r->scene->given, "case file", r->diag);
+    if (!r->scene->given) return ERR_MEMORY;
+    for (int k = 0; k < r->n_sections; k++) TRY(read_section(r, k));
+    TRY(check_needed(r));
+    TRY(case_check(r));
+    TRY(motion_load(r->scene, r->diag));
+    return scene_sample(r->scene, r->diag);
+}
+
+/* --- the reader's face --- */
+
+enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
+                     const char *const *sets, struct diag *d)
+{
+    memset(s, 0, sizeof *s);
+    if (strlen(path) >= sizeof s->path)
+        return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
+                         sizeof s->path - 1);
+    memcpy(s->path, path, strlen(path) + 1);
+    struct reader r = {.scene = s, .diag = d};
+    const enum err err = read_all(&r, text, n_sets, sets);
+    arena_free(&r.temp);
+    if (err) scene_free(s);
+    return err;
+}
+
+static enum err read_file(FILE *file, const char *path, char **text, struct diag *d)
+{
+    size_t room = 1 << 16, n = 0;
+    *text = NULL;
+    for (;;) {
+        char *more = realloc(*text, room + 1);
+        if (!more) return diag_fail(d, ERR_MEMORY, "%s: no memory to read it", path);
+        *text = more;
+        n += fread(*text + n, 1, room - n, file);
+        if (n < room) break;
+        if (room >= CASE_MAX_BYTES)
+            return diag_fail(d, ERR_INPUT, "%s: longer than %d bytes; is it a case file?", path,
+                             CASE_MAX_BYTES);
+        room *= 2;
+    }
+    if (ferror(file))
+        return diag_fail(d, ERR_INPUT, "%s: cannot be read: %s", path, strerror(errno));
+    (*text)[n] = '\0';
+    const size_t length = strlen(*text);
+    if (length == n) return ERR_OK;
+    int line = 1;
+    for (size_t k = 0; k < length; k++) line += (*text)[k] == '\n';
+    return diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; a case file is plain text", path,
+                     line);
+}
+
+enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
+                    struct diag *d)
+{
+    /* Opening a pipe would wait for whoever writes to it, a terminal for whoever types. */
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return diag_fail(d, ERR_INPUT, "%s: is %s; a case is a regular file", path,
+                         S_ISDIR(info.st_mode) ? "a folder" : "a pipe or a device");
+    FILE *file = fopen(path, "rb");
+    if (!file) return diag_fail(d, ERR_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    char *text;
+    enum err err = read_file(file, path, &text, d);
+    fclose(file);
+    if (!err) err = scene_parse(s, text, path, n_sets, sets, d);
+    free(text);
+    return err;
+}
+
+void scene_free(struct scene *s)
+{
+    arena_free(&s->arena);
+    memset(s, 0, sizeof *s);
+}
+
+int scene_find_motion(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_motion; k++)
+        if (strcmp(s->motion[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+int scene_find_solid(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_solid; k++)
+        if (strcmp(s->solid[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+double scene_solid_dp(const struct scene *s, int solid)
+{
+    return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
+}
+
+int scene_light_solid(const struct scene *s)
+{
+    int lightest = -1;
+    double least = s->n_fluid > 0 ? 0.5 * s->fluid[0].density : 0;
+    for (int k = 0; k < s->n_solid; k++) {
+        if (s->solid[k].density >= least) continue;
+        least = s->solid[k].density;
+        lightest = k;
+    }
+    return lightest;
+}
+
+bool scene_is_bonded(const struct scene *s, int solid)
+{
+    for (int k = 0; k < s->n_solid; k++) {
+        const char *const to = s->solid[k].joined;
+        if (to[0] && (k == solid || scene_find_solid(s, to) == solid)) return true;
+    }
+    return false;
+}
+
+int scene_find_wall(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_wall; k++)
+        if (strcmp(s->wall[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+bool scene_pair(const char *text, char name[2][SCENE_TEXT])
+{
+    const char *comma = strchr(text, ',');
+    if (!comma || strchr(comma + 1, ',')) return false;
+    const char *const from[2] = {text, comma + 1}, *const end[2] = {comma, text + strlen(text)};
+    for (int k = 0; k < 2; k++) {
+        const char *a = from[k], *b = end[k];
+        while (a < b && (*a == ' ' || *a == '\t')) a++;
+        while (b > a && (b[-1] == ' ' || b[-1] == '\t')) b--;
+        if (a == b) return false;
+        snprintf(name[k], SCENE_TEXT, "%.*s", (int)(b - a), a);
+    }
+    return true;
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT
+ * What the user asked for: the case file as a struct (from case/params.def) and the points sampled from
+ * its shapes. All memory belongs to the scene's arena. Units: SI. */
+#ifndef SPHFSI_CASE_SCENE_H
+#define SPHFSI_CASE_SCENE_H
+
+#include "base/base.h"
+
+enum { SCENE_TEXT = 256, SCENE_NAME = 64, SCENE_MAX_SECTIONS = 64 };
+
+enum shape_kind { SHAPE_BOX, SHAPE_POLYGON, SHAPE_POLYLINE, SHAPE_CIRCLE };
+
+struct shape {
+    enum shape_kind kind;
+    int n; /* points: box 2 (lower left, upper right), circle 1, else >= 2 */
+    double (*pt)[2];
+    double size; /* radius of a circle; thickness of a polyline, to the left of its direction if
+                         positive, to the right if negative; else 0 */
+    int line;
+};
+
+struct shape_list {
+    int n;
+    struct shape *item;
+};
+
+struct number_list {
+    int n;
+    double *value;
+};
+
+/* Up to two expressions in x and y, or one in t; see case/expr.h. NULL: not given. */
+struct expr;
+struct scene_expr {
+    struct expr *e[2];
+};
+
+/* One struct for each section of case/params.def: struct scene_top, struct scene_fluid, ... Each carries
+ * the name behind its section word and the line it starts at. */
+struct scene_section_common {
+    char name[SCENE_NAME];
+    int line;
+#define SECTION(section, named) \
+    }                           \
+    ;                           \
+    struct scene_##section {    \
+        struct scene_section_common common;
+#define REAL(section, key, def, lo, hi, unit, meaning) double key;
+#define INTEGER(section, key, def, lo, hi, meaning) int key;
+#define CHOICE(section, key, def, names, meaning) int key;
+#define TEXT(section, key, def, meaning) char key[SCENE_TEXT];
+#define VECTOR(section, key, dx, dy, unit, meaning) double key[2];
+#define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
+#define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
+#define SHAPES(section, key, meaning) struct shape_list key;
+#define NUMBERS(section, key, unit, meaning) struct number_list key;
+#include "case/params.def"
+};
+
+/* Values of the CHOICE keys, in the order of their names in case/params.def. */
+enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
+enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
+enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED }; /* what presets are told apart by */
+enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
+enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
+enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
+enum interface { INTERFACE_HELD, INTERFACE_IMPEDANCE };
+enum suction { SUCTION_OFF, SUCTION_ON };
+enum sides { SIDES_BOTH, SIDES_ONE };
+enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
+enum slip { SLIP_FREE, SLIP_NONE };
+enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
+enum idle { IDLE_SKIP, IDLE_WORK };
+enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
+enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
+enum shifting_speed { SHIFTING_OWN, SHIFTING_LARGEST };
+enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS, DIFFUSION_ANTUONO };
+enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
+enum plane { PLANE_STRAIN, PLANE_STRESS };
+enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
+enum hourglass_form { HOURGLASS_PRINTED, HOURGLASS_VARIATIONAL };
+enum viscosity_form { VISCOSITY_PRINTED, VISCOSITY_SYMMETRIC };
+enum motion_kind {
+    MOTION_VELOCITY,
+    MOTION_POLYNOMIAL,
+    MOTION_TABLE,
+    MOTION_SINE,
+    MOTION_ROTATION,
+    MOTION_EXPRESSION
+};
+enum probe_quantity {
+#define QUANTITY(NAME, name, target, columns, meaning) PROBE_##NAME,
+#include "case/quantities.def"
+#undef QUANTITY
+    PROBE_QUANTITIES
+};
+/* What a quantity looks at: a material point of a solid, a point in the fluid, either (by whether a
+ * body is named), a solid, a solid or wall, all fluid, a line in the fluid. */
+enum probe_target {
+    TARGET_SOLID_POINT,
+    TARGET_FLUID_POINT,
+    TARGET_ANY_POINT,
+    TARGET_SOLID,
+    TARGET_BODY,
+    TARGET_FLUID,
+    TARGET_FLUID_LINE
+};
+enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
+
+/* Points sampled from the shapes of one kind. Solids: body after body, each in rows along its
+ * longer side, so that neighbours in the lattice are mostly neighbours in memory. */
+struct scene_points {
+    int64_t n;
+    double *x, *y;
+    int32_t *body;    /* index of the section among those of its kind */
+    uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
+};
+
+/* Tabulated motion, loaded from its file: n rows. n == 0: none. */
+struct motion_table {
+    int n;
+    double *t, *dx, *dy;
+    double *vx, *vy; /* slopes at the rows, so that the velocity is continuous */
+};
+
+/* A named constant, evaluated. plain: it was written without a unit. */
+struct scene_constant {
+    char name[SCENE_NAME];
+    double value;
+    bool plain;
+    double m, kg, s; /* powers of its unit */
+};
+
+/* A key that the case gives, as opposed to a default. */
+struct scene_given {
+    int section, index; /* enum section_id of case/params.h, and which of them */
+    const char *key;
+    int line; /* 0: by --set */
+};
+
+/* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
+struct scene {
+    char path[4096];    /* of the case file */
+    struct arena arena; /* owns everything below */
+#define SCENE_MEMBER_0(section) struct scene_##section section;
+#define SCENE_MEMBER_1(section)      \
+    struct scene_##section *section; \
+    int n_##section;
+#define SECTION(section, named) SCENE_MEMBER_##named(section)
+#include "case/params.def"
+    int n_constants;
+    struct scene_constant *constant;
+    int n_given;
+    struct scene_given *given;
+    struct motion_table *motion_data; /* [n_motion] */
+    struct motion_hook *motion_hook;  /* [n_motion]; NULL: none */
+    struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */
+    double h, c0,
+        rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
+    double domain_lower[2], domain_upper[2]; /* in effect */
+};
+
+/* Reads and checks a case file. `sets` are the --set arguments ("key=value" or "section.key=value";
+ * a named section is section NAME: "solid gate.young=1e6" or "gate.young=1e6"). On success the
+ * caller frees with scene_free; on failure nothing remains to be freed. */
+enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
+                    struct diag *d) SPHFSI_CHECKED;
+/* The same from text in memory; `path` names it in messages and anchors relative file names. */
+enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
+                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
+void scene_free(struct scene *s);
+
+/* Samples all shapes into s->points and fixes h, c0, rho0 and the domain (geometry/sampling.c). Called by
+ * scene_read and scene_parse after the sections have been read. */
+enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Whether opposite sides of the domain along an axis are joined. */
+SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
+{
+    return s->domain.periodic >> axis & 1;
+}
+
+/* Value of an expression at a point; of one in t at x = t (case/expr.h has the grammar). */
+double scene_expr_at(const struct expr *e, double x, double y);
+
+/* Writes the effective case, every value and default spelled out in SI units; parsing it again gives
+ * an equal scene. */
+enum err scene_write(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
+
+/* Prescribed motion: displacement from the initial place, velocity and acceleration at a time; and the
+ * angle about a centre with its first two derivatives. */
+struct motion_state {
+    double d[2], v[2], a[2];
+    double centre[2], angle, rate, angular_acceleration;
+};
+struct motion_hook { /* a motion that a program with the library prescribes instead */
+    void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
+    void *context;
+};
+struct motion_state motion_at(const struct scene *s, int motion_index, double time);
+
+/* Where a motion puts a point that began at (X, Y): x, v and a. */
+struct motion_point {
+    double x[2], v[2], a[2];
+};
+struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
+
+/* C_CFL of Eq. 28 where none is given: that of the paper, and that of leapfrog, whose step may be twice as
+ * long (docs/performance.md). */
+#define CFL_PAPER 0.2
+#define CFL_LEAPFROG 0.4
+/* The lightest solid, where it has less than half of the fluid's density; -1: none. Leapfrog's step may drive
+ * bodies of up to 0.35 of it between equal waters (docs/theory.md, Sec. 7). */
+int scene_light_solid(const struct scene *s);
+
+/* Index of a named section, or -1. */
+int scene_find_motion(const struct scene *s, const char *name);
+int scene_find_solid(const struct scene *s, const char *name);
+/* Spacing of a solid's particles, m. */
+double scene_solid_dp(const struct scene *s, int solid);
+/* Whether a solid is bonded to another: its thickness is not its own. */
+bool scene_is_bonded(const struct scene *s, int solid);
+int scene_find_wall(const struct scene *s, const char *name);
+
+/* Whether the snapshots of a scene have a field of case/pointdata.def. */
+bool scene_snapshot_has(const struct scene *s, const char *field);
+
+/* What a probe looks at; TARGET_ANY_POINT is resolved. */
+enum probe_target scene_probe_target(const struct scene_probe *probe);
+
+/* The two names of `a, b`; false: it is something else. */
+bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
+
+#endif

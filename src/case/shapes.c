@@ -1,0 +1,163 @@
+/* SPDX-License-Identifier: MIT
+ * Shapes of a case file:
+ *
+ *   box X0, Y0, X1, Y1                    lower left and upper right corner
+ *   circle X, Y, R
+ *   polygon X, Y; X, Y; X, Y ...          corners in either order of turning
+ *   polyline thickness T: X, Y; X, Y ...  a band to the left of the direction of the points; T < 0:
+ *                                         to the right; last point = first point: closed */
+#include "case/case.h"
+
+#include <math.h>
+#include <string.h>
+
+static enum err read_point(struct reader *r, const struct entry *e, struct slice text, int n,
+                           double *value)
+{
+    struct slice piece;
+    const int given = slice_count(text, ',');
+    if (given != n)
+        return bad_value(r, e, "%d numbers are expected and %d given in `%.*s`", n, given,
+                         (int)(text.length < 40 ? text.length : 40), text.at);
+    for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
+        TRY(case_number(r, e, piece, "m", &value[k]));
+        if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: beyond 1e9 m");
+    }
+    return ERR_OK;
+}
+
+static enum err read_box(struct reader *r, const struct entry *e, struct slice text,
+                         struct shape *shape)
+{
+    double v[4] = {0};
+    TRY(read_point(r, e, text, 4, v));
+    if (!(v[0] < v[2]) || !(v[1] < v[3]))
+        return bad_value(r, e,
+                         "box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X %g to %g, Y %g "
+                         "to %g m",
+                         v[0], v[2], v[1], v[3]);
+    shape->pt[0][0] = v[0];
+    shape->pt[0][1] = v[1];
+    shape->pt[1][0] = v[2];
+    shape->pt[1][1] = v[3];
+    return ERR_OK;
+}
+
+static enum err read_circle(struct reader *r, const struct entry *e, struct slice text,
+                            struct shape *shape)
+{
+    double v[3] = {0};
+    TRY(read_point(r, e, text, 3, v));
+    if (!(v[2] > 0)) return bad_value(r, e, "the radius of a circle must be above 0 m");
+    shape->pt[0][0] = v[0];
+    shape->pt[0][1] = v[1];
+    shape->size = v[2];
+    return ERR_OK;
+}
+
+static enum err read_points(struct reader *r, const struct entry *e, struct slice text,
+                            struct shape *shape)
+{
+    struct slice piece;
+    for (int k = 0; k < shape->n && slice_next(&text, ';', &piece); k++) {
+        TRY(read_point(r, e, piece, 2, shape->pt[k]));
+        if (k > 0 && shape->pt[k][0] == shape->pt[k - 1][0] &&
+            shape->pt[k][1] == shape->pt[k - 1][1])
+            return bad_value(r, e, "points %d and %d are the same", k, k + 1);
+    }
+    return ERR_OK;
+}
+
+static double cross(const double a[2], const double b[2], const double c[2])
+{
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static bool edges_cross(const double a[2], const double b[2], const double c[2], const double d[2])
+{
+    return cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0;
+}
+
+static enum err check_polygon(struct reader *r, const struct entry *e, const struct shape *shape)
+{
+    const int n = shape->n;
+    double area = 0, size = 0;
+    for (int k = 0; k < n; k++) {
+        const double *a = shape->pt[k], *b = shape->pt[(k + 1) % n];
+        area += 0.5 * cross(shape->pt[0], a, b);
+        size = max2(size, hypot(b[0] - a[0], b[1] - a[1]));
+    }
+    if (fabs(area) <= 1e-12 * size * size) return bad_value(r, e, "the polygon has no area");
+    for (int i = 0; i < n; i++)
+        for (int j = i + 2; j < n; j++)
+            if (edges_cross(shape->pt[i], shape->pt[i + 1], shape->pt[j], shape->pt[(j + 1) % n]))
+                return bad_value(r, e, "edges %d and %d of the polygon cross", i + 1, j + 1);
+    return ERR_OK;
+}
+
+/* "thickness T:" in front of a polyline's points. */
+static enum err read_thickness(struct reader *r, const struct entry *e, struct slice *text,
+                               double *thickness)
+{
+    const char word[] = "thickness";
+    const size_t length = sizeof word - 1;
+    const char *colon = memchr(text->at, ':', text->length);
+    if (!colon || text->length < length || memcmp(text->at, word, length) != 0)
+        return bad_value(r, e, "write `polyline thickness T: X, Y; X, Y; ...`");
+    const struct slice number = {text->at + length, (size_t)(colon - text->at) - length};
+    TRY(case_number(r, e, number, "m", thickness));
+    if (*thickness == 0 || fabs(*thickness) > 1e9)
+        return bad_value(r, e, "the thickness must not be 0, nor beyond 1e9 m");
+    const size_t used = (size_t)(colon + 1 - text->at);
+    *text = (struct slice){text->at + used, text->length - used};
+    return ERR_OK;
+}
+
+static enum err read_shape(struct reader *r, const struct entry *e, struct slice text,
+                           struct shape *shape)
+{
+    const int needed[] = {
+        [SHAPE_BOX] = 2, [SHAPE_CIRCLE] = 1, [SHAPE_POLYGON] = 3, [SHAPE_POLYLINE] = 2};
+    const bool listed = shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_POLYLINE;
+    if (shape->kind == SHAPE_POLYLINE) TRY(read_thickness(r, e, &text, &shape->size));
+    shape->n = listed ? slice_count(text, ';') : needed[shape->kind];
+    shape->line = e->line;
+    if (shape->n < needed[shape->kind])
+        return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
+                         needed[shape->kind], shape->n == 1 ? "is" : "are", shape->n);
+    if (shape->n > CASE_MAX_POINTS) return bad_value(r, e, "more than %d points", CASE_MAX_POINTS);
+    shape->pt =
+        arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
+    if (!shape->pt) return ERR_MEMORY;
+    if (shape->kind == SHAPE_BOX) return read_box(r, e, text, shape);
+    if (shape->kind == SHAPE_CIRCLE) return read_circle(r, e, text, shape);
+    TRY(read_points(r, e, text, shape));
+    return shape->kind == SHAPE_POLYGON ? check_polygon(r, e, shape) : ERR_OK;
+}
+
+enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
+{
+    static const char *const words[] = {[SHAPE_BOX] = "box",
+                                        [SHAPE_POLYGON] = "polygon",
+                                        [SHAPE_POLYLINE] = "polyline",
+                                        [SHAPE_CIRCLE] = "circle"};
+    const size_t length = strcspn(e->value, " \t");
+    int kind = -1;
+    for (int k = 0; k < (int)COUNT_OF(words); k++)
+        if (strlen(words[k]) == length && memcmp(words[k], e->value, length) == 0) kind = k;
+    if (kind < 0)
+        return bad_value(r, e, "`%.*s` is no shape; known: box, polygon, polyline, circle",
+                         (int)(length < 40 ? length : 40), e->value);
+    struct shape shape = {.kind = (enum shape_kind)kind};
+    const char *start = e->value + length + strspn(e->value + length, " \t");
+    TRY(read_shape(r, e, (struct slice){start, strlen(start)}, &shape));
+    if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: move to twice the room */
+        struct shape *item =
+            arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);
+        if (!item) return ERR_MEMORY;
+        if (list->n) memcpy(item, list->item, (size_t)list->n * sizeof *item);
+        list->item = item;
+    }
+    list->item[list->n++] = shape;
+    return ERR_OK;
+}

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT
+ * Units after numbers, and the dimensions they give. */
+#include "case/expr.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A unit is up/down SI units. Two whole numbers, so that 140 mm is the same double as 0.14. */
+static const struct unit {
+    const char *symbol;
+    double up, down;
+    int m, kg, s;
+} units[] = {
+    {"m", 1, 1, 1, 0, 0},       {"km", 1e3, 1, 1, 0, 0},
+    {"cm", 1, 1e2, 1, 0, 0},    {"mm", 1, 1e3, 1, 0, 0},
+    {"um", 1, 1e6, 1, 0, 0},    {"s", 1, 1, 0, 0, 1},
+    {"min", 60, 1, 0, 0, 1},    {"ms", 1, 1e3, 0, 0, 1},
+    {"us", 1, 1e6, 0, 0, 1},    {"kg", 1, 1, 0, 1, 0},
+    {"g", 1, 1e3, 0, 1, 0},     {"N", 1, 1, 1, 1, -2},
+    {"Pa", 1, 1, -1, 1, -2},    {"kPa", 1e3, 1, -1, 1, -2},
+    {"MPa", 1e6, 1, -1, 1, -2}, {"GPa", 1e9, 1, -1, 1, -2},
+    {"Hz", 1, 1, 0, 0, -1},     {"kHz", 1e3, 1, 0, 0, -1},
+    {"rad", 1, 1, 0, 0, 0},     {"deg", 3.14159265358979323846, 180, 0, 0, 0},
+};
+
+static const struct {
+    int m, kg, s;
+    const char *text;
+} dimension_names[] = {
+    {0, 0, 0, "a pure number"},
+    {1, 0, 0, "a length (m)"},
+    {2, 0, 0, "an area (m^2)"},
+    {0, 0, 1, "a time (s)"},
+    {0, 1, 0, "a mass (kg)"},
+    {1, 0, -1, "a speed (m/s)"},
+    {1, 0, -2, "an acceleration (m/s^2)"},
+    {-3, 1, 0, "a density (kg/m^3)"},
+    {-1, 1, -2, "a pressure (Pa)"},
+    {0, 0, -1, "a frequency (Hz)"},
+    {1, 1, -2, "a force (N)"},
+    {-1, 0, 0, "an inverse length (1/m)"},
+};
+
+static const struct unit *find_unit(const char *name, size_t length)
+{
+    for (size_t k = 0; k < COUNT_OF(units); k++)
+        if (strlen(units[k].symbol) == length && memcmp(units[k].symbol, name, length) == 0)
+            return &units[k];
+    return NULL;
+}
+
+bool unit_known(const char *name) { return find_unit(name, strlen(name)) != NULL; }
+
+size_t identifier_length(struct slice text)
+{
+    size_t n = 0;
+    while (n < text.length && (text.at[n] == '_' || isalpha((unsigned char)text.at[n]) ||
+                               (n > 0 && isdigit((unsigned char)text.at[n]))))
+        n++;
+    return n;
+}
+
+static struct slice behind(struct slice text, size_t n)
+{
+    return (struct slice){text.at + n, text.length - n};
+}
+
+static struct slice without_space(struct slice text)
+{
+    while (text.length && (*text.at == ' ' || *text.at == '\t')) text = behind(text, 1);
+    return text;
+}
+
+/* The number behind ^, or 1 if there is no ^. */
+static bool read_power(struct slice *text, double *power, char why[EXPR_WHY])
+{
+    *power = 1;
+    struct slice rest = without_space(*text);
+    if (!rest.length || *rest.at != '^') return true;
+    rest = without_space(behind(rest, 1));
+    char digits[16];
+    size_t n = 0;
+    while (n < rest.length && n < sizeof digits - 1 &&
+           (isdigit((unsigned char)rest.at[n]) || rest.at[n] == '.' ||
+            (n == 0 && (rest.at[n] == '-' || rest.at[n] == '+'))))
+        n++;
+    memcpy(digits, rest.at, n);
+    digits[n] = '\0';
+    char *end;
+    *power = strtod(digits, &end);
+    if (n == 0 || *end || end == digits || fabs(*power) > 9) {
+        snprintf(why, EXPR_WHY, "the power of a unit is a number from -9 to 9");
+        return false;
+    }
+    *text = behind(rest, n);
+    return true;
+}
+
+static void apply(struct quantity *q, const struct unit *u, double power)
+{
+    if (power == floor(power)) {
+        const double up = power > 0 ? u->up : u->down, down = power > 0 ? u->down : u->up;
+        for (int k = 0; k < (int)fabs(power); k++) q->value = q->value * up / down;
+    } else {
+        q->value *= pow(u->up / u->down, power);
+    }
+    q->dim.kind = DIM_KNOWN;
+    q->dim.m += power * u->m;
+    q->dim.kg += power * u->kg;
+    q->dim.s += power * u->s;
+}
+
+/* The unit that goes on behind * or /. Not g, which by itself is as a rule the gravitational
+ * acceleration (no other symbol of a unit may name a constant). */
+static const struct unit *next_unit(struct slice rest)
+{
+    const size_t length = identifier_length(rest);
+    const struct unit *u = find_unit(rest.at, length);
+    if (!u || length >= EXPR_NAME || strcmp(u->symbol, "g") == 0) return NULL;
+    const struct slice next = without_space(behind(rest, length));
+    if (next.length && *next.at == '(') return NULL; /* the function min */
+    return u;
+}
+
+bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
+{
+    struct slice rest = without_space(*text);
+    if (rest.length && *rest.at == '%') {
+        q->value /= 100;
+        q->dim.kind = DIM_KNOWN;
+        *text = behind(rest, 1);
+        return true;
+    }
+    size_t length = identifier_length(rest);
+    const struct unit *u = find_unit(rest.at, length);
+    if (!u) return false;
+    double sign = 1;
+    for (;;) {
+        rest = behind(rest, length);
+        double power;
+        if (!read_power(&rest, &power, why)) return false;
+        apply(q, u, sign * power);
+        const struct slice next = without_space(rest);
+        if (!next.length || (*next.at != '/' && *next.at != '*')) break;
+        const struct slice symbol = without_space(behind(next, 1));
+        u = next_unit(symbol);
+        if (!u) break;
+        sign = *next.at == '/' ? -1 : 1;
+        length = identifier_length(symbol);
+        rest = symbol;
+    }
+    *text = rest;
+    return true;
+}
+
+/* Of a unit as case/params.def spells it: "m/s^2", "1/s", or "1". */
+static struct dim dim_of(const char *unit)
+{
+    const bool inverse = strncmp(unit, "1/", 2) == 0;
+    struct quantity q = {1, {DIM_KNOWN, 0, 0, 0}};
+    struct slice text = {unit + (inverse ? 2 : 0), strlen(unit) - (inverse ? 2 : 0)};
+    char why[EXPR_WHY];
+    unit_read(&text, &q, why);
+    const double sign = inverse ? -1 : 1;
+    return (struct dim){DIM_KNOWN, sign * q.dim.m, sign * q.dim.kg, sign * q.dim.s};
+}
+
+bool dim_fits(const struct dim *dim, const char *unit)
+{
+    if (dim->kind != DIM_KNOWN || strcmp(unit, "SI") == 0) return true;
+    const struct dim want = dim_of(unit);
+    return fabs(want.m - dim->m) < 1e-9 && fabs(want.kg - dim->kg) < 1e-9 &&
+           fabs(want.s - dim->s) < 1e-9;
+}
+
+void dim_text(const struct dim *dim, char text[DIM_TEXT])
+{
+    if (dim->kind != DIM_KNOWN) {
+        snprintf(text, DIM_TEXT, "a plain number");
+        return;
+    }
+    for (size_t k = 0; k < COUNT_OF(dimension_names); k++) {
+        if (fabs(dimension_names[k].m - dim->m) < 1e-9 &&
+            fabs(dimension_names[k].kg - dim->kg) < 1e-9 &&
+            fabs(dimension_names[k].s - dim->s) < 1e-9) {
+            snprintf(text, DIM_TEXT, "%s", dimension_names[k].text);
+            return;
+        }
+    }
+    const char *const symbol[] = {"kg", "m", "s"};
+    const double power[] = {dim->kg, dim->m, dim->s};
+    size_t n = (size_t)snprintf(text, DIM_TEXT, "in units of");
+    for (int k = 0; k < 3; k++)
+        if (fabs(power[k]) > 1e-9 && n < DIM_TEXT)
+            n += (size_t)snprintf(text + n, DIM_TEXT - n, " %s^%.3g", symbol[k], power[k]);
+}
+
+void unit_dim_text(const char *unit, char text[DIM_TEXT])
+{
+    const struct dim dim = dim_of(unit);
+    dim_text(&dim, text);
+}

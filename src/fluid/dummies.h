@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT
+ * Walls and structures as the fluid's sweeps have them: pressures, mirrored velocities and forces by the
+ * fluid around. A part of the sweeps' text (fluid/sweep.h), once for each precision. */
+
+/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with accelerations
+ * (ax, ay) from the fluid that they see; 0 where none is in reach. */
+SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct neighbours *neighbours,
+                                         const struct receiver *s, const double *ax,
+                                         const double *ay, double pressure[GROUPS])
+{
+    vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(neighbours, k, part) {
+        const uint32_t code = neighbours->code[k];
+        const real *const b = candidates(neighbours, code, part);
+        const struct separation d = separation_from(s, code, b);
+        const vreal w = kernel_of(d.length);
+        const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
+        sum_w[part] = sum_w[part] + w;
+        sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
+        sum_x[part] = vfma(mass, d.x, sum_x[part]);
+        sum_y[part] = vfma(mass, d.y, sum_y[part]);
+    }
+    real weight[GROUPS], p[GROUPS], x[GROUPS], y[GROUPS];
+    total(sum_w, weight);
+    total(sum_p, p);
+    total(sum_x, x);
+    total(sum_y, y);
+    for (int g = 0; g < GROUPS; g++) {
+        const double lift =
+            (f->k.gravity[0] - ax[g]) * (double)x[g] + (f->k.gravity[1] - ay[g]) * (double)y[g];
+        const double mean = ((double)p[g] + f->k.rho0 * f->k.h * lift) / (double)weight[g];
+        /* A particle alone on a wall meets nothing but its own pressure; pulled as well as pushed, its
+         * bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third of c0. */
+        pressure[g] = has_fluid_near(weight[g]) ? max2(f->k.lowest_wall_pressure, mean) : 0;
+    }
+}
+
+/* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less the mean of
+ * the fluid's around them, so that between them the fluid moves with the surface. */
+static void mirrored_velocity(const struct neighbours *neighbours, const struct receiver *s,
+                              double *u, double *v)
+{
+    vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
+    EACH_SEEN(neighbours, k, part) {
+        const uint32_t code = neighbours->code[k];
+        const real *const b = candidates(neighbours, code, part);
+        const struct separation d = separation_from(s, code, b);
+        const vreal w = kernel_of(d.length);
+        sum_w[part] = sum_w[part] + w;
+        sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
+        sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
+    }
+    real weight[GROUPS], fluid_u[GROUPS], fluid_v[GROUPS];
+    total(sum_w, weight);
+    total(sum_u, fluid_u);
+    total(sum_v, fluid_v);
+    for (int g = 0; g < GROUPS; g++) {
+        if (!has_fluid_near(weight[g])) continue;
+        u[g] = 2 * u[g] - (double)fluid_u[g] / (double)weight[g];
+        v[g] = 2 * v[g] - (double)fluid_v[g] / (double)weight[g];
+    }
+}
+
+/* Adds sums over pairs, times a factor and the volume of each receiver, to its force. */
+SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS], double factor,
+                             const double *volume, double *fx, double *fy)
+{
+    real x[GROUPS], y[GROUPS];
+    total(sum_x, x);
+    total(sum_y, y);
+    for (int g = 0; g < GROUPS; g++) {
+        fx[g] += factor * volume[g] * (double)x[g];
+        fy[g] += factor * volume[g] * (double)y[g];
+    }
+}
+
+/* The mirror image of what sum_dummies adds to the fluid by laminar viscosity, as in fluid_force; s has
+ * the mirrored velocity. */
+static void drag_force(const struct fluid *f, const struct neighbours *neighbours,
+                       const struct receiver *s, const double *volume,
+                       const struct vector_constants *k, double *fx, double *fy)
+{
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    EACH_SEEN(neighbours, m, part) {
+        const uint32_t code = neighbours->code[m];
+        const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
+        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
+        sum_x[part] = vfma(weight, q.u, sum_x[part]);
+        sum_y[part] = vfma(weight, q.v, sum_y[part]);
+    }
+    add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
+}
+
+/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with the sign reversed;
+ * N/m per depth. The mirror image of what the fluid particles sum. With FX_IMPEDANCE as well the surface per
+ * depth, m, on which a pressure of 1 Pa on both sides of the pairs would press. */
+SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
+                               const struct receiver *s, const real *own, const double *volume,
+                               const struct vector_constants *k, unsigned effects,
+                               double *const force[2], double *const wet[2])
+{
+    const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
+    const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
+    const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
+    EACH_SEEN(neighbours, m, part) {
+        const uint32_t code = neighbours->code[m];
+        const real *const b = candidates(neighbours, code, part);
+        struct pair q = pair_load(s, code, b);
+        q.p = lane(b, PACKED_P);
+        vreal stress = fx_pressure(s, &q);
+        if (effects & FX_ONE_SIDED)
+            stress = q.p + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+        if (effects & FX_REPULSION)
+            stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+        const vreal g = q.slope * stress;
+        sum_x[part] = vfma(g, q.x, sum_x[part]);
+        sum_y[part] = vfma(g, q.y, sum_y[part]);
+        if (!(effects & FX_IMPEDANCE)) continue;
+        wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
+        wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
+    }
+    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
+    if (effects & FX_IMPEDANCE)
+        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
+}
+
+/* Effects that walls and structures have code of their own for: without them it is stamped out. */
+#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION)
+
+/* The particles of a cluster: those there are, and their places in the arrays. */
+struct dummies {
+    enum kind kind;
+    int count;
+    const int32_t *at; /* [count] */
+    size_t cluster;
+    real *packed;
+};
+
+/* Copies a field of the particles of a cluster, or zeros where it is off. */
+SPHFSI_INLINE void take(const struct dummies *d, const double *field, double out[CLUSTER])
+{
+    for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
+}
+
+/* A structure's velocity as the fluid sees it; walls have none where nothing moves them. */
+SPHFSI_INLINE void take_velocity(const struct fluid *f, const struct dummies *d,
+                                 const struct particles *p, double u[CLUSTER], double v[CLUSTER])
+{
+    const bool moves = f->effects & FX_MOTION;
+    take(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
+    take(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
+}
+
+SPHFSI_INLINE void put(const struct dummies *d, const double in[CLUSTER], double *field)
+{
+    for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
+}
+
+/* Zeros, and with them no volume, where there are no particles. */
+SPHFSI_INLINE void pack_four(const struct dummies *d, const double in[CLUSTER], enum packed_field m)
+{
+    put_four(d->packed, m, (four_double) * (const four_double_at *)in);
+}
+
+/* Where they are, with the box around them. */
+SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *p,
+                                 const struct cells *c, int32_t cell, const struct dummies *d)
+{
+    const double inv_h = 1 / f->k.h;
+    for (int r = 0; r < d->count; r++) {
+        const int32_t i = d->at[r];
+        const double x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
+        const double y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
+        d->packed[PACKED_X * CLUSTER + r] = (real)(x * inv_h);
+        d->packed[PACKED_Y * CLUSTER + r] = (real)(y * inv_h);
+    }
+    cluster_close(d->packed, f->packed[d->kind].n, d->count);
+    cluster_box(&f->packed[d->kind].boxes, d->cluster, d->packed, d->count);
+}
+
+/* What fx_one_sided and fx_repulsion need of the dummies. */
+SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct particles *p,
+                                       const struct dummies *d, unsigned fx)
+{
+    double ax[CLUSTER], ay[CLUSTER];
+    take(d, p->ax, ax);
+    take(d, p->ay, ay);
+    for (int r = 0; r < d->count; r++) {
+        real *const own = d->packed + r;
+        if (fx & FX_ONE_SIDED) {
+            own[PACKED_LIFT_X * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[0] - ax[r]));
+            own[PACKED_LIFT_Y * CLUSTER] = (real)(f->k.rho0 * f->k.h * (f->k.gravity[1] - ay[r]));
+        }
+        if (fx & FX_REPULSION) {
+            const double spacing =
+                0.5 * (1 + sqrt(f->volume[d->kind][p->body[d->at[r]]])) * f->k.dp;
+            own[PACKED_NEAR * CLUSTER] = (real)(square(REPULSION_REACH * spacing / f->k.h) + ETA2);
+        }
+    }
+}
+
+/* The forces on those of a kind that feels them. */
+SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
+                                  const struct dummies *d, const struct neighbours *neighbours,
+                                  const struct cell_sides *sides, const struct vector_constants *k,
+                                  unsigned fx)
+{
+    double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
+           wet_y[CLUSTER] = {0};
+    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+        const real *const own = d->packed + r;
+        struct receiver s = receiver_at(sides, own);
+        s.u = s.v = vset(0);
+        s.p = vspread(own + PACKED_P * CLUSTER);
+        double volume[GROUPS];
+        for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
+        fluid_force(f, neighbours, &s, own, volume, k, fx, (double *[]){&force_x[r], &force_y[r]},
+                    (double *[]){&wet_x[r], &wet_y[r]});
+        if (!(fx & FX_NO_SLIP)) continue;
+        s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
+        s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
+        for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
+        drag_force(f, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
+    }
+    put(d, force_x, p->fx);
+    put(d, force_y, p->fy);
+    if (!(fx & FX_IMPEDANCE)) return;
+    put(d, wet_x, p->wet_x);
+    put(d, wet_y, p->wet_y);
+}
+
+/* Velocities that the fluid meets where it sticks, with the body's own elsewhere. */
+static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
+                  const struct neighbours *neighbours, const struct cell_sides *sides)
+{
+    double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
+    take_velocity(f, d, p, u, v);
+    memcpy(mirror_u, u, sizeof mirror_u);
+    memcpy(mirror_v, v, sizeof mirror_v);
+    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+        const struct receiver s = receiver_at(sides, d->packed + r);
+        mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
+    }
+    for (int r = 0; r < d->count; r++) {
+        sticks[r] = neighbours->n && f->sticks[d->kind][p->body[d->at[r]]];
+        if (sticks[r] != 0) continue;
+        mirror_u[r] = u[r];
+        mirror_v[r] = v[r];
+    }
+    pack_four(d, mirror_u, PACKED_MIRROR_U);
+    pack_four(d, mirror_v, PACKED_MIRROR_V);
+    pack_four(d, sticks, PACKED_STICKS);
+}
+
+/* A cluster of a cell. */
+SPHFSI_INLINE struct dummies dummies_at(const struct fluid *f, const struct cells *c,
+                                        enum kind kind, int32_t cell, int32_t m)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    const size_t cluster = (size_t)list->cluster[cell] + (size_t)m;
+    return (struct dummies){kind, particles_in(list, cell, m),
+                            &list->order[list->start[cell] + m * CLUSTER], cluster,
+                            cluster_packed(&f->packed[kind], cluster)};
+}
+
+/* Their pressure by the fluid that they see. */
+SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particles *p,
+                                    const struct dummies *d, const struct neighbours *neighbours,
+                                    const struct cell_sides *sides, double pressure[CLUSTER])
+{
+    double ax[CLUSTER], ay[CLUSTER];
+    take(d, p->ax, ax);
+    take(d, p->ay, ay);
+    for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
+    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+        const struct receiver s = receiver_at(sides, d->packed + r);
+        extrapolated_pressure(f, neighbours, &s, &ax[r], &ay[r], &pressure[r]);
+    }
+}
+
+/* What follows from it. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the
+ * fluid. */
+SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
+                                 const struct dummies *d, const double pressure[CLUSTER],
+                                 const double dens[CLUSTER])
+{
+    const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
+    double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0};
+    take_velocity(f, d, p, u, v);
+    for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
+    for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
+    put(d, pressure, p->p);
+    put(d, dens, p->dens);
+    pack_four(d, u, PACKED_U);
+    pack_four(d, v, PACKED_V);
+    pack_four(d, volume, PACKED_VOLUME);
+    pack_four(d, pressure, PACKED_P);
+    pack_four(d, dens, PACKED_DENS);
+}
+
+_Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
+
+SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
+                                   const struct cells *c, int32_t cell, unsigned fx)
+{
+    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(f, c);
+    const struct vector_constants k =
+        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct vector_constants){0};
+    const int32_t clusters = clusters_in(&c->kind[kind], cell);
+    double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
+    gather_around_cell(neighbour_scratch, f, c, KIND_FLUID, cell);
+    for (int32_t m = 0; m < clusters; m++) {
+        const struct dummies d = dummies_at(f, c, kind, cell, m);
+        if (kind != KIND_WALL || !f->walls_placed) place_dummies(f, p, c, cell, &d);
+        const struct neighbours neighbours =
+            gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
+        dummies_pressure(f, p, &d, &neighbours, &sides, &pressure[m * CLUSTER]);
+    }
+    for (int32_t m = clusters * CLUSTER; m % EOS_BLOCK; m++) pressure[m] = 0;
+    for (int32_t m = 0; m < clusters * CLUSTER; m += EOS_BLOCK)
+        eos_dens_of_block(&pressure[m], f->k.rho0, f->k.c0, &dens[m]);
+    for (int32_t m = 0; m < clusters; m++) {
+        const struct dummies d = dummies_at(f, c, kind, cell, m);
+        dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
+        if (!p->fx && !(fx & SURFACE_EFFECTS)) continue;
+        const struct neighbours neighbours =
+            gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
+        if (fx & FX_NO_SLIP) stick(f, p, &d, &neighbours, &sides);
+        if (fx & SURFACE_EFFECTS) pack_surface_fields(f, p, &d, fx);
+        if (p->fx) dummies_forces(f, p, &d, &neighbours, &sides, &k, fx);
+    }
+}
+
+static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                           const struct cells *c, enum kind kind)
+{
+    const unsigned unfelt = kind == KIND_SOLID ? 0 : FX_IMPEDANCE;
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
+        const int32_t cell = f->near_fluid[kind][k];
+        if (f->effects & SURFACE_EFFECTS)
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects & ~unfelt);
+        else if (f->effects & FX_IMPEDANCE & ~unfelt)
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, FX_IMPEDANCE);
+        else
+            dummies_of_cell(f, &kinds[kind], kind, c, cell, 0);
+    }
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+#include "fluid/fluid.h"
+
+#include "fluid/eos.h"
+
+#include <math.h>
+#include <string.h>
+
+static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
+{
+    const unsigned wanted = f->effects & PAIR_EFFECTS;
+    while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted)) table++;
+    f->sweeps = table;
+}
+
+static struct fluid_constants constants_of(const struct scene *s)
+{
+    const struct scene_fluid *fluid = &s->fluid[0];
+    return (struct fluid_constants){
+        .h = s->h,
+        .c0 = s->c0,
+        .rho0 = s->rho0,
+        .mass = s->rho0 * square(s->top.dp),
+        .alpha = fluid->artificial_viscosity,
+        .tensile = fluid->tensile_control,
+        .repulsion = fluid->wall_repulsion,
+        .dp = s->top.dp,
+        .shifting = fluid->shifting,
+        .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? s->c0 / 10 : 0,
+        .nu = fluid->laminar_viscosity,
+        .delta = fluid->density_diffusion,
+        .gravity = {s->top.gravity[0], s->top.gravity[1]},
+        .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
+    };
+}
+
+/* Fields that the set calls for in the lanes of a kind. */
+static int packed_count(enum kind kind, unsigned effects)
+{
+    if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
+    if (kind != KIND_FLUID && effects & FX_REPULSION) return PACKED_REPULSION_FIELDS;
+    if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return PACKED_ONE_SIDED_FIELDS;
+    return kind != KIND_FLUID && effects & FX_NO_SLIP ? PACKED_NO_SLIP_FIELDS : PACKED_FIELDS;
+}
+
+static enum err packed_create(struct packed_fields *packed, struct arena *a, int64_t clusters,
+                              size_t size, struct diag *d)
+{
+    if (clusters > CLUSTERS_MOST)
+        return diag_fail(d, ERR_INPUT,
+                         "there is room for %lld clusters of particles, and for %d at most",
+                         (long long)clusters, CLUSTERS_MOST);
+    packed->cluster = arena_alloc(a, (size_t)clusters, (size_t)(packed->n * CLUSTER) * size,
+                                  "lanes of the fluid's sweep", d);
+    return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;
+}
+
+static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *s, struct diag *d)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const int n = kind == KIND_WALL ? s->n_wall : s->n_solid;
+        bool *const sticks = arena_alloc(a, (size_t)n, sizeof *sticks, "walls", d);
+        if (!sticks) return ERR_MEMORY;
+        for (int k = 0; k < n; k++)
+            sticks[k] = (kind == KIND_WALL ? s->wall[k].slip : s->solid[k].slip) == SLIP_NONE;
+        f->sticks[kind] = sticks;
+    }
+    return ERR_OK;
+}
+
+/* One piece of memory for all threads, of which each gets its part to touch first. */
+static enum err neighbour_scratch_create(struct fluid *f, struct arena *a, int64_t clusters,
+                                         struct diag *d)
+{
+    const int64_t most = CHUNK_CELLS * (CELL_CAPACITY / CLUSTER);
+    const size_t places = 1 + (size_t)(clusters < most ? clusters : most);
+    const size_t size =
+        places * (size_t)pair_sums(f->effects) * CLUSTER * CLUSTER * f->sweeps->packed_item_size;
+    f->thread_bytes = size + sizeof *f->neighbour_scratch;
+    f->neighbour_scratch =
+        arena_alloc(a, (size_t)f->threads, sizeof *f->neighbour_scratch, "clusters in sight", d);
+    unsigned char *const deferred = arena_alloc(a, (size_t)f->threads, size, "sums over pairs", d);
+    if (!f->neighbour_scratch || !deferred) return ERR_MEMORY;
+    for (int t = 0; t < f->threads; t++)
+        f->neighbour_scratch[t].deferred = deferred + (size_t)t * size;
+    return ERR_OK;
+}
+
+enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
+                      const struct particles kinds[KIND_COUNT], const struct cells *c,
+                      struct diag *d)
+{
+    memset(f, 0, sizeof *f);
+    f->k = constants_of(s);
+    f->effects = effects;
+    f->idle_is_work = s->numerics.idle == IDLE_WORK;
+    choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
+                  s->numerics.kernel == KERNEL_GENERIC);
+    f->threads = thread_count();
+    for (int k = 0; k < KIND_COUNT; k++) f->packed[k].n = packed_count((enum kind)k, effects);
+    TRY(neighbour_scratch_create(f, a, cells_clusters(c, kinds[KIND_FLUID].capacity), d));
+    f->near_dummies = arena_alloc(a, (size_t)c->nx * (size_t)c->ny, sizeof *f->near_dummies,
+                                  "cells near walls and structures", d);
+    if (!f->near_dummies) return ERR_MEMORY;
+    if (effects & FX_NO_SLIP) TRY(note_slip(f, a, s, d));
+    for (int k = 0; k < KIND_COUNT; k++) {
+        if (kinds[k].capacity == 0) continue;
+        TRY(packed_create(&f->packed[k], a, cells_clusters(c, kinds[k].capacity),
+                          f->sweeps->packed_item_size, d));
+        if (k == KIND_FLUID) continue;
+        f->near_fluid[k] = arena_alloc(a, (size_t)kinds[k].capacity, sizeof *f->near_fluid[k],
+                                       "cells near fluid", d);
+        if (!f->near_fluid[k]) return ERR_MEMORY;
+        const int sections = k == KIND_WALL ? s->n_wall : s->n_solid;
+        f->volume[k] = arena_alloc(a, (size_t)sections, sizeof(double), "volumes", d);
+        if (!f->volume[k]) return ERR_MEMORY;
+        for (int b = 0; b < sections; b++)
+            f->volume[k][b] = k == KIND_WALL ? 1 : square(scene_solid_dp(s, b) / s->top.dp);
+    }
+    return ERR_OK;
+}
+
+/* Skillen et al. 2013 for the size, or the Mach number of 0.1 that Eq. 3 allows for (Sun et al. 2017). At
+ * the free surface, where the divergence of the positions falls from 2 to below 1.5, the shift fades out as
+ * it does in Dominguez et al. 2022. */
+double fluid_shift(const struct fluid *f, struct particles *p, double dt)
+{
+    const double full = 2, none = 1.5;
+    double longest2 = 0;
+#pragma omp parallel for schedule(static) num_threads(f->threads) reduction(max : longest2)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double fade = min2(1, max2(0, (p->div_r[i] - none) / (full - none)));
+        const double speed = f->k.shifting_speed > 0
+                                 ? f->k.shifting_speed
+                                 : sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+        const double size = -f->k.shifting * f->k.h * speed * dt * fade;
+        const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
+        p->x[i] += dx;
+        p->y[i] += dy;
+        longest2 = max2(longest2, dx * dx + dy * dy);
+    }
+    return sqrt(longest2);
+}
+
+/* Marks the nine cells around one of walls or structures; returns whether there is fluid in any of them. */
+static bool mark_around(struct fluid *f, const struct cells *c, int32_t cell)
+{
+    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    bool fluid = false;
+    for (int y = cy - 1; y <= cy + 1; y++) {
+        for (int x = cx - 1; x <= cx + 1; x++) {
+            const int32_t other = cell_at(c, x, y);
+            if (other < 0) continue;
+            f->near_dummies[other] = true;
+            fluid |= c->kind[KIND_FLUID].count[other] > 0;
+        }
+    }
+    return fluid;
+}
+
+void fluid_find_near(struct fluid *f, const struct cells *c)
+{
+    memset(f->near_dummies, 0, (size_t)c->nx * (size_t)c->ny * sizeof *f->near_dummies);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct cell_list *list = &c->kind[kind];
+        int32_t n = 0;
+        for (int32_t k = 0; k < list->n_active; k++)
+            if (mark_around(f, c, list->active[k]) || f->idle_is_work)
+                f->near_fluid[kind][n++] = list->active[k];
+        f->n_near_fluid[kind] = n;
+    }
+    f->walls_placed = false;
+}
+
+int32_t fluid_crowding(const struct cells *c)
+{
+    int32_t most = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int32_t k = 0; k < c->kind[kind].n_active; k++)
+            if (c->kind[kind].count[c->kind[kind].active[k]] > most)
+                most = c->kind[kind].count[c->kind[kind].active[k]];
+    return most;
+}
+
+static void pass_pack(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    f->sweeps->packed(f, kinds, c);
+}
+
+static void pass_slope(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    f->sweeps->slopes(f, kinds, c);
+}
+
+static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
+    f->walls_placed = !(f->effects & FX_MOTION) && !f->idle_is_work;
+}
+
+static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
+{
+    f->sweeps->rates(f, kinds, c);
+}
+
+/* The passes of an evaluation, in order; case/phases.def says which scenes have them. */
+static const struct pass {
+    enum phase phase;
+    void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+} passes[] = {
+    {PHASE_lanes, pass_pack},
+    {PHASE_slope, pass_slope},
+    {PHASE_wall, pass_wall},
+    {PHASE_fluid, pass_fluid},
+};
+
+void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                    double phase_seconds[PHASE_COUNT])
+{
+    double since = wall_clock();
+    for (size_t k = 0; k < COUNT_OF(passes); k++) {
+        if (!phase_runs(passes[k].phase, f->effects)) continue;
+        passes[k].run(f, kinds, c);
+        const double now = wall_clock();
+        phase_seconds[passes[k].phase] += now - since;
+        since = now;
+    }
+}
+
+void fluid_show(const struct fluid *f, struct particles *p)
+{
+    for (int64_t i = 0; i < p->n; i++) p->p[i] = eos_pressure(p->dens[i], f->k.rho0, f->k.c0);
+}

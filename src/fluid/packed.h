@@ -1,0 +1,180 @@
+/* SPDX-License-Identifier: MIT
+ * What the fluid brings to the sweeps: its lanes, and the renormalised gradient of its density. A part of the
+ * sweeps' text (fluid/sweep.h), once for each precision. */
+
+/* In units of h; the kernel ends at 2. */
+#define FAR 1e9
+
+/* The lanes of a cluster; those of its field m are lanes + m CLUSTER. */
+SPHFSI_INLINE real *cluster_packed(const struct packed_fields *packed, size_t cluster)
+{
+    return (real *)packed->cluster + cluster * (size_t)(packed->n * CLUSTER);
+}
+
+/* Ends a cluster behind its first `count` particles. */
+static void cluster_close(real *packed, int fields, int count)
+{
+    for (int r = count; r < CLUSTER; r++) {
+        for (int m = 0; m < fields; m++) packed[m * CLUSTER + r] = 0;
+        packed[PACKED_X * CLUSTER + r] = (real)FAR;
+    }
+}
+
+/* The box around the first `count` particles of a cluster. */
+SPHFSI_INLINE void cluster_box(const struct cluster_boxes *boxes, size_t cluster,
+                               const real *packed, int count)
+{
+    const real *const x = packed + PACKED_X * CLUSTER, *const y = packed + PACKED_Y * CLUSTER;
+    real low[2] = {x[0], y[0]}, high[2] = {x[0], y[0]};
+    for (int r = 1; r < count; r++) {
+        low[0] = x[r] < low[0] ? x[r] : low[0];
+        low[1] = y[r] < low[1] ? y[r] : low[1];
+        high[0] = x[r] > high[0] ? x[r] : high[0];
+        high[1] = y[r] > high[1] ? y[r] : high[1];
+    }
+    boxes->side[BOX_LEFT][cluster] = (float)low[0];
+    boxes->side[BOX_RIGHT][cluster] = (float)high[0];
+    boxes->side[BOX_DOWN][cluster] = (float)low[1];
+    boxes->side[BOX_UP][cluster] = (float)high[1];
+}
+
+/* Four values of a field, as those of a lane. */
+#define FOUR(field, i) ((four_double) * (const four_double_at *)&(field)[i])
+
+SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
+{
+    *(four_real *)(void *)(packed + (int)m * CLUSTER) = __builtin_convertvector(four, four_real);
+}
+
+/* Tait's pressure of four. */
+SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_constants *k)
+{
+    four_double pressure;
+    /* cppcheck-suppress uninitvar ; all of its items are set here */
+    for (int r = 0; r < 4; r++) pressure[r] = eos_pressure(dens[r], k->rho0, k->c0);
+    return pressure;
+}
+
+/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
+SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
+                                const double centre[2], real *out)
+{
+    const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
+    const four_double dens = FOUR(p->dens, i);
+    put_four(out, PACKED_X, (FOUR(p->x, i) - centre[0]) * inv_h);
+    put_four(out, PACKED_Y, (FOUR(p->y, i) - centre[1]) * inv_h);
+    put_four(out, PACKED_U, FOUR(p->vx, i));
+    put_four(out, PACKED_V, FOUR(p->vy, i));
+    put_four(out, PACKED_VOLUME, volume / (1 + dens));
+    put_four(out, PACKED_P, pressure_of(dens, &f->k));
+    put_four(out, PACKED_DENS, dens);
+}
+
+static void pack_cell(const struct fluid *f, const struct particles *p, const struct cells *c,
+                      int32_t cell)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct packed_fields *const packed = &f->packed[KIND_FLUID];
+    const double centre[2] = {cell_centre_x(c, cell), cell_centre_y(c, cell)};
+    const int32_t count = list->count[cell];
+    for (int32_t first = 0; first < count; first += CLUSTER) {
+        const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
+        const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
+        real *const out = cluster_packed(packed, cluster);
+        pack_cluster(f, p, list->start[cell] + first, centre, out);
+        if (own < CLUSTER) cluster_close(out, packed->n, own);
+        cluster_box(&packed->boxes, cluster, out, own);
+    }
+}
+
+static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
+                          const struct cells *c)
+{
+    const int32_t n = c->kind[KIND_FLUID].n_active;
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < n; k++)
+        pack_cell(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
+}
+
+/* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,
+ * (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W, times h. Where the neighbours
+ * span no plane (a determinant below a thousandth of the trace squared) it is taken as zero. */
+static void slopes_of(const struct neighbours *neighbours, const struct receiver *a,
+                      double slope[GROUPS][2])
+{
+    vreal xx[PARTS] = {{0}}, xy[PARTS] = {{0}}, yy[PARTS] = {{0}}, dx[PARTS] = {{0}},
+          dy[PARTS] = {{0}};
+    EACH_SEEN(neighbours, k, part) {
+        const uint32_t code = neighbours->code[k];
+        const real *const b = candidates(neighbours, code, part);
+        const struct separation r = separation_from(a, code, b);
+        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r.length, vset(1)));
+        const vreal w = lane(b, PACKED_VOLUME) * (t * t * t);
+        const vreal step = w * (a->dens - lane(b, PACKED_DENS));
+        xx[part] = vfma(w * r.x, r.x, xx[part]);
+        xy[part] = vfma(w * r.x, r.y, xy[part]);
+        yy[part] = vfma(w * r.y, r.y, yy[part]);
+        dx[part] = vfma(step, r.x, dx[part]);
+        dy[part] = vfma(step, r.y, dy[part]);
+    }
+    real A[GROUPS], B[GROUPS], C[GROUPS], U[GROUPS], V[GROUPS];
+    total(xx, A);
+    total(xy, B);
+    total(yy, C);
+    total(dx, U);
+    total(dy, V);
+    for (int g = 0; g < GROUPS; g++) {
+        const double det = (double)A[g] * (double)C[g] - square((double)B[g]);
+        const bool good = det > 1e-3 * square((double)A[g] + (double)C[g]);
+        slope[g][0] = good ? ((double)C[g] * (double)U[g] - (double)B[g] * (double)V[g]) / det : 0;
+        slope[g][1] = good ? ((double)A[g] * (double)V[g] - (double)B[g] * (double)U[g]) / det : 0;
+    }
+}
+
+static void slopes_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
+                           int32_t cell)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(f, c);
+    gather_around_cell(neighbour_scratch, f, c, KIND_FLUID, cell);
+    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+        const int32_t cluster = list->cluster[cell] + m, i = list->start[cell] + m * CLUSTER;
+        const int count = particles_in(list, cell, m);
+        const struct neighbours neighbours =
+            gather_clusters(neighbour_scratch, f, KIND_FLUID, KIND_FLUID, cluster);
+        for (int r = 0; r < count; r += GROUPS) {
+            const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster) + r;
+            struct receiver a = receiver_at(&sides, own);
+            a.dens = vspread(own + PACKED_DENS * CLUSTER);
+            double slope[GROUPS][2];
+            slopes_of(&neighbours, &a, slope);
+            for (int g = 0; g < GROUPS && r + g < count; g++) {
+                p->slope_x[i + r + g] = slope[g][0] / f->k.h;
+                p->slope_y[i + r + g] = slope[g][1] / f->k.h;
+            }
+        }
+    }
+}
+
+static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
+                          const struct cells *c)
+{
+    const struct cell_list *list = &c->kind[KIND_FLUID];
+    struct particles *const p = &kinds[KIND_FLUID];
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < list->n_active; k++) slopes_of_cell(f, p, c, list->active[k]);
+        /* Now that no other cell reads them. */
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t k = 0; k < list->n_active; k++) {
+        const int32_t cell = list->active[k];
+        for (int32_t m = 0; m < list->count[cell]; m++) {
+            const int32_t i = list->start[cell] + m;
+            real *const own = cluster_packed(&f->packed[KIND_FLUID],
+                                             (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
+                              m % CLUSTER;
+            own[PACKED_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
+            own[PACKED_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
+        }
+    }
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ * One inline function for each law between two particles of the fluid, over a pack of pairs. The
+ * text is compiled once for float and once for double lanes: the including file defines `real`,
+ * `vreal`, the verbs and lane(). Lengths are in units of h, so that
+ *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
+ * and every sum below is to be multiplied by -PAIR_SLOPE/h and, since a pair has the volumes of both,
+ * divided by that of the particle it is for. The clamp of t removes pairs beyond the
+ * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
+ * b flips the sign of a force and nothing else. */
+
+#define PAIR_SLOPE (KERNEL_SLOPE / 8)
+
+/* What a pair brings its receiver; its candidate it brings the opposite, but for the rate and the spread,
+ * which are even. With the volumes of both, over h^4. */
+struct exchange {
+    vreal ax, ay;                    /* Pa */
+    vreal rate;                      /* m/s */
+    vreal mixing;                    /* 1: of Eq. 6, without its factor 2 delta c0/(1 + dens_a) */
+    vreal grad_c_x, grad_c_y, div_r; /* 1: sums of slope xi and of slope |xi|^2 */
+};
+
+/* Constants of the sweep, spread over the lanes. */
+struct vector_constants {
+    vreal viscosity;      /* root of 2 alpha c0 rho0 of Eq. 7, (kg/(m^2 s))^(1/2) */
+    vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
+    vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
+    vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
+    vreal lowest;         /* pressure of walls and structures, Pa */
+    vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal eta2;           /* (eta/h)^2 = 0.01 */
+};
+
+/* Eq. 4a: a pair's term of the sum of V_b v_ab . grad W. */
+SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope * q->vx; }
+
+/* Eq. 4b and 21a, pressure: P_a + P_b, still to be multiplied by the slope of the pair. */
+SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
+{
+    return a->p + q->p;
+}
+
+/* 1/((|xi|^2 + eta^2)(2 + dens_a + dens_b)): the one division that viscosity and diffusion share; `both`
+ * is its second factor. */
+SPHFSI_INLINE vreal pair_damping(const struct receiver *a, const struct pair *q,
+                                 const struct vector_constants *k, vreal *both)
+{
+    *both = vset(2) + (a->dens + q->dens);
+    return vset(1) / ((q->r2 + k->eta2) * *both);
+}
+
+/* Eq. 7: rho_a rho_b Pi_ab, Pa, added to the pair's stress; acts on approaching pairs only. */
+SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q, vreal damping,
+                                 const struct vector_constants *k, vreal stress)
+{
+    const vreal both = a->viscous * vfma(k->viscosity, q->dens, k->viscosity);
+    return vfma(vmin(q->vx, vset(0)), both * damping, stress);
+}
+
+/* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
+SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
+                               const struct vector_constants *k)
+{
+    const vreal r = vsqrt(q->r2);
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r, vset(1)));
+    const vreal f = k->close * (t * t) * (t * t) * vfma(vset(2), r, vset(1)), f2 = f * f;
+    const vreal tension = vmin(a->p, vset(0)) + vmin(q->p, vset(0));
+    return -(k->tensile * tension) * (f2 * f2);
+}
+
+/* As in Zhang, Rezavand and Hu 2021 a fluid particle meets its own pressure p in a wall or structure, and
+ * what gravity and acceleration add to it on the way: Eq. 19 with it as the only fluid. (x, y) is its place
+ * from the dummy's in units of h, `lift` rho0 h (g - a) of the dummy. */
+SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
+                                 const struct vector_constants *k)
+{
+    return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
+}
+
+/* In the place of the boundary force of Monaghan 1994, between fluid and the dummies nearer than r0: a
+ * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2, inv =
+ * h^2/(r^2 + eta^2). */
+SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_constants *k)
+{
+    return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
+}
+
+/* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:
+ *   rho_a dv_a/dt = sum of V_b 2 nu rho0 x_ab . grad W/(|x|^2 + eta^2) v_ab.
+ * The pair's weight; the sums are of weight * v_ab, downwards. */
+SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vector_constants *k)
+{
+    return k->laminar * q->slope * (q->r2 * inv);
+}
+
+/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With
+ * FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
+ * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
+ * of both particles' gradients. */
+SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
+                                 const struct vector_constants *k, unsigned fx)
+{
+    vreal step = a->dens - q->dens;
+    if (fx & FX_FOURTAKAS) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    if (fx & FX_ANTUONO)
+        step = step - vset((real)0.5) *
+                          vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
+    return step * (q->slope * (q->r2 * inv));
+}
+
+/* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
+ * - sum of V_b x_ab . grad W. */
+SPHFSI_INLINE void fx_concentration(const struct pair *q, struct exchange *e)
+{
+    e->grad_c_x = q->slope * q->x;
+    e->grad_c_y = q->slope * q->y;
+    e->div_r = q->slope * q->r2;
+}
+
+/* Eq. 28b: the pair's rate of approach or parting. */
+SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }

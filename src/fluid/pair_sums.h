@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT
+ * Sums over the pairs of the fluid. A pair of clusters in the same share of cells is taken once. Its
+ * receivers, of the cluster whose turn it is, have what it brings them in registers; what it brings its
+ * candidates is left for their turn. A part of the sweeps' text (fluid/sweep.h), once
+ * for each precision. */
+
+/* Vectors of sums of a cluster's receivers. */
+typedef vreal of_cluster[ROWS][PARTS];
+
+/* What the receivers of a cluster sum over their candidates. */
+struct cluster_sums {
+    of_cluster ax, ay, rate, mixing, grad_c_x, grad_c_y, div_r;
+    vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
+};
+
+SPHFSI_INLINE void add_concentration(struct cluster_sums *s, int row, int part,
+                                     const struct exchange *e)
+{
+    s->grad_c_x[row][part] = s->grad_c_x[row][part] + e->grad_c_x;
+    s->grad_c_y[row][part] = s->grad_c_y[row][part] + e->grad_c_y;
+    s->div_r[row][part] = s->div_r[row][part] + e->div_r;
+}
+
+/* Adds what pairs bring their receivers. */
+SPHFSI_INLINE void add_exchange(struct cluster_sums *s, int row, int part, const struct exchange *e,
+                                unsigned fx)
+{
+    s->ax[row][part] = s->ax[row][part] + e->ax;
+    s->ay[row][part] = s->ay[row][part] + e->ay;
+    s->rate[row][part] = s->rate[row][part] + e->rate;
+    if (fx & FX_DIFFUSION) s->mixing[row][part] = s->mixing[row][part] + e->mixing;
+    if (fx & FX_SHIFTING) add_concentration(s, row, part, e);
+}
+
+/* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the candidates. */
+SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b)
+{
+    struct pair q = pair_load(a, code, b);
+    q.slope = q.slope * a->volume;
+    q.p = lane(b, PACKED_P);
+    return q;
+}
+
+/* What pairs of the receivers with candidates exchange; fx is a constant where the kernel is stamped. */
+SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
+                                            const struct vector_constants *k, unsigned fx,
+                                            vreal *approach)
+{
+    struct exchange e;
+    struct pair q = pair_between(a, code, b);
+    e.rate = fx_continuity(&q);
+    vreal stress = fx_pressure(a, &q), inv;
+    if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
+        q.dens = lane(b, PACKED_DENS);
+        if (fx & FX_ANTUONO) {
+            q.slope_x = lane(b, PACKED_SLOPE_X);
+            q.slope_y = lane(b, PACKED_SLOPE_Y);
+        }
+        vreal both;
+        const vreal damping = pair_damping(a, &q, k, &both);
+        inv = damping * both;
+        if (fx & FX_VISCOSITY) stress = fx_viscosity(a, &q, damping, k, stress);
+        if (fx & FX_DIFFUSION) e.mixing = fx_diffusion(a, &q, inv, k, fx);
+    } else {
+        inv = vset(1) / (q.r2 + k->eta2);
+    }
+    if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
+    const vreal push = q.slope * stress;
+    e.ax = push * q.x;
+    e.ay = push * q.y;
+    if (fx & FX_LAMINAR) {
+        const vreal weight = fx_laminar(&q, inv, k);
+        e.ax = e.ax - weight * q.u;
+        e.ay = e.ay - weight * q.v;
+    }
+    if (fx & FX_SHIFTING) fx_concentration(&q, &e);
+    *approach = vmax(*approach, fx_approach(&q, inv));
+    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
+    return e;
+}
+
+/* Items that are left for a cluster; and where one of the sums lies, `at` the first. */
+SPHFSI_INLINE size_t deferred_stride(unsigned fx)
+{
+    return (size_t)pair_sums(fx) * CLUSTER * CLUSTER;
+}
+#define DEFERRED(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
+
+/* The place of a cluster of the share in what is left, behind that of those nobody asks for. */
+SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
+{
+    return cluster + 1 - (size_t)chunk->range.first;
+}
+
+SPHFSI_INLINE void defer_add(real *at, vreal more) { vstore(at, vload(at) + more); }
+
+/* Leaves what pairs bring their candidates. */
+SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, unsigned fx)
+{
+    defer_add(DEFERRED(at, SUM_X), e->ax);
+    defer_add(DEFERRED(at, SUM_Y), e->ay);
+    defer_add(DEFERRED(at, SUM_RATE), e->rate);
+    if (fx & FX_DIFFUSION) defer_add(DEFERRED(at, SUM_MIXING), e->mixing);
+    if (!(fx & FX_SHIFTING)) return;
+    defer_add(DEFERRED(at, SUM_GRAD_C_X), e->grad_c_x);
+    defer_add(DEFERRED(at, SUM_GRAD_C_Y), e->grad_c_y);
+    defer_add(DEFERRED(at, SUM_DIV_R), e->div_r);
+}
+
+/* Sums over the fluid that is seen. What is not ahead leaves it at the first place, where nobody looks. */
+SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
+                             const struct vector_constants *k, unsigned fx,
+                             const struct chunk *chunk, struct cluster_sums *sums)
+{
+    EACH_SEEN(neighbours, m, part) {
+        const uint32_t code = neighbours->code[m];
+        const real *const b = candidates(neighbours, code, part);
+        const size_t place =
+            deferred_slot(chunk, neighbour_number(code)) * neighbour_is_ahead(code);
+        real *const at = chunk->deferred + place * deferred_stride(fx) + part * LANES;
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_fluid(&a[row], code, b, k, fx, &sums->approach);
+            add_exchange(sums, row, part, &e, fx);
+            defer_sum(at + row * GROUPS * CLUSTER, &e, fx);
+        }
+    }
+}
+
+/* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
+SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
+                                            const struct vector_constants *k, unsigned fx,
+                                            vreal *approach)
+{
+    struct exchange e;
+    struct pair q = pair_between(a, code, b);
+    e.rate = fx_continuity(&q);
+    const vreal inv = vset(1) / (q.r2 + k->eta2);
+    vreal stress = fx_pressure(a, &q);
+    if (fx & FX_ONE_SIDED)
+        stress = a->p + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
+                                     lane(b, PACKED_LIFT_Y), k);
+    if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
+    const vreal push = q.slope * stress;
+    e.ax = push * q.x;
+    e.ay = push * q.y;
+    if (fx & FX_NO_SLIP) {
+        const vreal weight = lane(b, PACKED_STICKS) * fx_laminar(&q, inv, k);
+        e.ax = e.ax - weight * (a->u - lane(b, PACKED_MIRROR_U));
+        e.ay = e.ay - weight * (a->v - lane(b, PACKED_MIRROR_V));
+    }
+    if (fx & FX_SHIFTING) fx_concentration(&q, &e);
+    *approach = vmax(*approach, fx_approach(&q, inv));
+    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
+    return e;
+}
+
+/* Sums over walls or structures that are seen, which have a sweep of their own for what it brings them. */
+SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct receiver a[ROWS],
+                               const struct vector_constants *k, unsigned fx,
+                               struct cluster_sums *sums)
+{
+    EACH_SEEN(neighbours, m, part) {
+        const uint32_t code = neighbours->code[m];
+        const real *const b = candidates(neighbours, code, part);
+        for (int row = 0; row < ROWS; row++) {
+            const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
+            add_exchange(sums, row, part, &e, fx & ~(unsigned)FX_DIFFUSION);
+        }
+    }
+}
+
+/* A sum of the particles of a cluster as receivers. */
+SPHFSI_INLINE four_double own_sum(const of_cluster own)
+{
+    real sum[CLUSTER];
+    for (int row = 0; row < ROWS; row++) total(own[row], sum + row * GROUPS);
+    return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double);
+}
+
+/* The same sum of what those before them have left for them; which leaves zeros for the next share. */
+SPHFSI_INLINE four_double take_deferred(real *at)
+{
+    four_real *const by = (four_real *)(void *)at; /* [receiver] */
+    const four_real sum = (by[0] + by[2]) + (by[1] + by[3]);
+    memset(at, 0, CLUSTER * CLUSTER * sizeof *at);
+    return __builtin_convertvector(sum, four_double);
+}

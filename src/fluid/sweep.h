@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ * The sweeps of the fluid, one text for both precisions: fluid/sweep_mixed.c and fluid/sweep_double.c
+ * include it after the words of base/real_float.h and base/real_double.h. Four particles of a cell
+ * that lie close together, a cluster, look at the clusters near them. What a thread writes belongs to
+ * its share of the cells, and shares do not depend on the number of threads, so that the bits do not;
+ * and each lane of a group of four sums its own candidates, so that they do not depend on how many
+ * groups a vector holds. */
+
+#include <math.h>
+#include <string.h>
+
+#include "fluid/eos.h"
+#include "fluid/fluid.h"
+#include "particles/kernel.h"
+
+#include "fluid/neighbours.h"
+/* After what they are written with. */
+#include "fluid/pair_laws.h"
+#include "fluid/packed.h"
+
+#define ETA2 0.01           /* (eta/h)^2 */
+#define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
+
+static struct vector_constants constants_of_sweep(const struct fluid *f)
+{
+    const struct fluid_constants *const fk = &f->k;
+    const double per_c2 = fk->h / square(fk->c0);
+    return (struct vector_constants){
+        .viscosity = vset((real)sqrt(2 * fk->alpha * fk->c0 * fk->rho0)),
+        .laminar = vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
+        .tensile = vset((real)fk->tensile),
+        .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
+        .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
+        .lowest = vset((real)fk->lowest_wall_pressure),
+        .gx = vset((real)(fk->gravity[0] * per_c2)),
+        .gy = vset((real)(fk->gravity[1] * per_c2)),
+        .eta2 = vset((real)ETA2),
+    };
+}
+
+/* The kernel without its factor alpha_D, at distances of q h. */
+SPHFSI_INLINE vreal kernel_of(vreal q)
+{
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), q, vset(1))), t2 = t * t;
+    return t2 * t2 * vfma(vset(2), q, vset(1));
+}
+
+/* Whether there is fluid in reach of a dummy, by the sum of the kernel over it. */
+SPHFSI_INLINE bool has_fluid_near(real weight) { return (double)weight > 1e-12; }
+
+#include "fluid/dummies.h"
+
+/* The part of the fluid that a thread takes at once. */
+struct chunk {
+    struct cluster_range range;
+    real *deferred; /* sight.left */
+};
+
+/* Largest values over a share: the lanes are searched once. */
+struct chunk_maxima {
+    vreal approach;
+    double acceleration2[CLUSTER];
+};
+
+#include "fluid/pair_sums.h"
+
+/* Stores the first `count` of four. */
+SPHFSI_INLINE void store_four(double *to, four_double four, int count)
+{
+    if (count == CLUSTER)
+        *(four_double_at *)to = four;
+    else
+        for (int r = 0; r < count; r++) to[r] = four[r];
+}
+
+/* Writes the rates of `count` particles from i on, which `left` has sums of: the factors that they lack. */
+SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
+                               int count, const struct cluster_sums *s, real *deferred, unsigned fx,
+                               double acceleration2[CLUSTER])
+{
+    const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
+    const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
+    const four_double full = 1 + FOUR(p->dens, i);
+    const four_double ax =
+        push * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
+    const four_double ay =
+        push * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
+    four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
+    if (fx & FX_DIFFUSION)
+        rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
+    store_four(p->ax + i, ax, count);
+    store_four(p->ay + i, ay, count);
+    store_four(p->ddens + i, -slope * full * rate, count);
+    const four_double a2 = ax * ax + ay * ay;
+    for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
+    if (!(fx & FX_SHIFTING)) return;
+    const four_double grad_c_x =
+        own_sum(s->grad_c_x) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_X));
+    const four_double grad_c_y =
+        own_sum(s->grad_c_y) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_Y));
+    const four_double div_r = own_sum(s->div_r) + take_deferred(DEFERRED(deferred, SUM_DIV_R));
+    store_four(p->grad_c_x + i, -slope * full * grad_c_x, count);
+    store_four(p->grad_c_y + i, -slope * full * grad_c_y, count);
+    store_four(p->div_r + i, slope * k->h * full * div_r, count);
+}
+
+/* Receivers of the fluid from their lanes on. */
+SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
+                                       const struct vector_constants *k, unsigned fx)
+{
+    struct receiver a = receiver_at(sides, own);
+    a.u = vspread(own + PACKED_U * CLUSTER);
+    a.v = vspread(own + PACKED_V * CLUSTER);
+    a.p = vspread(own + PACKED_P * CLUSTER);
+    a.dens = vspread(own + PACKED_DENS * CLUSTER);
+    a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
+    if (fx & FX_VISCOSITY) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
+    if (fx & FX_ANTUONO) {
+        a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
+        a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
+    }
+    return a;
+}
+
+/* A cluster of `count` particles from i on. */
+SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, int32_t i,
+                                    int count, int32_t cluster,
+                                    const struct neighbours neighbours[KIND_COUNT],
+                                    const struct cell_sides *sides,
+                                    const struct vector_constants *k, unsigned fx,
+                                    const struct chunk *chunk, struct chunk_maxima *top)
+{
+    const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster);
+    struct receiver a[ROWS];
+    for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
+    struct cluster_sums s = {.approach = top->approach};
+    sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
+    top->approach = s.approach;
+    real *const deferred =
+        chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
+    if (count == CLUSTER) /* a number that the compiler knows */
+        rates_store(&f->k, p, i, CLUSTER, &s, deferred, fx, top->acceleration2);
+    else
+        rates_store(&f->k, p, i, count, &s, deferred, fx, top->acceleration2);
+}
+
+SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
+                                 int32_t cell, const struct vector_constants *k, unsigned fx,
+                                 const struct chunk *chunk, struct chunk_maxima *top)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(f, c);
+    bool around[KIND_COUNT] = {false};
+    clusters_ahead_around(&neighbour_scratch->around[KIND_FLUID], &f->packed[KIND_FLUID].boxes, c,
+                          KIND_FLUID, cell, f->k.h, chunk->range);
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        around[kind] = f->near_dummies[cell] && f->n_near_fluid[kind];
+        if (around[kind]) gather_around_cell(neighbour_scratch, f, c, (enum kind)kind, cell);
+    }
+    for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) { /* as they come ahead */
+        const int32_t cluster = list->cluster[cell] + m;
+        struct neighbours neighbours[KIND_COUNT];
+        neighbours[KIND_FLUID] = gather_clusters_ahead(neighbour_scratch, f);
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            neighbours[kind] = around[kind] ? gather_clusters(neighbour_scratch, f, (enum kind)kind,
+                                                              KIND_FLUID, cluster)
+                                            : (struct neighbours){.n = 0};
+        rates_of_cluster(f, p, list->start[cell] + m * CLUSTER, particles_in(list, cell, m),
+                         cluster, neighbours, &sides, k, fx, chunk, top);
+    }
+}
+
+/* A share of the active cells, first to end - 1. */
+SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, const struct cells *c,
+                                  int32_t first, int32_t end, const struct vector_constants *k,
+                                  unsigned fx, struct fluid_extremes *top)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const struct chunk chunk = {clusters_of(list, first, end),
+                                f->neighbour_scratch[thread_index()].deferred};
+    struct chunk_maxima here = {.approach = {0}};
+    for (int32_t m = first; m < end; m++)
+        rates_of_cell(f, p, c, list->active[m], k, fx, &chunk, &here);
+    top->approach = max2(top->approach, (double)vtop(here.approach));
+    for (int r = 0; r < CLUSTER; r++)
+        top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
+}
+
+/* A share of the active cells. Stamped outside of any parallel region: the compiler turns the body of a
+ * region into a function of its own before it can see that fx is a constant. */
+typedef void SWEEP(chunk)(const struct fluid *f, struct particles *p, const struct cells *c,
+                          int32_t first, int32_t end, const struct vector_constants *k,
+                          struct fluid_extremes *top);
+
+#define VARIANT(variant, set)                                                             \
+    static void SWEEP(share_##variant)(const struct fluid *f, struct particles *p,        \
+                                       const struct cells *c, int32_t first, int32_t end, \
+                                       const struct vector_constants *k,                  \
+                                       struct fluid_extremes *top)                        \
+    {                                                                                     \
+        const struct vector_constants constants = *k;                                     \
+        rates_of_chunk(f, p, c, first, end, &constants, (set), top);                      \
+    }
+#include "fluid/variants.def"
+VARIANT(any, f->effects &PAIR_EFFECTS)
+#undef VARIANT
+
+static void all_chunks(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
+                       SWEEP(chunk) * chunk)
+{
+    const int32_t n_active = c->kind[KIND_FLUID].n_active;
+    const int32_t shares = fluid_chunk_count(n_active);
+    const struct vector_constants k = constants_of_sweep(f);
+    double acceleration2 = 0, approach = 0;
+#pragma omp parallel for schedule(static) num_threads(f->threads) \
+    reduction(max                                                 \
+              : acceleration2, approach)
+    for (int32_t m = 0; m < shares; m++) {
+        const int32_t first = fluid_chunk_start(n_active, m),
+                      end = fluid_chunk_start(n_active, m + 1);
+        if (first == end) continue;
+        struct fluid_extremes top = {acceleration2, approach};
+        chunk(f, &kinds[KIND_FLUID], c, first, end, &k, &top);
+        acceleration2 = top.acceleration2;
+        approach = top.approach;
+    }
+    f->extremes = (struct fluid_extremes){acceleration2, approach};
+}
+
+#define VARIANT(variant, set)                                                                \
+    static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT], \
+                                       const struct cells *c)                                \
+    {                                                                                        \
+        all_chunks(f, kinds, c, SWEEP(share_##variant));                                     \
+    }
+#include "fluid/variants.def"
+VARIANT(any, ANY_EFFECTS)
+#undef VARIANT
+
+#define SWEEPS_ROW(variant, set)                                                          \
+    {                                                                                     \
+#variant " (" SWEEP_LABEL ")", (set), sizeof(real), SWEEP(packed), SWEEP(slopes), \
+            SWEEP(dummies), SWEEP(rates_##variant)                                        \
+    }
+
+/* The generic kernel stands last. */
+const struct fluid_sweeps SWEEP(fluid_sweeps)[] = {
+#define VARIANT(variant, set) SWEEPS_ROW(variant, set),
+#include "fluid/variants.def"
+#undef VARIANT
+    SWEEPS_ROW(any, ANY_EFFECTS),
+};

@@ -1,0 +1,111 @@
+/* SPDX-License-Identifier: MIT */
+#include "fluid/wall_motion.h"
+
+#include <string.h>
+
+static void find_range(struct moving_wall *b, const struct particles *walls)
+{
+    while (b->first < walls->n && walls->body[b->first] != b->section) b->first++;
+    b->end = b->first;
+    while (b->end < walls->n && walls->body[b->end] == b->section) b->end++;
+}
+
+enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
+                            const struct particles *walls, struct diag *d)
+{
+    memset(m, 0, sizeof *m);
+    m->idle_is_work = s->numerics.idle == IDLE_WORK;
+    m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
+    if (!m->body) return ERR_MEMORY;
+    for (int k = 0; k < s->n_wall; k++) {
+        const int motion = s->wall[k].motion[0] ? scene_find_motion(s, s->wall[k].motion) : -1;
+        if (motion < 0) continue;
+        m->body[m->n] = (struct moving_wall){.section = k, .motion = motion};
+        find_range(&m->body[m->n++], walls);
+    }
+    return ERR_OK;
+}
+
+static bool same_place(const struct motion_state *a, const struct motion_state *b)
+{
+    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
+    return memcmp(a, b, sizeof *a) == 0;
+}
+
+static void turn_body(const struct moving_wall *b, struct particles *p)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t i = b->first; i < b->end; i++) {
+        const struct motion_point at = motion_of_point(&b->placed, p->X[i], p->Y[i]);
+        p->x[i] = at.x[0];
+        p->y[i] = at.x[1];
+        p->vx[i] = at.v[0];
+        p->vy[i] = at.v[1];
+        p->ax[i] = at.a[0];
+        p->ay[i] = at.a[1];
+    }
+}
+
+static void place_body(const struct moving_wall *b, struct particles *p)
+{
+    const struct motion_state *const m = &b->placed;
+    if (m->angle != 0 || m->rate != 0 || m->angular_acceleration != 0) {
+        turn_body(b, p);
+        return;
+    }
+#pragma omp parallel for schedule(static)
+    for (int64_t i = b->first; i < b->end; i++) {
+        p->x[i] = p->X[i] + m->d[0];
+        p->y[i] = p->Y[i] + m->d[1];
+        p->vx[i] = m->v[0];
+        p->vy[i] = m->v[1];
+        p->ax[i] = m->a[0];
+        p->ay[i] = m->a[1];
+    }
+}
+
+void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct particles *walls,
+                       double time)
+{
+    for (int k = 0; k < m->n; k++) {
+        struct moving_wall *const b = &m->body[k];
+        const struct motion_state now = motion_at(s, b->motion, time);
+        if (b->known && same_place(&now, &b->placed) && !m->idle_is_work) continue;
+        b->placed = now;
+        b->known = true;
+        b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
+        m->moved = true;
+        place_body(b, walls);
+    }
+}
+
+void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls)
+{
+    if (m->idle_is_work || m->moved) cells_sort(c, KIND_WALL, walls);
+    m->moved = false;
+}
+
+double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls)
+{
+    double top = 0;
+    for (int k = 0; k < m->n; k++) {
+        const struct moving_wall *const b = &m->body[k];
+        if (b->rests) continue;
+#pragma omp parallel for schedule(static) reduction(max : top)
+        for (int64_t i = b->first; i < b->end; i++)
+            top = max2(top, walls->vx[i] * walls->vx[i] + walls->vy[i] * walls->vy[i]);
+    }
+    return top;
+}
+
+double wall_motion_power(const struct wall_motion *m, const struct particles *walls)
+{
+    double power = 0;
+    for (int k = 0; k < m->n; k++) {
+        const struct moving_wall *const b = &m->body[k];
+        if (b->rests) continue;
+        for (int64_t i = b->first; i < b->end; i++)
+            power -= walls->fx[i] * walls->vx[i] + walls->fy[i] * walls->vy[i];
+    }
+    return power;
+}

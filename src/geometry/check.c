@@ -1,0 +1,203 @@
+/* SPDX-License-Identifier: MIT
+ * Shapes that the lattice cannot represent as they are drawn: the user is told what was made of
+ * them. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+#include "case/effects.h"
+
+#include <math.h>
+
+static double cells_to(const struct region *region, int c, double x)
+{
+    return (x - region->origin[c]) / region->dp;
+}
+
+static bool on_lattice(double cells)
+{
+    return fabs(cells - round(cells)) <= 1e-6 * max2(1, 1e-6 * fabs(cells));
+}
+
+/* Number of lattice columns (c = 0) or rows (c = 1) between two coordinates. */
+static double points_between(const struct region *region, int c, double low, double high)
+{
+    return ceil(cells_to(region, c, high) - 0.5 - 1e-6) -
+           ceil(cells_to(region, c, low) - 0.5 - 1e-6);
+}
+
+static void warn_box(struct sampler *g, const struct region *region, const struct shape *shape)
+{
+    const double dp = region->dp;
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, shape->line, place);
+    for (int c = 0; c < 2; c++) {
+        const double low = shape->pt[0][c], high = shape->pt[1][c];
+        const double a = cells_to(region, c, low), b = cells_to(region, c, high);
+        if (on_lattice(a) && on_lattice(b)) continue;
+        const double n = points_between(region, c, low, high);
+        const double from = region->origin[c] + ceil(a - 0.5 - 1e-6) * dp;
+        diag_warn(g->diag,
+                  "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
+                  "sampled as %.0f %s from %g to %g m; edges at %g and %g m would fit",
+                  place, kind_names[region->kind], region->name, "xy"[c], low, high, b - a,
+                  c ? "high" : "wide", n, c ? "rows" : "columns", from, from + n * dp,
+                  region->origin[c] + round(a) * dp, region->origin[c] + round(b) * dp);
+    }
+}
+
+/* The first upright or level edge that lies off the lattice. */
+static void warn_edges(struct sampler *g, const struct region *region, int shape)
+{
+    for (int k = 0; k < region->add.n; k++) {
+        const struct outline *o = &region->add.item[k];
+        if (region->add.shape[k] != shape) continue;
+        for (int j = 0; j < o->n; j++) {
+            const double *a = o->pt[j], *b = o->pt[(j + 1) % o->n];
+            const int c = a[0] == b[0] ? 0 : 1;
+            const double cells = cells_to(region, c, a[c]);
+            if (a[c] != b[c] || on_lattice(cells)) continue;
+            char place[LOCATION_TEXT];
+            scene_location(g->scene, region->list->item[shape].line, place);
+            const double fit = region->origin[c] + round(cells) * region->dp;
+            diag_warn(g->diag,
+                      "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
+                      "%c = %g m would fit",
+                      place, kind_names[region->kind], region->name, "xy"[c], a[c], region -> dp,
+                      "xy"[c], fit);
+            return;
+        }
+    }
+}
+
+static double thinnest(const struct shape *shape)
+{
+    switch (shape->kind) {
+    case SHAPE_BOX:
+        return min2(shape->pt[1][0] - shape->pt[0][0], shape->pt[1][1] - shape->pt[0][1]);
+    case SHAPE_POLYLINE: return fabs(shape->size);
+    case SHAPE_CIRCLE: return 2 * shape->size;
+    case SHAPE_POLYGON: break;
+    }
+    return HUGE_VAL;
+}
+
+/* Fluid feels fluid behind a body that is thinner than the kernel's reach: through the pressure of the
+ * body's particles, unless each fluid particle meets its own in them; and directly, where the nearest fluid
+ * on both sides, one spacing further apart than the body is thick, is within reach. */
+static void warn_see_through(struct sampler *g, const struct region *region, int line, double thick)
+{
+    const struct scene *const s = g->scene;
+    const double reach = 2 * s->h * (1 - 1e-9);
+    const bool directly = thick + s->top.dp < reach;
+    if (s->n_fluid == 0 || thick >= reach || (s->numerics.sides == SIDES_ONE && !directly)) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, line, place);
+    diag_warn(g->diag,
+              "%s: [%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid "
+              "would feel other fluid behind it; %s would mend it",
+              place, kind_names[region->kind], region->name, thick, 2 * s->h,
+              directly ? "a finer dp" : "numerics.sides = one");
+}
+
+/* Where the case says so, the fluid's force is held: bodies no heavier than the fluid, and those of up to six
+ * particles across of any density that was tried (docs/theory.md, Sec. 7), were driven by that. */
+static void warn_held(struct sampler *g, const struct region *region, double across)
+{
+    const struct scene *const s = g->scene;
+    if (s->n_fluid == 0 || s->numerics.multirate == MULTIRATE_OFF ||
+        s->numerics.interface != INTERFACE_HELD)
+        return;
+    const double ratio = s->solid[region->body].density / s->rho0;
+    if (ratio > 1 && across > 6) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, region->line, place);
+    diag_warn(
+        g->diag,
+        "%s: [solid %s], %.3g times as dense as the fluid and %.0f particles thick, may gain "
+        "energy from nowhere where it takes sub-steps and the fluid's force is held over them; "
+        "numerics.interface = impedance mends it",
+        place, region->name, ratio, across);
+}
+
+static enum err check_solid(struct sampler *g, const struct region *region)
+{
+    double across = HUGE_VAL;
+    for (int c = 0; c < 2; c++)
+        across = min2(across, points_between(region, c, region->low[c], region->high[c]));
+    for (int k = 0; k < region->list->n; k++)
+        if (region->list->item[k].kind == SHAPE_POLYLINE)
+            across = min2(across, round(thinnest(&region->list->item[k]) / region->dp));
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, region->line, place);
+    if (across < 2)
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: [solid %s] is %.0f particle thick at dp = %g m; "
+                         "bending needs at least 2, better 4",
+                         place, region->name, across, region->dp);
+    if (across < 4)
+        diag_warn(g->diag,
+                  "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
+                  "will be inaccurate",
+                  place, region->name, across, region->dp);
+    warn_held(g, region, across);
+    if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
+    /* At the default h/dp this is said of two particles across only, which is one warning too many. */
+    if (across > 2 || (across + 1) * region->dp < 2 * g->scene->h)
+        warn_see_through(g, region, region->line, across * region->dp);
+    return ERR_OK;
+}
+
+/* Boxes of walls and solids that leave a slit which no particle fits in. */
+static void warn_slit(struct sampler *g, const struct region *a, const struct shape *p,
+                      const struct region *b, const struct shape *q)
+{
+    if (p->kind != SHAPE_BOX || q->kind != SHAPE_BOX) return;
+    const double dp = g->scene->top.dp;
+    for (int c = 0; c < 2; c++) {
+        const double slit = max2(q->pt[0][c] - p->pt[1][c], p->pt[0][c] - q->pt[1][c]);
+        const double shared =
+            min2(p->pt[1][1 - c], q->pt[1][1 - c]) - max2(p->pt[0][1 - c], q->pt[0][1 - c]);
+        if (slit <= 1e-6 * dp || slit >= dp * (1 - 1e-6) || shared <= 1e-6 * dp) continue;
+        char place[LOCATION_TEXT];
+        scene_location(g->scene, q->line, place);
+        diag_warn(g->diag,
+                  "%s: between [%s %s] and [%s %s] is a slit of %g m, narrower than dp = %g m: "
+                  "no fluid passes there",
+                  place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit, dp);
+        return;
+    }
+}
+
+static void warn_slits(struct sampler *g)
+{
+    enum { MAX_PAIRS = 1000000 }; /* a courtesy: not for scenes made of thousands of boxes */
+    long pairs = 0;
+    for (int i = 0; i < g->n_regions && g->scene->n_fluid; i++) {
+        for (int j = i; j < g->n_regions; j++) {
+            const struct region *a = &g->regions[i], *b = &g->regions[j];
+            if (b->kind == KIND_FLUID) break;
+            for (int k = 0; k < a->list->n; k++)
+                for (int l = i == j ? k + 1 : 0; l < b->list->n && pairs++ < MAX_PAIRS; l++)
+                    warn_slit(g, a, &a->list->item[k], b, &b->list->item[l]);
+        }
+    }
+}
+
+enum err geometry_check_regions(struct sampler *g)
+{
+    for (int r = 0; r < g->n_regions; r++) {
+        const struct region *region = &g->regions[r];
+        for (int k = 0; k < region->list->n; k++) {
+            const struct shape *shape = &region->list->item[k];
+            if (shape->kind == SHAPE_BOX)
+                warn_box(g, region, shape);
+            else
+                warn_edges(g, region, k);
+            if (region->kind == KIND_WALL)
+                warn_see_through(g, region, shape->line, thinnest(shape));
+        }
+        if (region->kind == KIND_SOLID) TRY(check_solid(g, region));
+    }
+    warn_slits(g);
+    return ERR_OK;
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+#include "geometry/outline.h"
+
+#include "case/case.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A joint sharper than this many thicknesses long is refused. */
+static const double max_mitre = 4;
+
+static void set_bounds(struct outline *o)
+{
+    for (int c = 0; c < 2; c++) {
+        o->low[c] = o->n ? o->pt[0][c] : o->centre[c] - o->radius;
+        o->high[c] = o->n ? o->pt[0][c] : o->centre[c] + o->radius;
+        for (int k = 1; k < o->n; k++) {
+            o->low[c] = min2(o->low[c], o->pt[k][c]);
+            o->high[c] = max2(o->high[c], o->pt[k][c]);
+        }
+    }
+}
+
+/* Unit normal to the left of the segment from point k. */
+static void left_normal(const struct shape *p, int k, double normal[2])
+{
+    const double dx = p->pt[k + 1][0] - p->pt[k][0], dy = p->pt[k + 1][1] - p->pt[k][1];
+    const double length = hypot(dx, dy);
+    normal[0] = -dy / length;
+    normal[1] = dx / length;
+}
+
+static bool polyline_closed(const struct shape *p)
+{
+    const double *a = p->pt[0], *b = p->pt[p->n - 1];
+    return p->n > 3 && a[0] == b[0] && a[1] == b[1];
+}
+
+/* The far side's point over point k, on the bisector of its two segments; false: too sharp. */
+static bool mitre(const struct shape *p, int k, double far[2])
+{
+    const bool closed = polyline_closed(p);
+    const int last = p->n - 2; /* segment */
+    int before = k - 1, after = k;
+    if (k == 0) before = closed ? last : 0;
+    if (k == p->n - 1) after = closed ? 0 : last;
+    double a[2], b[2];
+    left_normal(p, before, a);
+    left_normal(p, after, b);
+    /* The sum of the normals over 1 + their cosine has length 1/cos of half the turn. */
+    const double scale = 1 + a[0] * b[0] + a[1] * b[1];
+    if (scale < 2 / square(max_mitre)) return false;
+    far[0] = p->pt[k][0] + p->size * (a[0] + b[0]) / scale;
+    far[1] = p->pt[k][1] + p->size * (a[1] + b[1]) / scale;
+    return true;
+}
+
+static enum err cut_polyline(const struct scene *s, const struct shape *p, struct outline *pieces,
+                             struct arena *a, struct diag *d)
+{
+    char place[LOCATION_TEXT];
+    scene_location(s, p->line, place);
+    double(*far)[2] = arena_alloc(a, (size_t)p->n, sizeof *far, "polyline", d);
+    double(*corners)[2] = arena_alloc(a, 4 * (size_t)p->n, sizeof *corners, "polyline", d);
+    if (!far || !corners) return ERR_MEMORY;
+    for (int k = 0; k < p->n; k++)
+        if (!mitre(p, k, far[k]))
+            return diag_fail(d, ERR_INPUT,
+                             "%s: the polyline turns too sharply at its point %d "
+                             "(%g, %g)",
+                             place, k + 1, p->pt[k][0], p->pt[k][1]);
+    for (int k = 0; k + 1 < p->n; k++) {
+        const double along = (p->pt[k + 1][0] - p->pt[k][0]) * (far[k + 1][0] - far[k][0]) +
+                             (p->pt[k + 1][1] - p->pt[k][1]) * (far[k + 1][1] - far[k][1]);
+        if (along <= 0)
+            return diag_fail(d, ERR_INPUT,
+                             "%s: segment %d of the polyline is too short for a "
+                             "thickness of %g m: the joints at its ends cross",
+                             place, k + 1, fabs(p->size));
+        pieces[k].n = 4;
+        pieces[k].pt = corners + 4 * k;
+        memcpy(pieces[k].pt[0], p->pt[k], sizeof *far);
+        memcpy(pieces[k].pt[1], p->pt[k + 1], sizeof *far);
+        memcpy(pieces[k].pt[2], far[k + 1], sizeof *far);
+        memcpy(pieces[k].pt[3], far[k], sizeof *far);
+    }
+    return ERR_OK;
+}
+
+static enum err cut_shape(const struct scene *s, const struct shape *shape, struct outline *piece,
+                          struct arena *a, struct diag *d)
+{
+    switch (shape->kind) {
+    case SHAPE_CIRCLE:
+        memcpy(piece->centre, shape->pt[0], sizeof piece->centre);
+        piece->radius = shape->size;
+        return ERR_OK;
+    case SHAPE_POLYGON:
+        piece->n = shape->n;
+        piece->pt = shape->pt;
+        return ERR_OK;
+    case SHAPE_POLYLINE: return cut_polyline(s, shape, piece, a, d);
+    case SHAPE_BOX: break;
+    }
+    const double *low = shape->pt[0], *high = shape->pt[1];
+    const double corners[4][2] = {{low[0], low[1]},
+                                  {high[0], low[1]},
+                                  {high[0], high[1]},
+                                  {low[0], high[1]}};
+    piece->n = 4;
+    piece->pt = arena_alloc(a, 4, sizeof *piece->pt, "box", d);
+    if (!piece->pt) return ERR_MEMORY;
+    memcpy(piece->pt, corners, sizeof corners);
+    return ERR_OK;
+}
+
+enum err outlines_of(struct outlines *o, const struct scene *s, const struct shape_list *list,
+                     struct arena *a, struct diag *d)
+{
+    size_t most = 0;
+    for (int k = 0; k < list->n; k++)
+        most += list->item[k].kind == SHAPE_POLYLINE ? (size_t)list->item[k].n : 1;
+    o->n = 0;
+    o->item = arena_alloc(a, most, sizeof *o->item, "shapes", d);
+    o->shape = arena_alloc(a, most, sizeof *o->shape, "shapes", d);
+    if (!o->item || !o->shape) return ERR_MEMORY;
+    for (int k = 0; k < list->n; k++) {
+        const struct shape *shape = &list->item[k];
+        const int pieces = shape->kind == SHAPE_POLYLINE ? shape->n - 1 : 1;
+        TRY(cut_shape(s, shape, &o->item[o->n], a, d));
+        for (int j = 0; j < pieces; j++) {
+            set_bounds(&o->item[o->n]);
+            o->shape[o->n++] = k;
+        }
+    }
+    return ERR_OK;
+}
+
+int outlines_capacity(const struct outlines *o)
+{
+    int room = 2;
+    for (int k = 0; k < o->n; k++) room = o->item[k].n > room ? o->item[k].n : room;
+    return room;
+}
+
+static int ascending(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+int outline_crossings(const struct outline *o, double y, double *from)
+{
+    if (!o->n) {
+        const double height = y - o->centre[1];
+        if (fabs(height) >= o->radius) return 0;
+        const double half = sqrt(square(o->radius) - square(height));
+        from[0] = o->centre[0] - half;
+        from[1] = o->centre[0] + half;
+        return 2;
+    }
+    int n = 0;
+    for (int k = 0; k < o->n; k++) {
+        const double *a = o->pt[k], *b = o->pt[k + 1 < o->n ? k + 1 : 0];
+        if ((a[1] <= y) == (b[1] <= y)) continue;
+        const double *low = a[1] <= y ? a : b, *high = a[1] <= y ? b : a;
+        from[n++] = low[0] + (y - low[1]) / (high[1] - low[1]) * (high[0] - low[0]);
+    }
+    if (n > 2)
+        qsort(from, (size_t)n, sizeof *from, ascending);
+    else if (n == 2 && from[0] > from[1]) {
+        const double first = from[0];
+        from[0] = from[1];
+        from[1] = first;
+    }
+    return n;
+}
+
+bool outline_contains(const struct outline *o, double x, double y, double *scratch)
+{
+    if (x < o->low[0] || x > o->high[0] || y < o->low[1] || y > o->high[1]) return false;
+    const int n = outline_crossings(o, y, scratch);
+    int left = 0;
+    while (left < n && scratch[left] <= x) left++;
+    return left & 1;
+}

@@ -1,0 +1,165 @@
+/* SPDX-License-Identifier: MIT
+ * Which particles stay where regions meet. Solids come first: a clamped part takes the place of the
+ * wall it is held in. Walls unite. Whatever else overlaps is a mistake of the case. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Nearer than this many dp, two points are in one place; a lattice has 1, two of them at most
+ * sqrt(1/2) between a point and the nearest of the other. */
+static const double same_place = 0.7;
+
+/* Points by cell of side dp, in a hash table: sparse scenes cost no more than dense ones. */
+struct near_table {
+    double side;
+    uint64_t mask;
+    int32_t *head, *next; /* index + 1; 0: none */
+    const double *x, *y;
+};
+
+static uint64_t slot_of(const struct near_table *t, int64_t i, int64_t j)
+{
+    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
+    key ^= key >> 29;
+    key *= 0xBF58476D1CE4E5B9u;
+    return (key >> 32) & t->mask;
+}
+
+static int64_t cell_of(const struct near_table *t, double x) { return (int64_t)floor(x / t->side); }
+
+static enum err table_create(struct near_table *t, struct sampler *g, const struct samples *p)
+{
+    uint64_t size = 64;
+    while (size < (uint64_t)p->n) size *= 2;
+    *t = (struct near_table){.side = g->scene->top.dp, .mask = size - 1, .x = p->x, .y = p->y};
+    t->head = arena_alloc(&g->temp, size, sizeof *t->head, "overlaps", g->diag);
+    t->next = arena_alloc(&g->temp, (size_t)p->n, sizeof *t->next, "overlaps", g->diag);
+    return t->head && t->next ? ERR_OK : ERR_MEMORY;
+}
+
+static void table_insert(struct near_table *t, int64_t k)
+{
+    const uint64_t slot = slot_of(t, cell_of(t, t->x[k]), cell_of(t, t->y[k]));
+    t->next[k] = t->head[slot];
+    t->head[slot] = (int32_t)(k + 1);
+}
+
+/* Mean of the spacings of two points' lattices. */
+static double spacing(const struct region *regions, const struct samples *p, int64_t a, int64_t b)
+{
+    return 0.5 * (regions[p->region[a]].dp + regions[p->region[b]].dp);
+}
+
+/* The first point in the table, of another region, in one place with point k; -1: none. */
+static int64_t table_find(const struct near_table *t, const struct region *regions,
+                          const struct samples *p, int64_t k)
+{
+    const double x = t->x[k], y = t->y[k];
+    const int64_t ci = cell_of(t, x), cj = cell_of(t, y);
+    for (int64_t j = cj - 1; j <= cj + 1; j++)
+        for (int64_t i = ci - 1; i <= ci + 1; i++)
+            for (int32_t n = t->head[slot_of(t, i, j)]; n; n = t->next[n - 1])
+                if (p->region[n - 1] != p->region[k] &&
+                    square(t->x[n - 1] - x) + square(t->y[n - 1] - y) <
+                        square(same_place * spacing(regions, p, k, n - 1)))
+                    return n - 1;
+    return -1;
+}
+
+static int motion_of(const struct scene *s, const struct region *wall)
+{
+    return scene_find_motion(s, s->wall[wall->body].motion);
+}
+
+/* Whether point k may simply be left out where point `other` is already. */
+static bool yields_to(const struct sampler *g, const struct samples *p, int64_t k, int64_t other)
+{
+    const struct region *mine = &g->regions[p->region[k]], *its = &g->regions[p->region[other]];
+    if (mine->kind != KIND_WALL) return false;
+    if (its->kind == KIND_SOLID) return p->clamped[other];
+    return its->kind == KIND_WALL && motion_of(g->scene, mine) == motion_of(g->scene, its);
+}
+
+static enum err fail_overlap(struct sampler *g, const struct region *mine, const struct region *its,
+                             double x, double y, int64_t count)
+{
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, mine->line, place);
+    const char *mend = "move one of the shapes, or take the place out with `minus`";
+    if (mine->kind == KIND_WALL && its->kind == KIND_SOLID)
+        mend = "only the clamped part of a solid may lie in a wall";
+    if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
+        mend = "walls that move differently must not overlap";
+    return diag_fail(g->diag, ERR_INPUT,
+                     "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
+                     "(%.6g, %.6g) m: %s",
+                     place, (long long)count, kind_names[mine->kind], mine->name,
+                     kind_names[its->kind], its->name, x, y, mend);
+}
+
+/* Sets `kept`; fails where a region overlaps another one and may not. */
+static enum err find_overlaps(struct sampler *g, const struct samples *p, struct near_table *t,
+                              uint8_t *kept)
+{
+    int64_t k = 0;
+    for (int region = 0; region < g->n_regions; region++) {
+        int64_t wrong = 0, first = -1, first_other = -1;
+        for (; k < p->n && p->region[k] == region; k++) {
+            const int64_t other = table_find(t, g->regions, p, k);
+            kept[k] = other < 0;
+            if (kept[k]) table_insert(t, k);
+            if (kept[k] || yields_to(g, p, k, other)) continue;
+            if (!wrong++) {
+                first = k;
+                first_other = other;
+            }
+        }
+        if (wrong)
+            return fail_overlap(g, &g->regions[region], &g->regions[p->region[first_other]],
+                                p->x[first], p->y[first], wrong);
+    }
+    return ERR_OK;
+}
+
+static enum err store(struct sampler *g, const struct samples *p, const uint8_t *kept,
+                      enum kind kind)
+{
+    struct scene *s = g->scene;
+    struct scene_points *to = &s->points[kind];
+    size_t n = 0;
+    for (int64_t k = 0; k < p->n; k++) n += kept[k] && g->regions[p->region[k]].kind == kind;
+    *to = (struct scene_points){0};
+    to->x = arena_alloc(&s->arena, n, sizeof *to->x, "particles", g->diag);
+    to->y = arena_alloc(&s->arena, n, sizeof *to->y, "particles", g->diag);
+    to->body = arena_alloc(&s->arena, n, sizeof *to->body, "particles", g->diag);
+    if (!to->x || !to->y || !to->body) return ERR_MEMORY;
+    if (kind == KIND_SOLID) {
+        to->clamped = arena_alloc(&s->arena, n, 1, "particles", g->diag);
+        if (!to->clamped) return ERR_MEMORY;
+    }
+    for (int64_t k = 0; k < p->n; k++) {
+        const struct region *region = &g->regions[p->region[k]];
+        if (!kept[k] || region->kind != kind) continue;
+        to->x[to->n] = p->x[k];
+        to->y[to->n] = p->y[k];
+        to->body[to->n] = region->body;
+        if (to->clamped) to->clamped[to->n] = p->clamped[k];
+        to->n++;
+    }
+    return ERR_OK;
+}
+
+enum err geometry_merge(struct sampler *g, const struct samples *p)
+{
+    struct near_table t;
+    uint8_t *kept = arena_alloc(&g->temp, (size_t)p->n, 1, "overlaps", g->diag);
+    if (!kept) return ERR_MEMORY;
+    TRY(table_create(&t, g, p));
+    TRY(find_overlaps(g, p, &t, kept));
+    for (int kind = 0; kind < KIND_COUNT; kind++) TRY(store(g, p, kept, (enum kind)kind));
+    return ERR_OK;
+}

@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: MIT
+ * Sampling of shapes: particles are the centres of the cells of a square lattice. A centre within
+ * 1e-6 dp of an edge counts as lying above and to the right of it, whatever the round-off, so
+ * shapes that share an edge neither miss nor double a particle. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Where a centre is taken to be, in dp, relative to where it is. The two differ so that a slanted
+ * edge through a row of centres is not met exactly either. */
+static const double nudge_x = 1e-6, nudge_y = 0.618e-6;
+
+/* A rough figure for refusing absurd cases: fields, lists of neighbours and copies of a particle. */
+static const double bytes_per_particle = 300;
+static const double max_lattice = 1e9, max_cells = 1e10;
+
+/* --- regions --- */
+
+static void bounding_box(struct region *region)
+{
+    for (int c = 0; c < 2; c++) {
+        region->low[c] = HUGE_VAL;
+        region->high[c] = -HUGE_VAL;
+        for (int k = 0; k < region->add.n; k++) {
+            region->low[c] = min2(region->low[c], region->add.item[k].low[c]);
+            region->high[c] = max2(region->high[c], region->add.item[k].high[c]);
+        }
+    }
+}
+
+/* A solid's lattice begins at its lower left corner; it is the common one where that fits. */
+static void choose_lattice(struct sampler *g, struct region *region)
+{
+    const struct scene *s = g->scene;
+    const double dp = region->dp;
+    bool shifted = false;
+    for (int c = 0; c < 2; c++) {
+        region->origin[c] = s->numerics.lattice_origin[c];
+        if (region->kind != KIND_SOLID) continue;
+        const double cells = (region->low[c] - region->origin[c]) / dp;
+        if (fabs(cells - round(cells)) <= 1e-6) continue;
+        region->origin[c] = region->low[c];
+        shifted = true;
+    }
+    if (!shifted) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, region->line, place);
+    diag_warn(g->diag,
+              "%s: [solid %s] begins at (%.6g, %.6g), off the lattice of dp = %.6g m; "
+              "its own lattice begins there",
+              place, region->name, region->low[0], region->low[1], dp);
+}
+
+static double piece_area(const struct outline *o)
+{
+    if (!o->n) return 3.14159265358979 * square(o->radius);
+    double twice = 0;
+    for (int k = 0; k < o->n; k++) {
+        const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n], *base = o->pt[0];
+        twice += (a[0] - base[0]) * (b[1] - base[1]) - (b[0] - base[0]) * (a[1] - base[1]);
+    }
+    return 0.5 * fabs(twice);
+}
+
+/* Refuses what could not be held, before anything of that size is touched. */
+static enum err check_size(struct sampler *g)
+{
+    const double dp = g->scene->top.dp;
+    double total = 0, cells = 0;
+    for (int k = 0; k < g->n_regions; k++) {
+        const struct region *region = &g->regions[k];
+        const double own = region->dp;
+        for (int j = 0; j < region->add.n; j++)
+            total += piece_area(&region->add.item[j]) / square(own);
+        double wide[2];
+        for (int c = 0; c < 2; c++) {
+            const double low = fabs(region->low[c] - region->origin[c]) / own;
+            const double high = fabs(region->high[c] - region->origin[c]) / own;
+            wide[c] = (region->high[c] - region->low[c]) / own + 3;
+            if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
+        }
+        cells += wide[0] * wide[1];
+    }
+    const double pages = (double)sysconf(_SC_PHYS_PAGES), page = (double)sysconf(_SC_PAGESIZE);
+    const double memory = pages > 0 && page > 0 ? pages * page : 1e18;
+    const double bytes = total * bytes_per_particle;
+    if (total > 1e9 || bytes > memory)
+        return diag_fail(
+            g->diag, ERR_INPUT,
+            "%s: dp = %g m makes about %.3g particles, %.3g GB; this "
+            "machine has %.3g GB, and the most is 1e9 particles: a larger dp or smaller "
+            "shapes are needed",
+            g->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
+    if (cells > max_cells)
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: the shapes span more than %g cells of dp = %g m; a "
+                         "larger dp or smaller shapes are needed",
+                         g->scene->path, max_cells, dp);
+    return ERR_OK;
+}
+
+static enum err add_region(struct sampler *g, enum kind kind, int body,
+                           const struct scene_section_common *common,
+                           const struct shape_list *shape, const struct shape_list *minus)
+{
+    struct region *region = &g->regions[g->n_regions++];
+    *region = (struct region){
+        .kind = kind, .body = body, .name = common->name, .line = common->line, .list = shape};
+    region->dp = kind == KIND_SOLID ? scene_solid_dp(g->scene, body) : g->scene->top.dp;
+    if (shape->n == 0) {
+        char place[LOCATION_TEXT];
+        scene_location(g->scene, common->line, place);
+        return diag_fail(g->diag, ERR_INPUT, "%s: [%s %s] has no shape", place, kind_names[kind],
+                         common->name);
+    }
+    TRY(outlines_of(&region->add, g->scene, shape, &g->temp, g->diag));
+    TRY(outlines_of(&region->minus, g->scene, minus, &g->temp, g->diag));
+    bounding_box(region);
+    choose_lattice(g, region);
+    return ERR_OK;
+}
+
+static enum err list_regions(struct sampler *g)
+{
+    const struct scene *s = g->scene;
+    const int n = s->n_solid + s->n_wall + s->n_fluid;
+    g->regions = arena_alloc(&g->temp, (size_t)n, sizeof *g->regions, "regions", g->diag);
+    if (!g->regions) return ERR_MEMORY;
+    for (int k = 0; k < s->n_solid; k++)
+        TRY(add_region(g, KIND_SOLID, k, &s->solid[k].common, &s->solid[k].shape,
+                       &s->solid[k].minus));
+    for (int k = 0; k < s->n_wall; k++)
+        TRY(add_region(g, KIND_WALL, k, &s->wall[k].common, &s->wall[k].shape, &s->wall[k].minus));
+    for (int k = 0; k < s->n_fluid; k++)
+        TRY(add_region(g, KIND_FLUID, k, &s->fluid[k].common, &s->fluid[k].shape,
+                       &s->fluid[k].minus));
+    return check_size(g);
+}
+
+/* --- rows --- */
+
+/* The first lattice index whose centre lies at or behind x. */
+static int64_t index_from(const struct region *region, int c, double x)
+{
+    return (int64_t)ceil((x - region->origin[c]) / region->dp - 0.5 - nudge_x);
+}
+
+static double centre(const struct region *region, int c, int64_t index)
+{
+    return region->origin[c] + ((double)index + 0.5) * region->dp;
+}
+
+/* x, brought between the region's left and right end. */
+static double inside(const struct region *region, double x)
+{
+    return min2(max2(x, region->low[0]), region->high[0]);
+}
+
+/* Marks a row's points inside a piece with `value`; returns how many they are. */
+static int64_t mark(struct sampler *g, const struct region *region, const struct outline *o,
+                    double y, unsigned char value)
+{
+    if (y < o->low[1] || y > o->high[1]) return 0;
+    const int n = outline_crossings(o, y, g->scratch);
+    int64_t marked = 0;
+    for (int k = 0; k + 1 < n; k += 2) {
+        const int64_t from = index_from(region, 0, inside(region, g->scratch[k]));
+        const int64_t to = index_from(region, 0, inside(region, g->scratch[k + 1]));
+        if (to <= from) continue;
+        memset(g->mask + (from - region->first[0]), value, (size_t)(to - from));
+        marked += to - from;
+    }
+    return marked;
+}
+
+/* Fills the mask for row j; counts the points that each shape covers, if asked. */
+static void mark_row(struct sampler *g, const struct region *region, int64_t j, int64_t *per_shape)
+{
+    const double y = centre(region, 1, j) + nudge_y * region->dp;
+    memset(g->mask, 0, (size_t)region->count[0]);
+    for (int k = 0; k < region->add.n; k++) {
+        const int64_t marked = mark(g, region, &region->add.item[k], y, 1);
+        if (per_shape) per_shape[region->add.shape[k]] += marked;
+    }
+    for (int k = 0; k < region->minus.n; k++) mark(g, region, &region->minus.item[k], y, 0);
+}
+
+static enum err prepare_rows(struct sampler *g)
+{
+    int64_t widest = 1;
+    int room = 2;
+    for (int k = 0; k < g->n_regions; k++) {
+        struct region *region = &g->regions[k];
+        for (int c = 0; c < 2; c++) {
+            region->first[c] = index_from(region, c, region->low[c]) - 1;
+            region->count[c] = index_from(region, c, region->high[c]) + 1 - region->first[c];
+        }
+        widest = region->count[0] > widest ? region->count[0] : widest;
+        const int add = outlines_capacity(&region->add), minus = outlines_capacity(&region->minus);
+        room = add > room ? add : room;
+        room = minus > room ? minus : room;
+    }
+    for (int k = 0; k < g->scene->n_solid; k++)
+        for (int j = 0; j < g->scene->solid[k].clamp.n; j++)
+            room = g->scene->solid[k].clamp.item[j].n > room ? g->scene->solid[k].clamp.item[j].n
+                                                             : room;
+    g->mask = arena_alloc(&g->temp, (size_t)widest, 1, "sampling", g->diag);
+    g->scratch = arena_alloc(&g->temp, (size_t)room + 4, sizeof(double), "sampling", g->diag);
+    return g->mask && g->scratch ? ERR_OK : ERR_MEMORY;
+}
+
+static enum err count_points(struct sampler *g, struct region *region)
+{
+    int64_t *per_shape =
+        arena_alloc(&g->temp, (size_t)region->list->n, sizeof *per_shape, "sampling", g->diag);
+    if (!per_shape) return ERR_MEMORY;
+    for (int64_t j = 0; j < region->count[1]; j++) {
+        mark_row(g, region, region->first[1] + j, per_shape);
+        for (int64_t i = 0; i < region->count[0]; i++) region->n += g->mask[i];
+    }
+    char place[LOCATION_TEXT];
+    for (int k = 0; k < region->list->n; k++) {
+        if (per_shape[k]) continue;
+        scene_location(g->scene, region->list->item[k].line, place);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: shape %d of [%s %s] holds no particle: it is "
+                         "narrower than dp = %g m, or lies between the lattice's centres",
+                         place, k + 1, kind_names[region->kind], region->name, region->dp);
+    }
+    if (region->n) return ERR_OK;
+    scene_location(g->scene, region->line, place);
+    return diag_fail(g->diag, ERR_INPUT, "%s: nothing is left of [%s %s] after its `minus`", place,
+                     kind_names[region->kind], region->name);
+}
+
+/* Appends a region's points: row by row, or column by column where `upright`. */
+static enum err append_points(struct sampler *g, const struct region *region, bool upright,
+                              struct samples *p)
+{
+    int64_t *next = NULL;
+    if (upright) { /* where each column goes: a counting sort over the rows */
+        next =
+            arena_alloc(&g->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling", g->diag);
+        if (!next) return ERR_MEMORY;
+        for (int64_t j = 0; j < region->count[1]; j++) {
+            mark_row(g, region, region->first[1] + j, NULL);
+            for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += g->mask[i];
+        }
+        for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += next[i];
+    }
+    int64_t filled = 0;
+    for (int64_t j = 0; j < region->count[1]; j++) {
+        mark_row(g, region, region->first[1] + j, NULL);
+        for (int64_t i = 0; i < region->count[0]; i++) {
+            if (!g->mask[i]) continue;
+            const int64_t k = p->n + (upright ? next[i]++ : filled);
+            p->x[k] = centre(region, 0, region->first[0] + i);
+            p->y[k] = centre(region, 1, region->first[1] + j);
+            p->region[k] = (int32_t)(region - g->regions);
+            filled++;
+        }
+    }
+    p->n += filled;
+    return ERR_OK;
+}
+
+/* --- clamps --- */
+
+static enum err clamp_points(struct sampler *g, const struct region *region, int64_t from,
+                             struct samples *p)
+{
+    const struct scene *s = g->scene;
+    const struct shape_list *clamps = &s->solid[region->body].clamp;
+    struct outlines o;
+    TRY(outlines_of(&o, s, clamps, &g->temp, g->diag));
+    int64_t *held = arena_alloc(&g->temp, (size_t)clamps->n, sizeof *held, "clamps", g->diag);
+    if (!held) return ERR_MEMORY;
+    for (int64_t k = from; k < p->n; k++) {
+        const double x = p->x[k] + nudge_x * region->dp, y = p->y[k] + nudge_y * region->dp;
+        for (int c = 0; c < o.n; c++) {
+            if (!outline_contains(&o.item[c], x, y, g->scratch)) continue;
+            p->clamped[k] = 1;
+            held[o.shape[c]]++;
+        }
+    }
+    for (int c = 0; c < clamps->n; c++) {
+        if (held[c]) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, clamps->item[c].line, place);
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: clamp %d of [solid %s] holds no particle: it must "
+                         "cover a part of the body",
+                         place, c + 1, region->name);
+    }
+    return ERR_OK;
+}
+
+enum err geometry_sample(struct sampler *g, struct samples *p)
+{
+    TRY(list_regions(g));
+    TRY(prepare_rows(g));
+    int64_t total = 0;
+    for (int k = 0; k < g->n_regions; k++) {
+        TRY(count_points(g, &g->regions[k]));
+        total += g->regions[k].n;
+    }
+    p->x = arena_alloc(&g->temp, (size_t)total, sizeof *p->x, "sampling", g->diag);
+    p->y = arena_alloc(&g->temp, (size_t)total, sizeof *p->y, "sampling", g->diag);
+    p->region = arena_alloc(&g->temp, (size_t)total, sizeof *p->region, "sampling", g->diag);
+    p->clamped = arena_alloc(&g->temp, (size_t)total, 1, "sampling", g->diag);
+    if (!p->x || !p->y || !p->region || !p->clamped) return ERR_MEMORY;
+    for (int k = 0; k < g->n_regions; k++) {
+        const struct region *region = &g->regions[k];
+        const int64_t from = p->n;
+        const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
+        TRY(append_points(g, region, upright, p));
+        if (region->kind == KIND_SOLID) TRY(clamp_points(g, region, from, p));
+    }
+    return ERR_OK;
+}
+
+enum err scene_sample(struct scene *s, struct diag *d)
+{
+    struct sampler g = {.scene = s, .diag = d};
+    struct samples points = {0};
+    s->h = s->numerics.h_over_dp * s->top.dp;
+    enum err err = geometry_sample(&g, &points);
+    if (!err) err = geometry_check_regions(&g);
+    if (!err) err = geometry_merge(&g, &points);
+    if (!err) err = geometry_extent(&g);
+    arena_free(&g.temp);
+    return err;
+}

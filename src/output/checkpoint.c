@@ -1,0 +1,599 @@
+/* SPDX-License-Identifier: MIT */
+#include "output/checkpoint.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+_Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
+
+enum { FORMAT = 3, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
+
+/* What a block belongs to: the kinds of particles, then these. */
+enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
+
+enum item { ITEM_DOUBLE, ITEM_INT64, ITEM_INT32, ITEM_BYTE, ITEM_COUNT };
+static const size_t item_size[ITEM_COUNT] = {8, 8, 4, 1};
+
+struct file_header {
+    char magic[8];
+    uint32_t format, byte_order;
+    uint32_t header_size, block_header_size;
+    uint32_t blocks, padding;
+    uint64_t file_size;
+    uint64_t case_hash;
+    double time;
+    int64_t steps;
+    int64_t count[KIND_COUNT];
+    char version[CHECKPOINT_VERSION_TEXT];
+    uint64_t sum; /* of the bytes before it */
+};
+
+struct block_header {
+    char name[NAME_TEXT];
+    uint32_t owner, item;
+    uint64_t count;
+    uint64_t payload_sum;
+    uint64_t sum; /* of the bytes before it */
+};
+
+struct file_footer {
+    char magic[8];
+    uint64_t sum; /* of everything before the footer */
+};
+
+_Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) == 64 &&
+                   sizeof(struct file_footer) == 16,
+               "docs/formats.md gives these sizes");
+
+/* What only walls that move have. */
+enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
+
+static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
+
+/* FNV-1a, 64 bits: every step is invertible, so a changed byte always changes the sum. */
+static uint64_t fnv(const void *bytes, size_t n)
+{
+    const unsigned char *b = bytes;
+    uint64_t h = 0xcbf29ce484222325u;
+    for (size_t k = 0; k < n; k++) h = (h ^ b[k]) * 0x100000001b3u;
+    return h;
+}
+
+static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
+
+/* --- capture --- */
+
+static enum err reserve(struct image *m, size_t bytes, struct diag *d)
+{
+    if (m->capacity >= bytes) return ERR_OK;
+    unsigned char *memory = realloc(m->bytes, bytes);
+    if (!memory) return diag_fail(d, ERR_MEMORY, "checkpoint: no memory for %zu bytes", bytes);
+    m->bytes = memory;
+    m->capacity = bytes;
+    return ERR_OK;
+}
+
+static enum item item_of(const char *type)
+{
+    if (strcmp(type, "double") == 0) return ITEM_DOUBLE;
+    return strcmp(type, "int64_t") == 0 ? ITEM_INT64 : ITEM_INT32;
+}
+
+/* Appends a block; room has been reserved. The sums are filled in when it is stored. */
+static void put_block(struct image *m, const char *name, unsigned owner, enum item item,
+                      const void *data, size_t count)
+{
+    struct block_header head = {.owner = owner, .item = item, .count = count};
+    snprintf(head.name, sizeof head.name, "%s", name);
+    const size_t bytes = count * item_size[item];
+    memcpy(m->bytes + m->size, &head, sizeof head);
+    memset(m->bytes + m->size + sizeof head + bytes, 0, padded(bytes) - bytes);
+    if (bytes) memcpy(m->bytes + m->size + sizeof head, data, bytes);
+    m->size += sizeof head + padded(bytes);
+}
+
+static size_t image_bytes(const struct simulation *s, size_t case_length)
+{
+    size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer);
+    bytes += sizeof(struct block_header) + padded(case_length);
+#define STATE(type, name, unit, meaning) bytes += sizeof(struct block_header) + sizeof(type);
+#include "time/state.def"
+#undef STATE
+    bytes += sizeof(struct block_header) + sizeof s->state.bound_steps;
+    for (int k = 0; k < KIND_COUNT; k++)
+        for (int f = 0; f < field_count; f++)
+            bytes +=
+                sizeof(struct block_header) + padded((size_t)s->kind[k].n * field_table[f].size);
+    return bytes;
+}
+
+static uint32_t put_state(struct image *m, const struct state *st)
+{
+    uint32_t blocks = 1;
+#define STATE(type, name, unit, meaning)                            \
+    put_block(m, #name, OWNER_STATE, item_of(#type), &st->name, 1); \
+    blocks++;
+#include "time/state.def"
+#undef STATE
+    put_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, st->bound_steps, BOUND_COUNT);
+    return blocks;
+}
+
+static uint32_t put_particles(struct image *m, const struct simulation *s)
+{
+    uint32_t blocks = 0;
+    for (int k = 0; k < KIND_COUNT; k++)
+        for (int f = 0; f < field_count; f++) {
+            const struct field_info *info = &field_table[f];
+            const void *data = field_array(&s->kind[k], info);
+            if (!data || info->keep != KEEP_STATE) continue;
+            put_block(m, info->name, (unsigned)k, item_of(info->type), data, (size_t)s->kind[k].n);
+            blocks++;
+        }
+    return blocks;
+}
+
+enum err checkpoint_capture(struct image *m, const struct simulation *s, const char *case_text,
+                            const char *version, struct diag *d)
+{
+    const size_t case_length = strlen(case_text) + 1; /* with its end */
+    TRY(reserve(m, image_bytes(s, case_length), d));
+    struct file_header head = {
+        .format = FORMAT,
+        .byte_order = BYTE_ORDER_MARK,
+        .header_size = sizeof(struct file_header),
+        .block_header_size = sizeof(struct block_header),
+        .case_hash = fnv(case_text, case_length),
+        .time = s->state.time,
+        .steps = s->state.steps,
+    };
+    memcpy(head.magic, magic, sizeof magic);
+    snprintf(head.version, sizeof head.version, "%s", version);
+    for (int k = 0; k < KIND_COUNT; k++) head.count[k] = s->kind[k].n;
+    m->size = sizeof head;
+    put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
+    head.blocks = 1 + put_state(m, &s->state) + put_particles(m, s);
+    const struct file_footer foot = {.sum = 0};
+    memcpy(m->bytes + m->size, &foot, sizeof foot);
+    m->size += sizeof foot;
+    head.file_size = m->size;
+    memcpy(m->bytes, &head, sizeof head);
+    return ERR_OK;
+}
+
+/* --- walking the blocks --- */
+
+struct block {
+    struct block_header head;
+    size_t at, payload; /* offsets in the image */
+};
+
+/* Whether a whole block lies at `at`. */
+static bool block_at(const struct image *m, size_t at, struct block *b)
+{
+    const size_t end = m->size - sizeof(struct file_footer);
+    if (at > end || end - at < sizeof b->head) return false;
+    memcpy(&b->head, m->bytes + at, sizeof b->head);
+    b->at = at;
+    b->payload = at + sizeof b->head;
+    const size_t room = end - b->payload;
+    if (b->head.item >= ITEM_COUNT || b->head.count > room / item_size[b->head.item]) return false;
+    return padded(b->head.count * item_size[b->head.item]) <= room;
+}
+
+static size_t block_end(const struct block *b)
+{
+    return b->payload + padded(b->head.count * item_size[b->head.item]);
+}
+
+static size_t payload_bytes(const struct block *b)
+{
+    return b->head.count * item_size[b->head.item];
+}
+
+/* --- store --- */
+
+void checkpoint_seal(struct image *m)
+{
+    struct block b;
+    for (size_t at = sizeof(struct file_header); block_at(m, at, &b); at = block_end(&b)) {
+        b.head.payload_sum = fnv(m->bytes + b.payload, payload_bytes(&b));
+        b.head.sum = fnv(&b.head, offsetof(struct block_header, sum));
+        memcpy(m->bytes + b.at, &b.head, sizeof b.head);
+    }
+    struct file_header head;
+    memcpy(&head, m->bytes, sizeof head);
+    head.sum = fnv(&head, offsetof(struct file_header, sum));
+    memcpy(m->bytes, &head, sizeof head);
+    struct file_footer foot = {.sum = fnv(m->bytes, m->size - sizeof foot)};
+    memcpy(foot.magic, footer_magic, sizeof foot.magic);
+    memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
+}
+
+static void name_of(char name[NAME_TEXT], int64_t steps)
+{
+    snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
+}
+
+/* Steps in the name of a checkpoint of ours, or -1: another spelling of the number is not ours, nor
+ * is what is no file. */
+static int64_t steps_of(const struct dirent *entry)
+{
+    char name[NAME_TEXT];
+    int64_t steps;
+    if (entry->d_type != DT_REG && entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
+        return -1;
+    if (sscanf(entry->d_name, "step-%18" SCNd64, &steps) != 1 || steps < 0) return -1;
+    name_of(name, steps);
+    return strcmp(entry->d_name, name) == 0 ? steps : -1;
+}
+
+/* The largest number of steps below *steps among the folder's checkpoints, or -1, takes its place. */
+static enum err next_newest(const char *folder, int64_t *steps, struct diag *d)
+{
+    const int64_t limit = *steps;
+    DIR *dir = opendir(folder);
+    if (!dir) return diag_fail(d, ERR_IO, "%s: cannot be read: %s", folder, strerror(errno));
+    *steps = -1;
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        const int64_t found = steps_of(entry);
+        if (found > *steps && found < limit) *steps = found;
+    }
+    closedir(dir);
+    return ERR_OK;
+}
+
+static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag *d)
+{
+    char name[NAME_TEXT], path[RUN_DIR_PATH];
+    name_of(name, steps);
+    TRY(path_join(path, folder, name, d));
+    if (unlink(path) != 0)
+        return diag_fail(d, ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
+    return ERR_OK;
+}
+
+static enum err remove_older(const char *folder, int64_t newest, struct diag *d)
+{
+    int64_t steps = newest + 1;
+    for (int kept = 0;; kept++) {
+        TRY(next_newest(folder, &steps, d));
+        if (steps < 0) return ERR_OK;
+        if (kept >= KEEP) TRY(remove_checkpoint(folder, steps, d));
+    }
+}
+
+/* One too many is no reason to end a run. */
+static void keep_last(const char *folder, int64_t newest, struct diag *d)
+{
+    struct diag why = {.code = ERR_OK};
+    if (remove_older(folder, newest, &why)) diag_warn(d, "%s", why.text);
+}
+
+enum err checkpoint_store(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+                          struct diag *d)
+{
+    struct atomic_file out;
+    char name[NAME_TEXT];
+    const struct image_info info = checkpoint_info(m);
+    checkpoint_seal(m);
+    name_of(name, info.steps);
+    TRY(atomic_file_open(&out, folder, name, d));
+    /* A short write shows in ferror, which atomic_file_commit looks at. */
+    if (fwrite(m->bytes, 1, m->size, out.file) != m->size && !ferror(out.file)) {
+        atomic_file_abandon(&out);
+        return diag_fail(d, ERR_IO, "%s: cannot be written", out.path);
+    }
+    TRY(atomic_file_commit(&out, d));
+    memcpy(path, out.path, RUN_DIR_PATH);
+    keep_last(folder, info.steps, d);
+    return ERR_OK;
+}
+
+/* What runs that were killed have left unfinished. */
+static void remove_parts(const char *folder)
+{
+    static const char end[] = ".ckpt.part";
+    DIR *dir = opendir(folder);
+    if (!dir) return;
+    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
+        const size_t length = strlen(entry->d_name);
+        if (strncmp(entry->d_name, "step-", 5) == 0 && length > sizeof end &&
+            strcmp(entry->d_name + length - (sizeof end - 1), end) == 0)
+            unlinkat(dirfd(dir), entry->d_name, 0);
+    }
+    closedir(dir);
+}
+
+enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d)
+{
+    for (;;) {
+        int64_t later = INT64_MAX;
+        TRY(next_newest(folder, &later, d));
+        if (later <= steps) break;
+        TRY(remove_checkpoint(folder, later, d));
+    }
+    remove_parts(folder);
+    return ERR_OK;
+}
+
+/* --- read --- */
+
+static enum err damaged(struct diag *d, const char *path, const char *what)
+{
+    return diag_fail(d, ERR_IO, "%s: is not a sound checkpoint: %s", path, what);
+}
+
+static enum err check_header(const struct image *m, const char *path, struct diag *d)
+{
+    struct file_header head;
+    if (m->size < sizeof head + sizeof(struct file_footer))
+        return damaged(d, path, "it is shorter than a header and a footer");
+    memcpy(&head, m->bytes, sizeof head);
+    if (memcmp(head.magic, magic, sizeof magic) != 0)
+        return damaged(d, path, "it does not begin as one");
+    /* Before any sum: another machine or another version may sum, and lie out, otherwise. */
+    if (head.byte_order == __builtin_bswap32(BYTE_ORDER_MARK))
+        return diag_fail(d, ERR_IO,
+                         "%s: was written in big-endian byte order, this program reads "
+                         "little-endian: go on with it on a machine of its own kind",
+                         path);
+    if (head.byte_order != BYTE_ORDER_MARK) return damaged(d, path, "its byte-order mark is none");
+    if (head.format != FORMAT)
+        return diag_fail(d, ERR_IO,
+                         "%s: has format %u, this program reads format %d: go on with it by the "
+                         "version that wrote it (bytes 88 to 135 name it)",
+                         path, head.format, FORMAT);
+    if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header) ||
+        head.sum != fnv(&head, offsetof(struct file_header, sum)))
+        return damaged(d, path, "its header is damaged");
+    if (head.file_size != m->size) return damaged(d, path, "its length is wrong; it was cut short");
+    return ERR_OK;
+}
+
+static enum err check_footer(const struct image *m, const char *path, struct diag *d)
+{
+    struct file_footer foot;
+    memcpy(&foot, m->bytes + m->size - sizeof foot, sizeof foot);
+    if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0)
+        return damaged(d, path, "its footer is damaged");
+    if (foot.sum != fnv(m->bytes, m->size - sizeof foot))
+        return damaged(d, path, "its sum is wrong");
+    return ERR_OK;
+}
+
+/* Every block whole, its own sums right, its name ended, and no byte left over. */
+static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
+{
+    struct file_header head;
+    memcpy(&head, m->bytes, sizeof head);
+    size_t at = sizeof head;
+    for (uint32_t k = 0; k < head.blocks; k++) {
+        struct block b;
+        if (!block_at(m, at, &b)) return damaged(d, path, "a block runs over its end");
+        if (b.head.sum != fnv(&b.head, offsetof(struct block_header, sum)) ||
+            !memchr(b.head.name, '\0', sizeof b.head.name))
+            return damaged(d, path, "the header of a block is damaged");
+        if (b.head.payload_sum != fnv(m->bytes + b.payload, payload_bytes(&b)))
+            return diag_fail(d, ERR_IO, "%s: is not a sound checkpoint: block %s is damaged", path,
+                             b.head.name);
+        at = block_end(&b);
+    }
+    if (at != m->size - sizeof(struct file_footer))
+        return damaged(d, path, "bytes are left over behind its blocks");
+    return ERR_OK;
+}
+
+enum err checkpoint_check(const struct image *m, const char *name, struct diag *d)
+{
+    TRY(check_header(m, name, d));
+    TRY(check_footer(m, name, d));
+    return check_blocks(m, name, d);
+}
+
+enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
+{
+    char *bytes;
+    size_t size;
+    TRY(file_read(path, &bytes, &size, d));
+    checkpoint_free(m);
+    m->bytes = (unsigned char *)bytes;
+    m->size = m->capacity = size;
+    return checkpoint_check(m, path, d);
+}
+
+enum err checkpoint_newest(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+                           struct diag *d)
+{
+    char name[NAME_TEXT];
+    int seen = 0;
+    for (int64_t steps = INT64_MAX;; seen++) {
+        struct diag why = {.code = ERR_OK};
+        TRY(next_newest(folder, &steps, d));
+        if (steps < 0) break;
+        name_of(name, steps);
+        TRY(path_join(path, folder, name, d));
+        const enum err e = checkpoint_read(m, path, &why);
+        if (e == ERR_OK) return ERR_OK;
+        /* It may be as sound as any; the one before it would cost it, as a later one. */
+        if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
+        diag_warn(d, "%s; the one before it is tried", why.text);
+    }
+    return diag_fail(d, ERR_IO, "%s: holds no %scheckpoint (step-*.ckpt) to restart from", folder,
+                     seen ? "sound " : "");
+}
+
+static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
+{
+    for (size_t at = sizeof(struct file_header); block_at(m, at, b); at = block_end(b))
+        if (b->head.owner == owner && strcmp(b->head.name, name) == 0) return true;
+    return false;
+}
+
+struct image_info checkpoint_info(const struct image *m)
+{
+    struct file_header head;
+    memcpy(&head, m->bytes, sizeof head);
+    struct image_info info = {.time = head.time, .steps = head.steps, .case_text = ""};
+    memcpy(info.count, head.count, sizeof info.count);
+    memcpy(info.version, head.version, sizeof info.version - 1);
+    struct block b;
+    if (find_block(m, "case", OWNER_CASE, &b) && b.head.count > 0 &&
+        m->bytes[b.payload + b.head.count - 1] == '\0')
+        info.case_text = (const char *)m->bytes + b.payload;
+    return info;
+}
+
+bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info)
+{
+    static const char *const others[] = {"run", "case"};
+    static const char *const types[ITEM_COUNT] = {"double", "int64", "int32", "byte"};
+    struct block b;
+    if (*at == 0) *at = sizeof(struct file_header);
+    if (!block_at(m, *at, &b)) return false;
+    const unsigned owner = b.head.owner;
+    *info = (struct block_info){
+        .owner = owner < KIND_COUNT    ? kind_names[owner]
+                 : owner <= OWNER_CASE ? others[owner - KIND_COUNT]
+                                       : "unknown",
+        .name = (const char *)m->bytes + b.at,
+        .type = types[b.head.item],
+        .count = (int64_t)b.head.count,
+        .item_bytes = item_size[b.head.item],
+        .data = m->bytes + b.payload,
+    };
+    *at = block_end(&b);
+    return true;
+}
+
+/* --- apply --- */
+
+static enum err take(const struct image *m, const char *name, unsigned owner, enum item item,
+                     size_t count, void *to, struct diag *d)
+{
+    struct block b;
+    if (!find_block(m, name, owner, &b))
+        return diag_fail(d, ERR_INPUT, "checkpoint: it has no block %s, which this case needs",
+                         name);
+    if (b.head.item != item || b.head.count != count)
+        return diag_fail(d, ERR_INPUT,
+                         "checkpoint: block %s holds %" PRIu64
+                         " items of type %u, wanted are %zu of "
+                         "type %u",
+                         name, b.head.count, b.head.item, count, item);
+    if (count) memcpy(to, m->bytes + b.payload, count * item_size[item]);
+    return ERR_OK;
+}
+
+/* A wall that the run of the checkpoint left at rest, and a fork moves: its blocks are not there. */
+static bool take_rest(const struct image *m, struct particles *p, const struct field_info *info)
+{
+    struct block b;
+    if (find_block(m, info->name, KIND_WALL, &b)) return false;
+    void *const data = field_array(p, info);
+    const void *place = data == p->X ? p->x : data == p->Y ? p->y : NULL;
+    if (place)
+        memcpy(data, place, (size_t)p->n * info->size);
+    else
+        memset(data, 0, (size_t)p->n * info->size);
+    return true;
+}
+
+/* A structure whose run held the fluid's force over its sub-steps owes the fluid nothing; one whose run did
+ * not has no mean of that force. */
+static bool is_interface_impulse(const struct image *m, const struct field_info *info, void *data,
+                                 int64_t n)
+{
+    struct block b;
+    if (find_block(m, info->name, KIND_SOLID, &b)) return false;
+    memset(data, 0, (size_t)n * info->size);
+    return true;
+}
+
+static enum err take_particles(const struct image *m, struct particles *p, enum kind kind,
+                               int64_t n, bool fork, struct diag *d)
+{
+    if (n < 0 || n > p->capacity)
+        return diag_fail(d, ERR_INPUT,
+                         "checkpoint: it has %" PRId64 " %s particles, the case has %" PRId64, n,
+                         kind_names[kind], p->capacity);
+    p->n = n;
+    for (int f = 0; f < field_count; f++) {
+        const struct field_info *info = &field_table[f];
+        void *data = field_array(p, info);
+        if (!data || info->keep != KEEP_STATE) continue;
+        if (fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)) continue;
+        if (fork && (info->group & (G_WETTED | G_HELD)) && is_interface_impulse(m, info, data, n))
+            continue;
+        TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
+    }
+    return ERR_OK;
+}
+
+/* Numbers that others use as an index. The sums vouch for the bytes, not for who wrote them. */
+static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
+{
+    const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
+    const struct particles *p = &s->kind[kind];
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i] < 0 || p->body[i] >= bodies[kind])
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " belongs to section %d, the case "
+                             "has 0 to %d",
+                             kind_names[kind], i, p->body[i], bodies[kind] - 1);
+    return ERR_OK;
+}
+
+static enum err check_cells(const struct simulation *s, enum kind kind, struct diag *d)
+{
+    const struct particles *p = &s->kind[kind];
+    const int64_t cells = (int64_t)s->cells.nx * s->cells.ny;
+    for (int64_t i = 0; i < p->n; i++) {
+        const int32_t cell = p->cell[i];
+        if (cell < -1 || cell >= cells)
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " is in cell %d, the case has -1 "
+                             "(outside) to %" PRId64,
+                             kind_names[kind], i, cell, cells - 1);
+        if (cell < 0) continue;
+        if (!cells_near(&s->cells, cell, p->x[i], p->y[i]))
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64
+                             " at (%.6g, %.6g) m is nowhere near cell %d, where it should be",
+                             kind_names[kind], i, p->x[i], p->y[i], cell);
+    }
+    return ERR_OK;
+}
+
+enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
+{
+    const struct image_info info = checkpoint_info(m);
+    for (int k = 0; k < KIND_COUNT; k++) {
+        TRY(take_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
+        TRY(check_bodies(s, (enum kind)k, d));
+    }
+    struct state *const st = &s->state;
+#define STATE(type, name, unit, meaning) \
+    TRY(take(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
+#include "time/state.def"
+#undef STATE
+    return take(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
+}
+
+enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
+{
+    TRY(checkpoint_load(m, s, false, d));
+    if (s->effects & FX_FLUID)
+        for (int k = 0; k < KIND_COUNT; k++) TRY(check_cells(s, (enum kind)k, d));
+    return simulation_resume(s, d);
+}
+
+void checkpoint_free(struct image *m)
+{
+    free(m->bytes);
+    *m = (struct image){0};
+}

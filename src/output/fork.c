@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT
+ * A checkpoint under other physics: what a restart may rely on and a fork may not. */
+#include "output/checkpoint.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+/* A motion must go on where the wall stands: a jump would tear through the fluid. */
+static enum err check_motion(const struct simulation *s, double place[2], int wall, struct diag *d)
+{
+    const struct scene_wall *w = &s->scene->wall[wall];
+    const int motion = scene_find_motion(s->scene, w->motion);
+    if (!w->motion[0] || motion < 0) return ERR_OK;
+    const struct motion_state to = motion_at(s->scene, motion, s->state.time);
+    if (hypot(place[0] - to.d[0], place[1] - to.d[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
+    return diag_fail(
+        d, ERR_INPUT,
+        "fork: [wall %s] stands at a displacement of (%.6g, %.6g) m in the checkpoint, "
+        "at %.6g s; [motion %s] has (%.6g, %.6g) m there, and would make it jump: a "
+        "motion goes on where the one before it ended",
+        w->common.name, place[0], place[1], s->state.time, w->motion, to.d[0], to.d[1]);
+}
+
+static enum err fork_walls(struct simulation *s, struct diag *d)
+{
+    struct particles *p = &s->kind[KIND_WALL];
+    bool seen[SCENE_MAX_SECTIONS] = {0};
+    for (int64_t i = 0; i < p->n; i++) {
+        const int wall = p->body[i];
+        if (!s->scene->wall[wall].motion[0]) {
+            p->vx[i] = p->vy[i] = 0;
+            if (p->ax) p->ax[i] = p->ay[i] = 0;
+        } else if (!seen[wall]) {
+            seen[wall] = true;
+            TRY(check_motion(s, (double[2]){p->x[i] - p->X[i], p->y[i] - p->Y[i]}, wall, d));
+        }
+    }
+    return ERR_OK;
+}
+
+/* Clamps are those of this case. One without a motion holds its particles where they are; one with a motion
+ * has to go on from there. `free` is what this case has. */
+static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    double *const ux = s->solid.scratch[1], *const uy = s->solid.scratch[2];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->free[i] = free[i];
+        ux[i] = p->ux[i];
+        uy[i] = p->uy[i];
+        if (free[i] != 0) continue;
+        p->vx[i] = p->vy[i] = 0;
+        if (p->wx) p->wx[i] = p->wy[i] = p->ax[i] = p->ay[i] = p->jx[i] = p->jy[i] = 0;
+    }
+    solid_place_clamps(&s->solid, p, s->state.time);
+    for (int64_t i = 0; i < p->n; i++) {
+        if (hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
+        const struct scene_solid *const b = &s->scene->solid[p->body[i]];
+        return diag_fail(
+            d, ERR_INPUT,
+            "fork: the clamp of [solid %s] stands at a displacement of (%.6g, %.6g) m in the "
+            "checkpoint, at %.6g s; [motion %s] has (%.6g, %.6g) m there, and would make it jump: "
+            "a "
+            "motion goes on where the one before it ended",
+            b->common.name, ux[i], uy[i], s->state.time, b->clamp_motion, p->ux[i], p->uy[i]);
+    }
+    return ERR_OK;
+}
+
+/* What is owed to the fluid is let go where the structure does not answer it any more: nobody returns it. */
+static void clear_interface_impulse(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    if (!p->interface_impulse_x || s->effects & FX_IMPEDANCE) return;
+    memset(p->interface_impulse_x, 0, (size_t)p->n * sizeof *p->interface_impulse_x);
+    memset(p->interface_impulse_y, 0, (size_t)p->n * sizeof *p->interface_impulse_y);
+}
+
+static enum err sort_anew(struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < KIND_COUNT; k++) {
+        if (k == KIND_SOLID && !(s->effects & FX_COUPLING)) continue;
+        const int64_t out = cells_sort(&s->cells, (enum kind)k, &s->kind[k]);
+        if (k == KIND_FLUID && out)
+            return diag_fail(d, ERR_INPUT,
+                             "fork: %" PRId64 " fluid particles of the checkpoint are outside of "
+                             "this case's domain: a larger [domain] is needed",
+                             out);
+    }
+    s->state.sorts++;
+    return ERR_OK;
+}
+
+enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
+{
+    const struct particles *const solid = &s->kind[KIND_SOLID];
+    double *const free = s->solid.scratch[0];
+    if (s->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
+    TRY(checkpoint_load(m, s, true, d));
+    if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
+    clear_interface_impulse(s);
+    if (s->effects & FX_FLUID) {
+        TRY(fork_walls(s, d));
+        TRY(sort_anew(s, d));
+    }
+    TRY(simulation_resume(s, d));
+    s->state.energy_start -= simulation_ledger(s).dissipated;
+    return ERR_OK;
+}

@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * Probes: what case/quantities.def lists, at a point, of a body, of the fluid. */
+#ifndef SPHFSI_OUTPUT_PROBES_H
+#define SPHFSI_OUTPUT_PROBES_H
+
+#include "time/simulation.h"
+
+struct probe {
+    int quantity; /* enum probe_quantity */
+    enum probe_target target;
+    int columns, file;
+    int direction;     /* enum probe_direction */
+    enum kind kind;    /* of the body */
+    int body;          /* index of its section; -1: none */
+    double point[2];   /* m, in the initial configuration */
+    double to[2];      /* m */
+    int n;             /* particles that carry a material point */
+    int32_t *particle; /* of the solid */
+    double *weight;    /* sum 1; reproduce linear fields */
+};
+
+/* Probes that are sampled at the same times stand in one file. */
+struct probe_file {
+    char name[SCENE_NAME + 16]; /* probes.csv, or probes_NAME.csv of one with its own interval */
+    const char *header;         /* its columns joined by commas, "time_s" first */
+    double interval;            /* s */
+    int columns;
+    bool refresh; /* one of them needs simulation_refresh */
+};
+
+struct probes {
+    int n, n_files;
+    struct probe *probe;
+    struct probe_file *file;
+};
+
+enum { PROBE_MAX_COLUMNS = 5 };
+
+/* Finds the particles that carry each probe and their weights, and what stands in which file; memory is
+ * the arena's. ERR_INPUT: a probe too far from its body. */
+enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
+                       struct diag *d) SPHFSI_CHECKED;
+
+/* One row of a file: the time, then the values of its probes. */
+void probes_sample(const struct probes *p, struct simulation *s, int file, double *row);
+
+/* The values of one probe now, as many as it has columns. */
+void probes_values(const struct probes *p, struct simulation *s, int probe, double *row);
+
+#endif

@@ -1,0 +1,330 @@
+/* SPDX-License-Identifier: MIT */
+#include "output/reference.h"
+
+#include "case/case.h"
+#include "base/run_dir.h"
+#include "case/params.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_ROWS = 1000000 };
+
+/* --- files: time and value, commas or blanks between them, # comments, one line of names --- */
+
+static const char *next_line(const char *at)
+{
+    at += strcspn(at, "\n");
+    return *at ? at + 1 : at;
+}
+
+/* 1: a row; 0: a line without numbers; -1: neither. */
+static int read_row(const char *line, bool head_possible, double row[2])
+{
+    const char *at = line + strspn(line, " \t\r");
+    if (!*at || *at == '\n' || *at == '#') return 0;
+    if (head_possible && isalpha((unsigned char)*at)) return 0;
+    for (int k = 0; k < 2; k++) {
+        char *end;
+        row[k] = strtod(at, &end);
+        if (end == at || !isfinite(row[k])) return -1;
+        at = end + strspn(end, " \t\r");
+        if (k == 0 && *at == ',') at += 1 + strspn(at + 1, " \t\r");
+    }
+    return *at == '\n' || *at == '\0' ? 1 : -1;
+}
+
+/* Digitised points may go back and forth. */
+static void insert_row(struct reference *r, const double row[2])
+{
+    int k = r->n++;
+    for (; k > 0 && r->t[k - 1] > row[0]; k--) {
+        r->t[k] = r->t[k - 1];
+        r->value[k] = r->value[k - 1];
+    }
+    r->t[k] = row[0];
+    r->value[k] = row[1];
+}
+
+static enum err read_rows(struct reference *r, const char *path, const char *text, struct arena *a,
+                          struct diag *d)
+{
+    int lines = 1;
+    for (const char *at = text; *at; at = next_line(at)) lines++;
+    if (lines > MAX_ROWS) return diag_fail(d, ERR_INPUT, "%s: more than %d lines", path, MAX_ROWS);
+    r->t = arena_alloc(a, (size_t)lines, sizeof *r->t, "reference", d);
+    r->value = arena_alloc(a, (size_t)lines, sizeof *r->value, "reference", d);
+    if (!r->t || !r->value) return ERR_MEMORY;
+    int number = 1;
+    bool head_possible = true;
+    for (const char *at = text; *at; at = next_line(at), number++) {
+        double row[2];
+        const int got = read_row(at, head_possible, row);
+        if (got < 0)
+            return diag_fail(d, ERR_INPUT,
+                             "%s:%d: '%.*s' is no row of a reference; two numbers are expected, "
+                             "time (s) and value (SI)",
+                             path, number, (int)(strcspn(at, "\r\n") % 60), at);
+        if (got > 0) insert_row(r, row);
+        if (got > 0 || isalpha((unsigned char)*at)) head_possible = false;
+    }
+    if (r->n == 0) return diag_fail(d, ERR_INPUT, "%s: holds no row of time and value", path);
+    return ERR_OK;
+}
+
+static enum err read_file(struct reference *r, const struct scene *s, struct arena *a,
+                          struct diag *d)
+{
+    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT], *text;
+    size_t size;
+    struct diag why = {.code = ERR_OK};
+    scene_location(s, r->from->common.line, place);
+    if (!scene_file(s, r->from->file, path, sizeof path))
+        return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, r->from->file);
+    enum err e = file_read(path, &text, &size, &why);
+    if (e)
+        return diag_fail(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: [reference %s] file: %.400s",
+                         place, r->from->common.name, why.text);
+    e = strlen(text) == size ? read_rows(r, path, text, a, d)
+                             : diag_fail(d, ERR_INPUT, "%s: is not a text file", path);
+    free(text);
+    return e;
+}
+
+/* --- columns --- */
+
+enum { COLUMN_NAMES = 64 };
+
+/* The k-th name of a header, its length; NULL: there are fewer. */
+static const char *column_name(const char *header, int k, size_t *length)
+{
+    for (; k > 0; k--) {
+        header = strchr(header, ',');
+        if (!header) return NULL;
+        header++;
+    }
+    *length = strcspn(header, ",\n");
+    return header;
+}
+
+/* Looks for the column in one file; its names are offered as near ones. */
+static bool has_column(struct reference *r, int file, const char *header, struct nearest *near,
+                       char names[][2 * SCENE_NAME], int *n_names)
+{
+    const char *const wanted = r->from->probe, *name;
+    size_t length;
+    for (int k = 1; (name = column_name(header, k, &length)) != NULL; k++) {
+        if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) {
+            r->file = file;
+            r->column = k;
+            return true;
+        }
+        if (*n_names >= COLUMN_NAMES) continue;
+        char *const kept = names[(*n_names)++];
+        snprintf(kept, sizeof names[0], "%.*s", (int)length, name);
+        nearest_offer(near, wanted, kept);
+    }
+    return false;
+}
+
+static enum err find_column(struct reference *r, const struct scene *s, int n,
+                            const char *const *header, struct diag *d)
+{
+    struct nearest near = {0};
+    char place[LOCATION_TEXT], names[COLUMN_NAMES][2 * SCENE_NAME], list[301] = "";
+    int n_names = 0;
+    for (int k = 0; k < n; k++)
+        if (has_column(r, k, header[k], &near, names, &n_names)) return ERR_OK;
+    for (int k = 0; k < n_names; k++)
+        snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? "," : "", names[k]);
+    scene_location(s, r->from->common.line, place);
+    return diag_fail(d, ERR_INPUT,
+                     "%s: [reference %s] probe = %.80s: the probes have the columns %s%s%s", place,
+                     r->from->common.name, r->from->probe, list,
+                     near.name ? "; the nearest is " : "", near.name ? near.name : "");
+}
+
+enum err references_open(struct references *r, const struct scene *s, int n,
+                         const char *const *header, struct arena *a, struct diag *d)
+{
+    r->n = s->n_reference;
+    r->item = arena_alloc(a, (size_t)r->n, sizeof *r->item, "references", d);
+    if (!r->item) return ERR_MEMORY;
+    for (int k = 0; k < r->n; k++) {
+        r->item[k] = (struct reference){.from = &s->reference[k]};
+        TRY(find_column(&r->item[k], s, n, header, d));
+        if (*s->reference[k].file) TRY(read_file(&r->item[k], s, a, d));
+    }
+    return ERR_OK;
+}
+
+/* --- comparison --- */
+
+/* One column of probes.csv beside its times. */
+struct track {
+    int n;
+    double *t, *value;
+};
+
+static void read_track(struct track *track, const char *csv, int column)
+{
+    track->n = 0;
+    for (const char *line = next_line(csv); *line; line = next_line(line)) {
+        if (!strchr(line, '\n')) break; /* torn */
+        size_t length;
+        const char *const field = column_name(line, column, &length);
+        if (!field || field > line + strcspn(line, "\n")) continue;
+        track->t[track->n] = strtod(line, NULL);
+        track->value[track->n++] = strtod(field, NULL);
+    }
+}
+
+static double at_time(const struct track *track, double t)
+{
+    if (track->n < 2) return track->value[0];
+    int low = 0, k = track->n - 1; /* t lies in the interval that ends at row k */
+    while (k - low > 1) {
+        const int middle = (low + k) / 2;
+        *(track->t[middle] < t ? &low : &k) = middle;
+    }
+    const double span = track->t[k] - track->t[k - 1];
+    const double share = span > 0 ? (t - track->t[k - 1]) / span : 0;
+    return track->value[k - 1] + share * (track->value[k] - track->value[k - 1]);
+}
+
+/* The first turn of largest size, but for 2 %: of an oscillation not whichever cycle round-off has made
+ * the highest. */
+static void find_peak(const struct track *v, double from, double until, double *peak, double *when)
+{
+    double top = 0;
+    for (int k = 0; k < v->n; k++)
+        if (v->t[k] >= from && v->t[k] <= until) top = max2(top, fabs(v->value[k]));
+    *peak = *when = (double)NAN;
+    for (int k = 0; k < v->n; k++) {
+        const double here = fabs(v->value[k]);
+        if (v->t[k] < from || v->t[k] > until) continue;
+        if (!isnan(*peak) && here < fabs(*peak)) return;
+        if (here < 0.98 * top || here == fabs(*peak)) continue;
+        *peak = v->value[k];
+        *when = v->t[k];
+    }
+}
+
+/* The reference where it is compared, within the time that both have. */
+static void fill_wanted(const struct reference *r, const struct track *track, double from,
+                        double until, struct track *wanted)
+{
+    wanted->n = 0;
+    const int rows = r->n > 1 ? r->n : track->n;
+    for (int k = 0; k < rows && track->n > 0; k++) {
+        const double t = r->n > 1 ? r->t[k] : track->t[k];
+        if (t < max2(from, track->t[0]) || t > min2(until, track->t[track->n - 1])) continue;
+        wanted->t[wanted->n] = t;
+        wanted->value[wanted->n++] = r->n > 1    ? r->value[k]
+                                     : r->n == 1 ? r->value[0]
+                                                 : scene_expr_at(r->from->formula.e[0], t, 0);
+    }
+}
+
+static void compare(const struct reference *r, const struct track *track, struct track *wanted,
+                    struct score *c)
+{
+    const double from = r->n > 1 ? max2(r->from->from, r->t[0]) : r->from->from;
+    const double until = r->n > 1 ? min2(r->from->until, r->t[r->n - 1]) : r->from->until;
+    *c = (struct score){0};
+    fill_wanted(r, track, from, until, wanted);
+    find_peak(track, from, until, &c->peak, &c->peak_time);
+    find_peak(wanted, from, until, &c->peak_wanted, &c->peak_when);
+    for (int k = 0; k < wanted->n; k++) {
+        const double probe = at_time(track, wanted->t[k]), off = probe - wanted->value[k];
+        c->rms += off * off / wanted->n;
+        c->mean += off / wanted->n;
+        c->probe_mean += probe / wanted->n;
+        c->largest = max2(c->largest, fabs(off));
+        c->scale = max2(c->scale, fabs(wanted->value[k]));
+    }
+    c->points = wanted->n;
+    c->rms = sqrt(c->rms);
+}
+
+enum err references_score(const struct references *r, int file, const char *probes_csv,
+                          struct score *score, struct diag *d)
+{
+    char *csv;
+    size_t size;
+    bool any = false;
+    for (int k = 0; k < r->n; k++) any |= r->item[k].file == file;
+    if (!any) return ERR_OK;
+    TRY(file_read(probes_csv, &csv, &size, d));
+    size_t lines = 1, rows;
+    for (const char *at = csv; *at; at = next_line(at)) lines++;
+    rows = lines;
+    for (int k = 0; k < r->n; k++) rows = rows > (size_t)r->item[k].n ? rows : (size_t)r->item[k].n;
+    double *const numbers = malloc(4 * rows * sizeof *numbers);
+    if (!numbers) {
+        free(csv);
+        return diag_fail(d, ERR_MEMORY, "%s: no memory to compare it", probes_csv);
+    }
+    struct track track = {0, numbers, numbers + rows};
+    struct track wanted = {0, numbers + 2 * rows, numbers + 3 * rows};
+    for (int k = 0; k < r->n; k++) {
+        if (r->item[k].file != file) continue;
+        read_track(&track, csv, r->item[k].column);
+        compare(&r->item[k], &track, &wanted, &score[k]);
+    }
+    free(numbers);
+    free(csv);
+    return ERR_OK;
+}
+
+/* --- what is said of it --- */
+
+static double known(const struct score *c, double value)
+{
+    return c->points > 0 ? value : (double)NAN;
+}
+
+void references_write(struct json *j, const struct references *r, const struct score *score)
+{
+    json_open(j, "references", '{');
+    for (int k = 0; k < r->n; k++) {
+        const struct scene_reference *const from = r->item[k].from;
+        const struct score *const c = &score[k];
+        json_open(j, from->common.name, '{');
+        json_text(j, "probe", from->probe);
+        json_text(j, "label", from->label);
+        json_integer(j, "points", c->points);
+        json_number(j, "rms", known(c, c->rms));
+        json_number(j, "rms_relative", known(c, c->scale > 0 ? c->rms / c->scale : (double)NAN));
+        json_number(j, "largest", known(c, c->largest));
+        json_number(j, "mean", known(c, c->mean));
+        json_number(j, "peak", known(c, c->peak));
+        json_number(j, "peak_time", known(c, c->peak_time));
+        json_number(j, "peak_reference", known(c, c->peak_wanted));
+        json_number(j, "peak_time_reference", known(c, c->peak_when));
+        json_number(j, "peak_error", known(c, c->peak - c->peak_wanted));
+        json_number(j, "peak_time_error", known(c, c->peak_time - c->peak_when));
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
+void reference_line(const struct reference *r, const struct score *c, char *text, size_t size)
+{
+    const char *const name = r->from->label[0] ? r->from->label : r->from->common.name;
+    const double percent = c->scale > 0 ? 100 / c->scale : (double)NAN;
+    if (c->points == 0)
+        snprintf(text, size, "%s: no time in common with %s", r->from->probe, name);
+    else if (r->n == 1)
+        snprintf(text, size, "%s: mean %.4g, %+.2g (%+.2g %%) off %s; RMS %.2g (%.2g %%)",
+                 r->from->probe, c->probe_mean, c->mean, percent * c->mean, name, c->rms,
+                 percent * c->rms);
+    else
+        snprintf(text, size,
+                 "%s: RMS %.3g (%.2g %% of the peak) from %s; peak %.4g at %.4g s instead of %.4g "
+                 "at %.4g s",
+                 r->from->probe, c->rms, percent * c->rms, name, c->peak, c->peak_time,
+                 c->peak_wanted, c->peak_when);
+}

@@ -1,0 +1,269 @@
+/* SPDX-License-Identifier: MIT */
+#include "output/report.h"
+
+#include "case/expr.h"
+#include "base/run_dir.h"
+#include "output/json.h"
+#include "case/params.h"
+
+#include <math.h>
+#include <string.h>
+
+static void write_shapes(struct json *j, const char *key, const struct shape_list *list)
+{
+    static const char *const names[] = {"box", "polygon", "polyline", "circle"};
+    json_open(j, key, '[');
+    for (int k = 0; k < list->n; k++) {
+        const struct shape *shape = &list->item[k];
+        json_open(j, NULL, '{');
+        json_text(j, "kind", names[shape->kind]);
+        json_open(j, "points", '[');
+        for (int i = 0; i < shape->n; i++) json_numbers(j, NULL, shape->pt[i], 2);
+        json_close(j, ']');
+        if (shape->kind == SHAPE_CIRCLE) json_number(j, "radius", shape->size);
+        if (shape->kind == SHAPE_POLYLINE) json_number(j, "thickness", shape->size);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
+static void write_expressions(struct json *j, const struct param *p, const struct scene_expr *value)
+{
+    json_open(j, p->key, '[');
+    for (int k = 0; k < p->count; k++)
+        if (value->e[k]) json_text(j, NULL, expr_source(value->e[k]));
+    json_close(j, ']');
+}
+
+static void write_value(struct json *j, const struct param *p, const void *value)
+{
+    char name[SCENE_NAME];
+    switch (p->type) {
+    case PARAM_REAL: json_number(j, p->key, *(const double *)value); break;
+    case PARAM_INTEGER: json_integer(j, p->key, *(const int *)value); break;
+    case PARAM_CHOICE:
+        param_choice_name(p, *(const int *)value, name);
+        json_text(j, p->key, name);
+        break;
+    case PARAM_TEXT: json_text(j, p->key, value); break;
+    case PARAM_VECTOR: json_numbers(j, p->key, value, 2); break;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: write_expressions(j, p, value); break;
+    case PARAM_SHAPES: write_shapes(j, p->key, value); break;
+    case PARAM_NUMBERS: {
+        const struct number_list *list = value;
+        json_numbers(j, p->key, list->value, list->n);
+        break;
+    }
+    }
+}
+
+static void write_section(struct json *j, enum section_id id, const void *section)
+{
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (param_table[k].section == id)
+            write_value(j, &param_table[k], (const char *)section + param_table[k].offset);
+}
+
+/* The keys at the top of the case stand at the top; sections by word, named ones by name below. */
+static void write_parameters(struct json *j, const struct scene *scene)
+{
+    json_open(j, "parameters", '{');
+    write_section(j, SECTION_top, section_at(scene, SECTION_top, 0));
+    for (int at = 0; at < SECTION_COUNT; at++) {
+        const enum section_id id = (enum section_id)at;
+        if (id == SECTION_top || section_count(scene, id) == 0) continue;
+        json_open(j, section_table[id].word, '{');
+        for (int k = 0; k < section_count(scene, id); k++) {
+            const struct scene_section_common *section = section_at(scene, id, k);
+            if (section_table[id].named) json_open(j, section->name, '{');
+            write_section(j, id, section);
+            if (section_table[id].named) json_close(j, '}');
+        }
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
+static void write_derived(struct json *j, const struct scene *scene)
+{
+    json_open(j, "derived", '{');
+    json_number(j, "h", scene->h);
+    json_number(j, "c0", scene->c0);
+    json_number(j, "rho0", scene->rho0);
+    json_numbers(j, "domain_lower", scene->domain_lower, 2);
+    json_numbers(j, "domain_upper", scene->domain_upper, 2);
+    json_close(j, '}');
+}
+
+static void write_effects(struct json *j, const struct simulation *s)
+{
+    json_open(j, "effects", '[');
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        if (s->effects & (1u << k)) json_text(j, NULL, effect_table[k].name);
+    json_close(j, ']');
+    json_open(j, "effects_called_by", '{');
+    for (int k = 0; k < EFFECT_COUNT; k++) {
+        struct effect_caller by;
+        char text[EFFECT_CALLER_TEXT] = "decided at the start";
+        if (!(s->effects & (1u << k))) continue;
+        if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
+        json_text(j, effect_table[k].name, text);
+    }
+    json_close(j, '}');
+}
+
+enum bound report_binding(const struct simulation *s)
+{
+    int best = BOUND_COUNT;
+    int64_t most = 0;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (s->state.bound_steps[k] > most) best = k, most = s->state.bound_steps[k];
+    return (enum bound)best;
+}
+
+static void number_if(struct json *j, bool known, const char *name, double value)
+{
+    json_number(j, name, known ? value : (double)NAN);
+}
+
+static void write_time_step(struct json *j, const struct simulation *s)
+{
+    const struct state *st = &s->state;
+    json_open(j, "time_step", '{');
+    json_number(j, "last", st->dt);
+    number_if(j, st->steps, "smallest", st->dt_min);
+    number_if(j, st->steps, "largest", st->dt_max);
+    number_if(j, st->steps, "mean", st->time / (double)st->steps);
+    number_if(j, s->dt_solid > 0, "solid", s->dt_solid);
+    json_integer(j, "substeps", s->substeps);
+    const enum bound b = report_binding(s);
+    json_text(j, "bound", b < BOUND_COUNT ? bound_names[b] : "none");
+    json_open(j, "bound_steps", '{');
+    for (int k = 0; k < BOUND_COUNT; k++) json_integer(j, bound_names[k], st->bound_steps[k]);
+    json_close(j, '}');
+    json_close(j, '}');
+}
+
+static void write_ledger(struct json *j, const char *name, const struct ledger *l)
+{
+    json_open(j, name, '{');
+#define LEDGER(column, unit, meaning) json_number(j, #column, l->column);
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+    json_close(j, '}');
+}
+
+static double energy(const struct ledger *l)
+{
+    return l->kinetic + l->potential + l->internal + l->elastic + l->hourglass;
+}
+
+/* The drift is the energy that nothing accounts for, in units of the largest energy that changed
+ * hands: kinetic energy or what potential, compression and strain gave and took. */
+static void write_drift(struct json *j, const struct simulation *s, const struct record *r)
+{
+    const struct ledger *a = &r->first, *b = &r->last;
+    const double moved = fabs(b->potential - a->potential) + fabs(b->internal - a->internal) +
+                         fabs(b->elastic - a->elastic) + max2(a->kinetic, b->kinetic);
+    json_open(j, "drift", '{');
+    json_number(j, "energy_start", energy(a));
+    json_number(j, "energy_end", energy(b));
+    json_number(j, "wall_work", s->state.wall_work);
+    json_number(j, "energy_lost_with_particles", s->state.lost_energy);
+    json_number(j, "dissipated", b->dissipated);
+    number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
+    json_number(j, "momentum_x", b->momentum_x - a->momentum_x);
+    json_number(j, "momentum_y", b->momentum_y - a->momentum_y);
+    json_number(j, "mass", b->mass - a->mass);
+    json_close(j, '}');
+}
+
+static void write_extremes(struct json *j, const struct simulation *s)
+{
+    const bool fluid = s->kind[KIND_FLUID].n > 0, solid = s->kind[KIND_SOLID].n > 0;
+    json_open(j, "extremes", '{');
+    number_if(j, fluid, "density_lowest", s->state.dens_low);
+    number_if(j, fluid, "density_highest", s->state.dens_high);
+    number_if(j, fluid, "speed_highest", s->state.speed_high);
+    number_if(j, solid, "det_F_lowest", s->state.det_low);
+    json_close(j, '}');
+}
+
+double report_rate(const struct simulation *s, const struct record *r)
+{
+    const double steps = (double)(s->state.particle_steps - r->start_particle_steps);
+    return r->wall_seconds > 0 ? steps / r->wall_seconds : 0;
+}
+
+static void write_cost(struct json *j, const struct simulation *s, const struct record *r)
+{
+    json_integer(j, "steps", s->state.steps);
+    json_integer(j, "solid_substeps", s->state.solid_substeps);
+    json_number(j, "wall_seconds", r->wall_seconds);
+    json_open(j, "phase_seconds", '{');
+    for (int k = 0; k < PHASE_COUNT; k++)
+        if (phase_runs((enum phase)k, s->effects))
+            json_number(j, phase_table[k].name, s->phase_seconds[k]);
+    json_close(j, '}');
+    json_number(j, "particle_steps_per_second", report_rate(s, r));
+    json_integer(j, "threads", r->threads);
+    json_integer(j, "memory_bytes", (int64_t)s->arena.bytes);
+}
+
+/* Counters without a place of their own above. */
+static void write_counters(struct json *j, const struct state *st)
+{
+    json_open(j, "counters", '{');
+    json_integer(j, "evaluations", st->evaluations);
+    json_integer(j, "solid_evaluations", st->solid_evaluations);
+    json_integer(j, "sorts", st->sorts);
+    json_integer(j, "particle_steps", st->particle_steps);
+    json_number(j, "exchanged_impulse", st->exchanged);
+    json_close(j, '}');
+}
+
+static void write_head(struct json *j, const struct simulation *s, const struct record *r)
+{
+    json_text(j, "title", s->scene->top.title);
+    json_text(j, "case", s->scene->path);
+    json_text(j, "version", r->version);
+    json_text(j, "exit_reason", r->exit_reason);
+    json_text(j, "message", r->message);
+    json_number(j, "time", s->state.time);
+    json_number(j, "end_time", s->scene->top.end_time);
+    json_number(j, "start_time", r->start_time);
+    json_text(j, "restarted_from", r->restarted_from);
+    json_text(j, "forked_from", r->forked_from);
+    json_integer(j, "snapshots_missed", r->snapshots_missed);
+}
+
+enum err report_summary(const char *folder, struct simulation *s, const struct record *r,
+                        struct diag *d)
+{
+    struct atomic_file out;
+    TRY(atomic_file_open(&out, folder, "summary.json", d));
+    struct json j = {.file = out.file};
+    json_open(&j, NULL, '{');
+    write_head(&j, s, r);
+    json_open(&j, "particles", '{');
+    for (int k = 0; k < KIND_COUNT; k++) json_integer(&j, kind_names[k], s->kind[k].n);
+    json_close(&j, '}');
+    json_integer(&j, "fluid_left_domain", s->state.lost);
+    write_cost(&j, s, r);
+    write_effects(&j, s);
+    write_time_step(&j, s);
+    write_extremes(&j, s);
+    write_drift(&j, s, r);
+    write_ledger(&j, "ledger_start", &r->first);
+    write_ledger(&j, "ledger_end", &r->last);
+    write_counters(&j, &s->state);
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(s));
+    json_text(&j, "state_hash", hash);
+    if (r->score) references_write(&j, r->references, r->score);
+    write_derived(&j, s->scene);
+    write_parameters(&j, s->scene);
+    json_close(&j, '}');
+    return atomic_file_commit(&out, d);
+}

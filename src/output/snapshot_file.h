@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT
+ * Inside of snapshot: the datasets of fields.vtkhdf, and appending to them by HDF5. */
+#ifndef SPHFSI_OUTPUT_SNAPSHOT_FILE_H
+#define SPHFSI_OUTPUT_SNAPSHOT_FILE_H
+
+#include "case/scene.h"
+
+#include <hdf5.h>
+
+/* The datasets below /VTKHDF, in the order of the table in output/snapshot_file.c. */
+enum data {
+    D_POINTS_COUNT,
+    D_CELLS_COUNT,
+    D_IDS_COUNT,
+    D_TIME,
+    D_PARTS_BEFORE,
+    D_PARTS,
+    D_POINTS_BEFORE,
+    D_CELLS_BEFORE,
+    D_IDS_BEFORE,
+    D_POINTS,
+    D_CONNECTIVITY,
+    D_OFFSETS,
+    D_TYPES,
+#define POINTDATA(NAME, name, item, width, choice) D_##NAME,
+#include "case/pointdata.def"
+#undef POINTDATA
+    D_COUNT,
+    D_FIRST_POINTDATA = D_TYPES + 1
+};
+
+/* What a scene's file holds. */
+struct snapshot_layout {
+    bool has[D_COUNT];
+    bool doubles; /* arrays of points are float64 */
+    unsigned deflate;
+};
+struct snapshot_layout snapshot_file_layout(const struct scene *scene);
+
+/* Makes the groups and empty datasets of a new file for snapshots of about n points, packed like those
+ * of another file, whose rows can then be taken over; negative: there is none. */
+bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n,
+                           hid_t like);
+
+/* Columns of a dataset, and whether its values are handed over as double; otherwise as int64. */
+int snapshot_file_width(enum data what);
+bool snapshot_file_real(enum data what);
+
+/* Number of snapshots; negative: it cannot be read. */
+int64_t snapshot_file_steps(hid_t file);
+bool snapshot_file_set_steps(hid_t file, int64_t n);
+
+/* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
+bool snapshot_file_append(hid_t root, enum data what, void *value);
+
+/* Finds the values of n rows of a snapshot, from `first` on, in one column: double where snapshot_file_real
+ * says so, int64_t otherwise. Called by several threads at a time. */
+typedef void snapshot_values(const void *context, enum data what, int column, int64_t first,
+                             int64_t n, void *values);
+
+/* Appends a snapshot of n points to all datasets of points. All threads pack; the file does not depend on
+ * their number. */
+bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
+                                 snapshot_values *values_of, const void *context);
+
+/* Reads the first n rows of a dataset of one column. */
+bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
+
+/* Rows of every dataset in the first `steps` snapshots of a file; false: it does not hold them. */
+bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT]);
+
+/* Appends to `to`, which has the chunks of `from`, what it lacks of the first `steps` snapshots. */
+bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
+                            int64_t steps);
+
+/* Bytes of a point before compression; bytes that a snapshot of n points adds at most. */
+int64_t snapshot_file_point(const struct snapshot_layout *layout);
+int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n);
+
+#endif

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT
+ * How long a sorting stays good. Pairs in cells that do not touch are never looked at; they can only have
+ * come within reach of each other if both, together, hang over their cells' edges by more than what cells are
+ * wider than the reach. How fast things move only says when to measure again. */
+#include <math.h>
+
+#include "particles/cells.h"
+
+enum { DEFERRED, RIGHT, DOWN, UP };
+
+static struct overhang overhang_of(const struct cells *c, const struct cell_list *list,
+                                   const struct particles *p, int32_t cell)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
+        const int32_t i = list->order ? list->order[k] : k;
+        low[0] = min2(low[0], p->x[i]);
+        high[0] = max2(high[0], p->x[i]);
+        low[1] = min2(low[1], p->y[i]);
+        high[1] = max2(high[1], p->y[i]);
+    }
+    const double left = c->lower[0] + cell_x(c, cell) * c->side[0],
+                 bottom = c->lower[1] + cell_y(c, cell) * c->side[1];
+    return (struct overhang){{left - low[0], high[0] - left - c->side[0], bottom - low[1],
+                              high[1] - bottom - c->side[1]}};
+}
+
+void cells_measure(struct cells *c, enum kind kind, const struct particles *p)
+{
+    struct cell_list *const list = &c->kind[kind];
+    double left = -INFINITY, right = left, down = left, up = left;
+#pragma omp parallel for schedule(static) reduction(max : left, right, down, up)
+    for (int32_t k = 0; k < list->n_active; k++) {
+        const struct overhang o = overhang_of(c, list, p, list->active[k]);
+        left = max2(left, o.by[DEFERRED]);
+        right = max2(right, o.by[RIGHT]);
+        down = max2(down, o.by[DOWN]);
+        up = max2(up, o.by[UP]);
+    }
+    list->most = (struct overhang){{left, right, down, up}};
+}
+
+double cells_skin_left(const struct cells *c, double reach)
+{
+    const struct overhang *const fluid = &c->kind[KIND_FLUID].most;
+    double room = INFINITY;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!c->kind[kind].n_active) continue;
+        const struct overhang *const other = &c->kind[kind].most;
+        for (int to = DEFERRED; to <= UP; to++) {
+            const double wider = c->side[to / 2] - reach;
+            room = min2(room, c->stray - other->by[to]);
+            room = min2(room, wider - (fluid->by[to] + other->by[to ^ 1]));
+        }
+    }
+    return room;
+}

@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT */
+#include "particles/clusters.h"
+
+#include "particles/kernel.h"
+
+/* A margin for the rounding of boxes and of what lies in them. */
+#define REACH_MARGIN 1.001
+
+enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
+{
+    for (int k = 0; k < BOX_SIDES; k++) {
+        b->side[k] = arena_alloc(a, (size_t)n, sizeof *b->side[k], "clusters", d);
+        if (!b->side[k]) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+#define FAR_AWAY 1e18f
+
+/* A cell and where it lies from another one, whose own column and row are 1. */
+struct cell_code {
+    int32_t cell;
+    int column, row;
+};
+
+/* The cells around one that have particles, itself among them. */
+SPHFSI_INLINE int cells_around(struct cell_code code[9], const struct cells *c,
+                               const struct cell_list *list, int32_t cell)
+{
+    const int cx = cell_x(c, cell), cy = cell_y(c, cell);
+    int columns[3], n = 0;
+    for (int column = 0; column < 3; column++) columns[column] = cells_place(c, 0, cx + column - 1);
+    for (int row = 0; row < 3; row++) {
+        const int y = cells_place(c, 1, cy + row - 1);
+        for (int column = 0; column < 3 && y >= 0; column++) {
+            const int32_t other = y * c->nx + columns[column];
+            if (columns[column] < 0 || list->count[other] == 0) continue;
+            code[n++] = (struct cell_code){other, column, row};
+        }
+    }
+    return n;
+}
+
+/* Sides of the cells in units of h. */
+struct sides {
+    float x, y;
+};
+
+SPHFSI_INLINE struct sides sides_of(const struct cells *c, double h)
+{
+    return (struct sides){(float)(c->side[0] / h), (float)(c->side[1] / h)};
+}
+
+/* Appends the clusters of a cell; `ahead` is SEEN_AHEAD or 0. By eights, since a cell has four or five: what
+ * wider vectors store beyond is a loss. */
+SPHFSI_INLINE void append(struct surroundings *s, const struct cluster_boxes *boxes,
+                          const struct cell_list *list, struct sides sides, struct cell_code code,
+                          uint32_t ahead)
+{
+    const float dx = (float)(code.column - 1) * sides.x, dy = (float)(code.row - 1) * sides.y;
+    const int32_t first = list->cluster[code.cell], count = clusters_in(list, code.cell);
+    const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
+    const eight_word word =
+        ramp * neighbour_code(1, 0, 0) + (neighbour_code(first, code.column, code.row) | ahead);
+    for (int m = 0; m < count; m += 8) {
+        const int to = s->n + m;
+        for (int k = 0; k < BOX_SIDES; k++)
+            *(eight_float_at *)&s->side[k][to] =
+                *(const eight_float_at *)&boxes->side[k][first + m] + (k < BOX_DOWN ? dx : dy);
+        *(eight_word_at *)&s->code[to] = word + neighbour_code(m, 0, 0);
+    }
+    s->n += count;
+}
+
+/* Boxes that nothing is near to, for a vector that reaches beyond the last. */
+SPHFSI_INLINE void close_boxes(struct surroundings *s)
+{
+    for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(FAR_AWAY));
+}
+
+void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
+                     const struct cells *c, enum kind kind, int32_t cell, double h)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    const struct sides sides = sides_of(c, h);
+    struct cell_code code[9];
+    const int n = cells_around(code, c, list, cell);
+    s->n = 0;
+    for (int k = 0; k < n; k++) append(s, boxes, list, sides, code[k], 0);
+    close_boxes(s);
+}
+
+void clusters_ahead_around(struct surroundings *s, const struct cluster_boxes *boxes,
+                           const struct cells *c, enum kind kind, int32_t cell, double h,
+                           struct cluster_range range)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    const struct sides sides = sides_of(c, h);
+    struct cell_code code[9];
+    const int n = cells_around(code, c, list, cell);
+    s->n = 0;
+    for (int k = 0; k < n; k++) {
+        const int32_t first = list->cluster[code[k].cell];
+        const bool inside = first >= range.first && first < range.end;
+        if (inside && first <= list->cluster[cell]) continue;
+        append(s, boxes, list, sides, code[k], inside ? SEEN_AHEAD : 0);
+    }
+    append(s, boxes, list, sides, (struct cell_code){cell, 1, 1}, SEEN_AHEAD);
+    s->n--;
+    close_boxes(s);
+}
+
+/* Appends those clusters around that lie within reach of a box. */
+SPHFSI_INLINE void list_near(struct cluster_list *near, const struct surroundings *s,
+                             const struct cluster_boxes *boxes, size_t cluster)
+{
+    const vfloat none = vset_float(0), left = vset_float(boxes->side[BOX_LEFT][cluster]),
+                 right = vset_float(boxes->side[BOX_RIGHT][cluster]),
+                 down = vset_float(boxes->side[BOX_DOWN][cluster]),
+                 up = vset_float(boxes->side[BOX_UP][cluster]);
+    const float reach2 = (float)square(REACH_MARGIN * KERNEL_REACH);
+    int n = near->n;
+    for (int k = 0; k < s->n; k += LANES_FLOAT) {
+        const vfloat dx = vmax_float(none, vmax_float(vload_float(&s->side[BOX_LEFT][k]) - right,
+                                                      left - vload_float(&s->side[BOX_RIGHT][k])));
+        const vfloat dy = vmax_float(none, vmax_float(vload_float(&s->side[BOX_DOWN][k]) - up,
+                                                      down - vload_float(&s->side[BOX_UP][k])));
+        n += vkeep_below(&near->code[n], &s->code[k], vfma_float(dy, dy, dx * dx), reach2);
+    }
+    near->n = n;
+}
+
+void clusters_near(struct cluster_list *near, const struct surroundings *s,
+                   const struct cluster_boxes *boxes, int32_t cluster)
+{
+    near->n = 0;
+    list_near(near, s, boxes, (size_t)cluster);
+}
+
+void clusters_ahead_near(struct cluster_list *near, struct surroundings *s,
+                         const struct cluster_boxes *boxes)
+{
+    const uint32_t own = s->code[s->n];
+    near->code[0] = own & ~(uint32_t)SEEN_AHEAD;
+    near->n = 1;
+    list_near(near, s, boxes, neighbour_number(own));
+    /* Now rather than in the next call, which loads what this stores as a part of vectors. */
+    if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
+}

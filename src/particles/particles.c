@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+#include "particles/particles.h"
+
+#include <string.h>
+
+const char *const kind_names[KIND_COUNT] = {"fluid", "wall", "solid"};
+
+const char *const group_names[GROUP_COUNT] = {
+#define GROUP(name, meaning) #name,
+#include "particles/groups.def"
+#undef GROUP
+};
+
+const struct field_info field_table[] = {
+#define FIELD(type, name, group, keep, unit, meaning)                                      \
+    {#name,     #type,      unit, meaning, sizeof(type), offsetof(struct particles, name), \
+     G_##group, KEEP_##keep},
+#include "particles/fields.def"
+#undef FIELD
+};
+const int field_count = COUNT_OF(field_table);
+
+static void *const *slot(const struct particles *p, const struct field_info *f)
+{
+    return (void *const *)(const void *)((const unsigned char *)p + f->offset);
+}
+
+void *field_array(const struct particles *p, const struct field_info *f) { return *slot(p, f); }
+
+enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
+                          const char *what, struct diag *d)
+{
+    memset(p, 0, sizeof *p);
+    p->capacity = capacity;
+    p->groups = groups;
+    for (int k = 0; k < field_count; k++) {
+        const struct field_info *f = &field_table[k];
+        if (!(f->group & groups)) continue;
+        void *memory = arena_alloc(a, (size_t)capacity, f->size, what, d);
+        if (!memory) return ERR_MEMORY;
+        memcpy((unsigned char *)p + f->offset, &memory, sizeof memory);
+    }
+    return ERR_OK;
+}
+
+/* Bits of any 8- or 4-byte field, whatever its declared type. */
+typedef uint64_t bits64 __attribute__((may_alias));
+typedef uint32_t bits32 __attribute__((may_alias));
+
+static void permute_8(bits64 *values, const int32_t *order, int64_t n, bits64 *scratch)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
+}
+
+static void permute_4(bits32 *values, const int32_t *order, int64_t n, bits32 *scratch)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < n; k++) scratch[k] = values[order[k]];
+#pragma omp parallel for schedule(static)
+    for (int64_t k = 0; k < n; k++) values[k] = scratch[k];
+}
+
+void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch)
+{
+    for (int k = 0; k < field_count; k++) {
+        void *values = field_array(p, &field_table[k]);
+        if (!values || field_table[k].keep != KEEP_STATE) continue;
+        if (field_table[k].size == 8)
+            permute_8(values, order, n, scratch);
+        else
+            permute_4(values, order, n, scratch);
+    }
+}
+
+uint64_t particles_hash(const struct particles *p, uint64_t seed)
+{
+    const uint64_t fnv_prime = 0x100000001b3u;
+    uint64_t h = seed;
+    for (int k = 0; k < field_count; k++) {
+        const unsigned char *bytes = field_array(p, &field_table[k]);
+        if (!bytes || field_table[k].keep != KEEP_STATE) continue;
+        const size_t count = (size_t)p->n * field_table[k].size;
+        for (size_t i = 0; i < count; i++) h = (h ^ bytes[i]) * fnv_prime;
+    }
+    return h;
+}
+
+size_t particles_bytes(const struct particles *p)
+{
+    size_t bytes = 0;
+    for (int k = 0; k < field_count; k++)
+        if (field_array(p, &field_table[k])) bytes += (size_t)p->capacity * field_table[k].size;
+    return bytes;
+}

@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ * What a particle is: flat arrays declared from particles/fields.def, one set of them for each kind. */
+#ifndef SPHFSI_PARTICLES_PARTICLES_H
+#define SPHFSI_PARTICLES_PARTICLES_H
+
+#include "base/base.h"
+
+/* Field groups: the unit of allocation, particles/groups.def. */
+enum group_number {
+#define GROUP(name, meaning) GROUP_##name,
+#include "particles/groups.def"
+#undef GROUP
+    GROUP_COUNT
+};
+enum group {
+#define GROUP(name, meaning) G_##name = 1 << GROUP_##name,
+#include "particles/groups.def"
+#undef GROUP
+};
+extern const char *const group_names[GROUP_COUNT];
+
+enum keep { KEEP_STATE, KEEP_DERIVED };
+
+/* The kinds of particles; each kind is a struct particles of its own. */
+enum kind { KIND_FLUID, KIND_WALL, KIND_SOLID, KIND_COUNT };
+extern const char *const kind_names[KIND_COUNT];
+
+/* The particles of one kind. A pointer is NULL while its group is off. Memory: the arena's. */
+struct particles {
+    int64_t n;        /* particles now */
+    int64_t capacity; /* room in each array; vector loads may run past it (ARENA_MARGIN) */
+    unsigned groups;
+#define FIELD(type, name, group, keep, unit, meaning) type *name;
+#include "particles/fields.def"
+#undef FIELD
+};
+
+/* One row of particles/fields.def as data. */
+struct field_info {
+    const char *name, *type, *unit, *meaning;
+    size_t size;   /* bytes of one item */
+    size_t offset; /* of the pointer in struct particles */
+    unsigned group;
+    enum keep keep;
+};
+extern const struct field_info field_table[];
+extern const int field_count;
+
+/* The array of a field, or NULL while its group is off. */
+void *field_array(const struct particles *p, const struct field_info *f);
+
+/* Allocates the arrays of the named groups for `capacity` particles. */
+enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
+                          const char *what, struct diag *d) SPHFSI_CHECKED;
+
+/* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
+void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch);
+
+/* FNV-1a hash of every STATE field, in array order, continuing from `seed`. */
+uint64_t particles_hash(const struct particles *p, uint64_t seed);
+
+/* Bytes the groups of p take in all. */
+size_t particles_bytes(const struct particles *p);
+
+#endif

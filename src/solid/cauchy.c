@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ * The true stress of a particle and the energy of bodies, for output. */
+#include <math.h>
+
+#include "solid/material_energy.h"
+
+/* The displacement gradient of a particle, in all lanes. */
+static struct vtensor2 gradient_at(const struct particles *p, int64_t i)
+{
+    return (struct vtensor2){vset_double(p->Uxx[i]), vset_double(p->Uxy[i]), vset_double(p->Uyx[i]),
+                             vset_double(p->Uyy[i])};
+}
+
+void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
+                  double *det)
+{
+    const struct solid_body *const b = &s->body[p->body[i]];
+    const struct vtensor2 U = gradient_at(p, i), F = deformation(U);
+    double thickness, sigma_zz;
+    material_across(b, U, &thickness, &sigma_zz);
+    const struct vtensor2 PF = vtensor2_mul_t(material_pk1(b, U), F);
+    const double J = vtensor2_det(F)[0] * thickness;
+    sigma[0] = PF.xx[0] / J;
+    sigma[1] = PF.yy[0] / J;
+    sigma[2] = 0.5 * (PF.xy[0] + PF.yx[0]) / J;
+    sigma[3] = sigma_zz;
+    *det = J;
+}
+
+double solid_von_mises(const double sigma[4])
+{
+    const double xx = sigma[0], yy = sigma[1], xy = sigma[2], zz = sigma[3];
+    return sqrt(0.5 * (square(xx - yy) + square(yy - zz) + square(zz - xx)) + 3 * square(xy));
+}
+
+void solid_energy(const struct solid *s, const struct particles *p, int body, double *elastic,
+                  double *hourglass, double *det_low)
+{
+    *elastic = *hourglass = 0;
+    *det_low = INFINITY;
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        if (body != SOLID_ALL && pack->body != body) continue;
+        const struct solid_body *const b = &s->body[pack->body];
+        double locked[LANES_FLOAT] = {0};
+        if (b->kappa > 0) s->sweeps->hourglass(s, pack, locked);
+        for (int l = 0; l < pack->lanes; l++) {
+            const struct vtensor2 U = gradient_at(p, pack->i + l);
+            const double det = vtensor2_det(deformation(U))[0];
+            *elastic += material_energy(b, U)[0] * square(b->dp);
+            *hourglass += locked[l];
+            if (!(det >= *det_low)) *det_low = det;
+        }
+    }
+}

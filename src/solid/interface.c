@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ * A fluid that is struck answers at once with the pressure rho0 c0 times the velocity, and sound spreads
+ * it later. Held over the structure's sub-steps, that answer comes a step late, and modes that swing
+ * by a quarter to three quarters of a period meanwhile take energy from it. */
+#include "solid/interface.h"
+
+#include <math.h>
+
+/* Of what is owed, in a step: as slow as to leave modes that swing within some tens of steps alone. A tenth
+ * drives structures of a fiftieth of the fluid's density again; none leaves them too heavy. */
+#define RETURN_FRACTION 0.02
+
+static void return_fraction(struct particles *p, int64_t i, double per_time)
+{
+    p->fx[i] -= RETURN_FRACTION * per_time * p->interface_impulse_x[i];
+    p->fy[i] -= RETURN_FRACTION * per_time * p->interface_impulse_y[i];
+    p->interface_impulse_x[i] *= 1 - RETURN_FRACTION;
+    p->interface_impulse_y[i] *= 1 - RETURN_FRACTION;
+}
+
+/* A particle's face: the direction of its wetted surface times the root of the share that one sub-step of dt,
+ * taken implicitly so that no bound follows from it, takes of the velocity along that; and velocity and
+ * acceleration along it as the fluid expects them. Dry and clamped ones have none. */
+static void find_face(const struct solid *s, struct particles *p, int64_t i, double dt)
+{
+    const struct solid_body *const body = &s->body[p->body[i]];
+    const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i])) * p->free[i];
+    const double k = dt * body->impedance_fraction * s->impedance * wet / body->mass;
+    const double root = wet > 0 ? sqrt(k / (1 + k)) / wet : 0;
+    p->face_x[i] = root * p->wet_x[i];
+    p->face_y[i] = root * p->wet_y[i];
+    p->face_v[i] = p->wx[i] * p->face_x[i] + p->wy[i] * p->face_y[i];
+    p->face_a[i] = body->acceleration_weight * (p->ax[i] * p->face_x[i] + p->ay[i] * p->face_y[i]);
+    p->face_dv[i] = 0;
+}
+
+void interface_begin(const struct solid *s, struct particles *p, double dt, int n)
+{
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        return_fraction(p, i, 1 / (n * dt));
+        find_face(s, p, i, dt);
+    }
+}
+
+void interface_end(const struct solid *s, struct particles *p)
+{
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double impulse = s->body[p->body[i]].mass * p->face_dv[i];
+        p->interface_impulse_x[i] -= impulse * p->face_x[i];
+        p->interface_impulse_y[i] -= impulse * p->face_y[i];
+    }
+}

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+#include "solid/loads.h"
+
+#include "geometry/outline.h"
+
+#include <math.h>
+
+/* --- the beginning --- */
+
+static int moving_clamp(const struct scene *scene, int body)
+{
+    return scene_find_motion(scene, scene->solid[body].clamp_motion);
+}
+
+static enum err find_held(struct loads *v, struct arena *a, const struct particles *p,
+                          struct diag *d)
+{
+    for (int64_t i = 0; i < p->n; i++)
+        v->n_held += p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0;
+    v->held = arena_alloc(a, (size_t)v->n_held, sizeof *v->held, "moving clamps", d);
+    v->held_power = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_power, "moving clamps", d);
+    v->motion = arena_alloc(a, (size_t)v->scene->n_solid, sizeof *v->motion, "moving clamps", d);
+    if (!v->held || !v->held_power || !v->motion) return ERR_MEMORY;
+    v->n_held = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0)
+            v->held[v->n_held++] = (int32_t)i;
+    return ERR_OK;
+}
+
+/* Appends the particles of a load; a centre on an edge counts as above and to the right of it, as where
+ * bodies are sampled. */
+static enum err find_loaded(struct loads *v, struct load_region *load, const struct particles *p,
+                            struct arena *temp, struct diag *d)
+{
+    const struct scene_load *const from = &v->scene->load[load->section];
+    const int body = scene_find_solid(v->scene, from->body);
+    struct outlines o;
+    TRY(outlines_of(&o, v->scene, &from->shape, temp, d));
+    double *const scratch =
+        arena_alloc(temp, (size_t)outlines_capacity(&o) + 4, sizeof *scratch, "loads", d);
+    if (!scratch) return ERR_MEMORY;
+    load->first = v->n_loaded;
+    const double nudge = 1e-6 * v->scene->top.dp;
+    for (int64_t i = 0; i < p->n; i++) {
+        bool inside = false;
+        for (int k = 0; k < o.n && p->body[i] == body && !inside; k++)
+            inside =
+                outline_contains(&o.item[k], p->X[i] + nudge, p->Y[i] + 0.618 * nudge, scratch);
+        if (inside) v->loaded[v->n_loaded++] = (int32_t)i;
+    }
+    load->end = v->n_loaded;
+    if (load->end == load->first)
+        return diag_fail(d, ERR_INPUT, "[load %s] holds no particle of [solid %s]",
+                         from->common.name, from->body);
+    return ERR_OK;
+}
+
+/* Each particle's part of the force, or the traction on the dp of surface that it stands for. */
+static void set_forces(struct loads *v, const struct load_region *load, const struct solid *s,
+                       const struct particles *p)
+{
+    const struct scene_load *const from = &v->scene->load[load->section];
+    const bool traction = from->traction.e[0] != NULL;
+    const struct scene_expr *const value = traction ? &from->traction : &from->force;
+    const double share = traction ? s->body[scene_find_solid(v->scene, from->body)].dp
+                                  : 1 / (double)(load->end - load->first);
+    for (int64_t k = load->first; k < load->end; k++) {
+        const int32_t i = v->loaded[k];
+        v->fx[k] = share * scene_expr_at(value->e[0], p->X[i], p->Y[i]);
+        v->fy[k] = share * scene_expr_at(value->e[1], p->X[i], p->Y[i]);
+    }
+}
+
+static enum err find_loads(struct loads *v, struct arena *a, const struct solid *s,
+                           const struct particles *p, struct arena *temp, struct diag *d)
+{
+    v->load = arena_alloc(a, (size_t)v->n_loads, sizeof *v->load, "loads", d);
+    const size_t most = (size_t)v->n_loads * (size_t)p->n;
+    v->loaded = arena_alloc(temp, most, sizeof *v->loaded, "loads", d);
+    if (!v->load || !v->loaded) return ERR_MEMORY;
+    for (int k = 0; k < v->n_loads; k++) {
+        v->load[k].section = k;
+        TRY(find_loaded(v, &v->load[k], p, temp, d));
+    }
+    const size_t n = (size_t)v->n_loaded;
+    const int32_t *const found = v->loaded;
+    v->loaded = arena_alloc(a, n, sizeof *v->loaded, "loads", d);
+    v->fx = arena_alloc(a, n, sizeof *v->fx, "loads", d);
+    v->fy = arena_alloc(a, n, sizeof *v->fy, "loads", d);
+    v->factor = arena_alloc(a, (size_t)v->n_loads, sizeof *v->factor, "loads", d);
+    if (!v->loaded || !v->fx || !v->fy || !v->factor) return ERR_MEMORY;
+    for (size_t k = 0; k < n; k++) v->loaded[k] = found[k];
+    for (int k = 0; k < v->n_loads; k++) set_forces(v, &v->load[k], s, p);
+    return ERR_OK;
+}
+
+enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
+                      const struct solid *s, struct particles *p, struct diag *d)
+{
+    *v = (struct loads){.scene = scene, .n_loads = scene->n_load};
+    TRY(find_held(v, a, p, d));
+    struct arena temp = {.limit = a->limit};
+    const enum err e = find_loads(v, a, s, p, &temp, d);
+    arena_free(&temp);
+    if (e) return e;
+    for (int64_t k = 0; k < v->n_held; k++) p->free[v->held[k]] = 1;
+    loads_place_clamps(v, p, 0);
+    return ERR_OK;
+}
+
+/* --- on the way --- */
+
+static void move(struct loads *v, double time)
+{
+    for (int b = 0; b < v->scene->n_solid && v->n_held; b++)
+        v->motion[b] = motion_at(v->scene, moving_clamp(v->scene, b), time);
+}
+
+void loads_place_clamps(struct loads *v, struct particles *p, double time)
+{
+    move(v, time);
+    for (int64_t k = 0; k < v->n_held; k++) {
+        const int32_t i = v->held[k];
+        const struct motion_point at = motion_of_point(&v->motion[p->body[i]], p->X[i], p->Y[i]);
+        p->ux[i] = at.x[0] - p->X[i];
+        p->uy[i] = at.x[1] - p->Y[i];
+        p->vx[i] = at.v[0];
+        p->vy[i] = at.v[1];
+        if (p->interface_impulse_x)
+            p->interface_impulse_x[i] = p->interface_impulse_y[i] =
+                0; /* a fork's new clamp takes it */
+    }
+}
+
+void clear_driven_normals(const struct loads *v, struct particles *p)
+{
+    for (int64_t k = 0; k < v->n_held; k++) p->face_x[v->held[k]] = p->face_y[v->held[k]] = 0;
+}
+
+/* Dead loads: they keep their direction and do not follow the surface. */
+void loads_forces(struct loads *v, const struct solid *s, struct particles *p, double time)
+{
+    for (int n = 0; n < v->n_loads; n++) {
+        const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
+        const double factor = v->factor[n] = history ? scene_expr_at(history, time, 0) : 1;
+        for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
+            const int32_t i = v->loaded[k];
+            const double per_mass = factor * p->free[i] / s->body[p->body[i]].mass;
+            p->sx[i] += v->fx[k] * per_mass;
+            p->sy[i] += v->fy[k] * per_mass;
+        }
+    }
+    move(v, time);
+    for (int64_t k = 0; k < v->n_held; k++) {
+        const int32_t i = v->held[k];
+        const struct motion_point at = motion_of_point(&v->motion[p->body[i]], p->X[i], p->Y[i]);
+        const double mass = s->body[p->body[i]].mass;
+        v->held_power[k] = mass * ((at.a[0] - p->sx[i]) * at.v[0] + (at.a[1] - p->sy[i]) * at.v[1]);
+        p->sx[i] = at.a[0];
+        p->sy[i] = at.a[1];
+    }
+}
+
+double loads_work(const struct loads *v, const struct particles *p, const double *vx,
+                  const double *vy, double dt)
+{
+    double work = 0;
+    for (int n = 0; n < v->n_loads; n++)
+        for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
+            const int32_t i = v->loaded[k];
+            work += v->factor[n] * p->free[i] * dt *
+                    (v->fx[k] * (vx[i] + 0.5 * dt * p->sx[i]) +
+                     v->fy[k] * (vy[i] + 0.5 * dt * p->sy[i]));
+        }
+    for (int64_t k = 0; k < v->n_held; k++) work += dt * v->held_power[k];
+    return work;
+}

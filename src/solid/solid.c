@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: MIT */
+#include "solid/solid.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "solid/contact.h"
+#include "solid/loads.h"
+#include "solid/interface.h"
+#include "base/barrier.h"
+#include "particles/kernel.h"
+#include "solid/packed.h"
+#include "solid/parts.h"
+#include "solid/stencil.h"
+
+static struct solid_body body_of(const struct scene *scene, int k)
+{
+    const struct scene_solid *const c = &scene->solid[k];
+    const double dp = scene_solid_dp(scene, k), h = scene->numerics.h_over_dp * dp;
+    const double E = c->young, nu = c->poisson, on = c->gravity ? 1 : 0;
+    const double bulk = E / (3 * (1 - 2 * nu));
+    return (struct solid_body){
+        .dp = dp,
+        .h = h,
+        .lambda = E * nu / ((1 + nu) * (1 - 2 * nu)),
+        .mu = E / (2 * (1 + nu)),
+        .density = c->density,
+        .young = E,
+        .mass = c->density * square(dp),
+        .sound_speed = sqrt(bulk / c->density), /* Eq. 29 */
+        .viscosity = c->artificial_viscosity * sqrt(bulk / c->density) * h,
+        .kappa = c->hourglass,
+        .damping_time = c->damping_time,
+        .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
+        .law = c->law,
+        .plane = c->plane,
+        .gradient = c->gradient,
+        .symmetric = c->viscosity_form == VISCOSITY_SYMMETRIC,
+        .variational = c->hourglass > 0 && c->hourglass_form == HOURGLASS_VARIATIONAL,
+    };
+}
+
+/* Bodies that are joined, directly or by way of others, get the number of the first of them. */
+static void join_bodies(struct solid *s, const struct scene *scene)
+{
+    for (int k = 0; k < s->n_bodies; k++) s->body[k].bond = k;
+    for (int k = 0; k < s->n_bodies; k++) {
+        if (!scene->solid[k].joined[0]) continue;
+        const int a = s->body[k].bond,
+                  b = s->body[scene_find_solid(scene, scene->solid[k].joined)].bond;
+        for (int j = 0; j < s->n_bodies; j++)
+            if (s->body[j].bond == a || s->body[j].bond == b) s->body[j].bond = a < b ? a : b;
+    }
+    for (int k = 0; k < s->n_bodies; k++)
+        for (int j = 0; j < s->n_bodies; j++)
+            s->body[k].mixed |=
+                s->body[j].bond == s->body[k].bond && s->body[j].density * s->body[j].viscosity !=
+                                                          s->body[k].density * s->body[k].viscosity;
+}
+
+/* All threads where each has enough of n particles between two barriers to outweigh them, or one: a team
+ * that shrinks costs more than it saves, since libgomp ends the threads left over and starts others for the
+ * next. */
+static int useful_threads(int64_t n)
+{
+    enum { PARTICLES_PER_THREAD = 192 };
+    return n >= (int64_t)PARTICLES_PER_THREAD * thread_count() ? thread_count() : 1;
+}
+
+/* Eq. 17 has no potential: its operator is not symmetric, and some shapes have modes that grow at a rate
+ * that does not depend on the step (tests/stability/test_step_bound.c). */
+static void warn_of_flutter(const struct solid_body *b, const char *name, struct diag *d)
+{
+    const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
+    if (b->variational || !(b->kappa > (quadratic ? 0 : 10))) return;
+    diag_warn(
+        d,
+        "[solid %s] hourglass_form = printed with %s has growing modes at any time step%s; take "
+        "hourglass_form = variational%s",
+        name, quadratic ? "gradient = quadratic" : "hourglass above 10",
+        quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
+}
+
+/* Float holds what a displacement gradient has of a turn to 1e-7 of it, beside strains that may be smaller,
+ * and what that does to the motion adds up where nothing damps it: a steel strip without viscosity gained
+ * 4e-4 of its energy in 0.14 s, with alpha_s = 0.001 as much as in double. */
+#define DAMPED 0.01
+
+/* The name of a body for which float is not enough; NULL: there is none. */
+static const char *needs_double(const struct solid *s, const struct scene *scene,
+                                const struct particles *p)
+{
+    /* NOLINTNEXTLINE(clang-analyzer-core.VLASize): a solid has bodies */
+    bool held[s->n_bodies];
+    memset(held, 0, sizeof held);
+    for (int64_t i = 0; i < p->n; i++) {
+        const int k = p->body[i];
+        if (p->free[i] == 0 && scene_find_motion(scene, scene->solid[k].clamp_motion) < 0)
+            held[s->body[k].bond] = true;
+    }
+    for (int k = 0; k < s->n_bodies; k++)
+        if (!held[s->body[k].bond] || scene->solid[k].artificial_viscosity < DAMPED)
+            return scene->solid[k].common.name;
+    return NULL;
+}
+
+static const struct solid_sweeps *choose_sweeps(const struct solid *s, const struct scene *scene,
+                                                const struct particles *p, struct diag *d)
+{
+    const int choice = scene->numerics.solid_precision;
+    if (scene->top.precision == PRECISION_DOUBLE || choice == SOLID_PRECISION_DOUBLE)
+        return &solid_sweeps_double;
+    const char *const name = needs_double(s, scene, p);
+    if (!name) return &solid_sweeps_mixed;
+    if (choice == SOLID_PRECISION_AUTO) return &solid_sweeps_double;
+    diag_warn(
+        d,
+        "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
+        "artificial_viscosity below %g: its stress may be off by 1e-6 of Young's modulus, and "
+        "energy may come from nowhere; auto would take double",
+        name, DAMPED);
+    return &solid_sweeps_mixed;
+}
+
+enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
+                      struct particles *p, struct diag *d)
+{
+    memset(s, 0, sizeof *s);
+    s->n_bodies = scene->n_solid;
+    s->dp = INFINITY;
+    s->coupled = p->groups & G_COUPLED;
+    s->body = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->body, "bodies", d);
+    if (!s->body) return ERR_MEMORY;
+    s->paper_step = INFINITY;
+    for (int k = 0; k < s->n_bodies; k++) {
+        s->body[k] = body_of(scene, k);
+        warn_of_flutter(&s->body[k], scene->solid[k].common.name, d);
+        s->variational |= s->body[k].variational;
+        s->kelvin_voigt |= s->body[k].damping_time > 0;
+        s->paper_step =
+            min2(s->paper_step, 0.6 * s->body[k].h / s->body[k].sound_speed); /* Eq. 29 */
+        s->dp = min2(s->dp, s->body[k].dp);
+    }
+    join_bodies(s, scene);
+    s->sweeps = choose_sweeps(s, scene, p, d);
+    TRY(solid_packed_create(s, a, p, d));
+    TRY(solid_stencil_create(s, a, p, d));
+    for (int k = 0; k < s->n_bodies; k++)
+        if (scene->solid[k].joined[0] && !s->body[k].touches)
+            return diag_fail(d, ERR_INPUT,
+                             "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
+                             "away from it",
+                             scene->solid[k].common.name, scene->solid[k].joined,
+                             KERNEL_REACH * s->body[k].h);
+    for (int k = 0; k < (int)COUNT_OF(s->scratch); k++) {
+        s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
+        if (!s->scratch[k]) return ERR_MEMORY;
+    }
+    s->barrier = arena_alloc(a, 1, sizeof *s->barrier, "meeting point of the threads", d);
+    if (!s->barrier) return ERR_MEMORY;
+    s->threads = useful_threads(p->n);
+    return solid_parts_create(s, a, p, d);
+}
+
+/* What a thread of a parallel region steps: its share of the packs of all, or a part of its own. */
+struct chunk {
+    const struct solid *s;
+    struct particles *p;
+    int64_t first, last;     /* its packs */
+    struct solid_part *part; /* NULL: threads share the arrays */
+};
+
+static struct chunk chunk_of(const struct solid *s, struct particles *p)
+{
+    const int64_t threads = thread_team(), me = thread_index();
+    return (struct chunk){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads, NULL};
+}
+
+static struct chunk chunk_of_part(struct solid_part *part)
+{
+    return (struct chunk){&part->solid, &part->p, 0, part->solid.n_packs, part};
+}
+
+static void sweep(const struct chunk *own, solid_sweep *f)
+{
+    f(own->s, own->p, own->first, own->last);
+}
+
+/* All threads together: each has what the others have found. */
+static void together(const struct chunk *own, unsigned found)
+{
+    if (own->part)
+        halo_exchange(own->part, found);
+    else
+        barrier_wait(own->s->barrier);
+}
+
+static void stress_sweeps(const struct chunk *own)
+{
+    const struct solid *const s = own->s;
+    sweep(own, s->sweeps->stress);
+    if (s->variational) {
+        together(own, HALO_GRADIENT);
+        sweep(own, s->sweeps->pairs);
+    }
+    if (s->kelvin_voigt) sweep(own, s->sweeps->damping);
+    together(own, s->variational ? HALO_STRESS : HALO_GRADIENT | HALO_STRESS);
+}
+
+/* What acts on each particle beside its neighbours; clamped ones do not move. */
+static void add_own_forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    for (int64_t k = first; k < last; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        const struct solid_body *const body = &s->body[pack->body];
+        const double per_mass = 1 / body->mass;
+#pragma omp simd
+        for (int64_t i = pack->i; i < pack->i + pack->lanes; i++) {
+            double ax = p->sx[i], ay = p->sy[i];
+            if (s->coupled) {
+                ax += p->fx[i] * per_mass;
+                ay += p->fy[i] * per_mass;
+            }
+            if (s->push[0]) {
+                ax += s->push[0][i];
+                ay += s->push[1][i];
+            }
+            p->sx[i] = (ax + body->gravity[0]) * p->free[i];
+            p->sy[i] = (ay + body->gravity[1]) * p->free[i];
+        }
+    }
+}
+
+static void force_sweeps(const struct chunk *own)
+{
+    sweep(own, own->s->sweeps->forces);
+    sweep(own, add_own_forces);
+    if (!own->part) barrier_wait(own->s->barrier);
+}
+
+/* What acts on the solid from outside, each a pass of its own. */
+static void outer_forces(const struct solid *s, struct particles *p, double time)
+{
+    if (s->contact) {
+        const double start = wall_clock();
+        contact_forces(s->contact, s, p, time);
+#pragma omp master
+        s->contact->seconds += wall_clock() - start;
+    }
+    if (s->loads) {
+#pragma omp single
+        loads_forces(s->loads, s, p, time);
+    }
+}
+
+/* The first behind a share's particles, and the first of them. */
+static int64_t end_of(const struct chunk *own)
+{
+    return own->last < own->s->n_packs ? own->s->pack[own->last].i : own->p->n;
+}
+
+static int64_t first_of(const struct chunk *own)
+{
+    return own->first < own->last ? own->s->pack[own->first].i : end_of(own);
+}
+
+/* What the sweeps take of new places and velocities is taken at once. */
+static void look(const struct chunk *own)
+{
+    sweep(own, own->s->sweeps->look);
+    together(own, HALO_POSITION);
+}
+
+/* Kick and drift, with the fluid's answer to the kick where there is one: `since` it saw the structure. */
+SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool answered,
+                                  double since)
+{
+    const struct particles *const p = own->p;
+    const int64_t end = end_of(own);
+#pragma omp simd
+    for (int64_t i = first_of(own); i < end; i++) {
+        p->vx[i] += kick * p->sx[i];
+        p->vy[i] += kick * p->sy[i];
+        if (answered) impedance_kick(p, i, since);
+        p->ux[i] += drift * p->vx[i];
+        p->uy[i] += drift * p->vy[i];
+    }
+    look(own);
+}
+
+static void move(const struct chunk *own, double kick, double drift)
+{
+    kick_and_drift(own, kick, drift, false, 0);
+}
+
+static void move_answered(const struct chunk *own, double kick, double drift, double since)
+{
+    kick_and_drift(own, kick, drift, true, since);
+}
+
+void solid_stress(struct solid *s, struct particles *p)
+{
+    s->in_parts = false;
+#pragma omp parallel num_threads(s->threads)
+    {
+        const struct chunk own = chunk_of(s, p);
+        sweep(&own, s->sweeps->look);
+        together(&own, HALO_POSITION);
+        stress_sweeps(&own);
+        sweep(&own, s->sweeps->show);
+    }
+}
+
+void solid_forces(const struct solid *s, struct particles *p)
+{
+#pragma omp parallel num_threads(s->threads)
+    {
+        const struct chunk own = chunk_of(s, p);
+        force_sweeps(&own);
+        outer_forces(s, p, s->time);
+    }
+}
+
+void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
+                     double dt)
+{
+    if (s->contact) s->work += dt * contact_power(s->contact);
+    if (s->loads) s->work += loads_work(s->loads, p, vx, vy, dt);
+}
+
+void solid_place_clamps(const struct solid *s, struct particles *p, double time)
+{
+    if (s->loads) loads_place_clamps(s->loads, p, time);
+}
+
+/* Between the sub-steps: all threads together. */
+static void place_clamps(const struct chunk *own, double time)
+{
+    const struct solid *const s = own->s;
+    if (!s->loads) return;
+#pragma omp single
+    loads_place_clamps(s->loads, own->p, time);
+    look(own);
+}
+
+static void book_work(struct solid *s, const struct particles *p, double dt)
+{
+    if (!s->contact && !s->loads) return;
+#pragma omp single
+    solid_book_work(s, p, p->vx, p->vy, dt);
+}
+
+/* The sub-steps of solid_advance by one of its threads; s is the whole. */
+static void substeps(struct solid *s, const struct chunk *own, double dt, int n, bool centred)
+{
+    struct particles *const p = own->p;
+    const double first = centred ? 0.5 * dt : 0;
+    move(own, 0, first);
+    if (centred) place_clamps(own, s->time + first);
+    for (int k = 0; k < n; k++) {
+        stress_sweeps(own);
+        force_sweeps(own);
+        outer_forces(s, p, s->time + k * dt + first);
+        book_work(s, p, dt);
+        const double drift = k + 1 < n ? dt : dt - first;
+        if (s->impedance > 0)
+            move_answered(own, dt, drift, s->time_since_fluid_eval + (k + 1) * dt);
+        else
+            move(own, dt, drift);
+        place_clamps(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
+    }
+}
+
+/* Whether each thread of a region can step its part by itself: there is one for each, nothing from outside
+ * looks at the whole in between, and there are sub-steps enough to outweigh the copies. */
+static bool steps_parts(const struct solid *s, int n)
+{
+    enum { WORTH_COPYING = 4 };
+    return s->part && n >= WORTH_COPYING && !s->contact && !s->loads && !s->push[0] &&
+           thread_team() == s->threads;
+}
+
+/* By all threads together. */
+static void begin_impedance(const struct solid *s, struct particles *p, double dt, int n)
+{
+    interface_begin(s, p, dt, n);
+    if (!s->loads) return;
+#pragma omp single
+    clear_driven_normals(s->loads, p);
+}
+
+void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
+{
+    bool in_parts = false;
+#pragma omp parallel num_threads(s->threads)
+    {
+        if (s->impedance > 0) begin_impedance(s, p, dt, n);
+        if (steps_parts(s, n)) {
+            struct solid_part *const part = &s->part[thread_index()];
+            const struct chunk own = chunk_of_part(part);
+            solid_part_load(part, p);
+            substeps(s, &own, dt, n, centred);
+            solid_part_store(part, p);
+#pragma omp master
+            in_parts = true;
+        } else {
+            const struct chunk own = chunk_of(s, p);
+            substeps(s, &own, dt, n, centred);
+        }
+        if (s->impedance > 0) {
+#pragma omp barrier
+            interface_end(s, p);
+        }
+    }
+    s->in_parts = in_parts;
+    s->time += n * dt;
+}
+
+void solid_show(const struct solid *s, struct particles *p)
+{
+#pragma omp parallel num_threads(s->threads)
+    {
+        const struct chunk own = chunk_of(s, p);
+        if (!s->in_parts) sweep(&own, s->sweeps->show);
+#pragma omp for schedule(static)
+        for (int k = 0; k < (s->in_parts ? s->threads : 0); k++) solid_part_show(&s->part[k], p);
+    }
+}

@@ -1,0 +1,501 @@
+/* SPDX-License-Identifier: MIT
+ * The solid's reference neighbours, which never change: packs of particles and their slots. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "particles/kernel.h"
+#include "solid/packed.h"
+#include "solid/stencil.h"
+
+/* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
+enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
+
+/* W_X of a lane that has no such neighbour: it divides by the distance all the same, which must not
+ * vanish. */
+#define NOBODY 1e6
+
+/* A slot in the making. */
+struct draft {
+    double weight[SOLID_WEIGHTS][MAX_LANES];
+    int64_t offset;
+};
+
+struct bucket_grid {
+    double lower[2], side;
+    int nx, ny;
+    int32_t *first, *next; /* chains of particles by bucket, -1 ends */
+};
+
+static enum err buckets_create(struct bucket_grid *g, struct arena *a, const struct particles *p,
+                               double reach, struct diag *d)
+{
+    double upper[2] = {-INFINITY, -INFINITY};
+    g->lower[0] = g->lower[1] = INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        g->lower[0] = min2(g->lower[0], p->X[i]);
+        g->lower[1] = min2(g->lower[1], p->Y[i]);
+        upper[0] = max2(upper[0], p->X[i]);
+        upper[1] = max2(upper[1], p->Y[i]);
+    }
+    /* Few bodies far apart must not cost a bucket for every spot between them. */
+    g->side = max2(reach, 1e-4 * max2(upper[0] - g->lower[0], upper[1] - g->lower[1]));
+    g->nx = (int)((upper[0] - g->lower[0]) / g->side) + 1;
+    g->ny = (int)((upper[1] - g->lower[1]) / g->side) + 1;
+    const size_t n_buckets = (size_t)g->nx * (size_t)g->ny;
+    g->first = arena_alloc(a, n_buckets, sizeof *g->first, "buckets of the solid", d);
+    g->next = arena_alloc(a, (size_t)p->n, sizeof *g->next, "buckets of the solid", d);
+    if (!g->first || !g->next) return ERR_MEMORY;
+    for (size_t k = 0; k < n_buckets; k++) g->first[k] = -1;
+    for (int64_t i = p->n - 1; i >= 0; i--) {
+        const int bx = (int)((p->X[i] - g->lower[0]) / g->side);
+        const int by = (int)((p->Y[i] - g->lower[1]) / g->side);
+        g->next[i] = g->first[by * g->nx + bx];
+        g->first[by * g->nx + bx] = (int32_t)i;
+    }
+    return ERR_OK;
+}
+
+/* X_a - X_b, rounded to 2^-30 dp: on a lattice equal surroundings become equal to the bit, so that
+ * packs can share their slots. */
+static double reference_distance(double a, double b, double dp)
+{
+    const double unit = ldexp(dp, -30);
+    return nearbyint((a - b) / unit) * unit;
+}
+
+static int compare_index(const void *a, const void *b)
+{
+    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near, are
+ * not bonded to it. -1: too many. */
+static int neighbours_of(const struct solid *s, const struct bucket_grid *g,
+                         const struct particles *p, int64_t i, int32_t *found)
+{
+    const struct solid_body *const own = &s->body[p->body[i]];
+    const double reach = KERNEL_REACH * own->h, dp = own->dp;
+    const int bx = (int)((p->X[i] - g->lower[0]) / g->side),
+              by = (int)((p->Y[i] - g->lower[1]) / g->side);
+    int n = 0;
+    for (int y = by > 0 ? by - 1 : 0; y <= by + 1 && y < g->ny; y++) {
+        for (int x = bx > 0 ? bx - 1 : 0; x <= bx + 1 && x < g->nx; x++) {
+            for (int32_t j = g->first[y * g->nx + x]; j >= 0; j = g->next[j]) {
+                if (j == i || s->body[p->body[j]].bond != own->bond) continue;
+                const double dx = reference_distance(p->X[i], p->X[j], dp);
+                const double dy = reference_distance(p->Y[i], p->Y[j], dp);
+                if (dx * dx + dy * dy >= reach * reach) continue;
+                if (n == MAX_NEIGHBOURS) return -1;
+                found[n++] = j;
+            }
+        }
+    }
+    qsort(found, (size_t)n, sizeof *found, compare_index);
+    return n;
+}
+
+/* The slot of a pack for neighbours at this offset, made if there is none. */
+static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
+{
+    for (int k = 0; k < *n; k++)
+        if (slots[k].offset == offset) return &slots[k];
+    struct draft *const slot = &slots[(*n)++];
+    memset(slot, 0, sizeof *slot);
+    slot->offset = offset;
+    for (int l = 0; l < MAX_LANES; l++) slot->weight[W_X][l] = NOBODY;
+    return slot;
+}
+
+/* What gives the gradient at a particle from the fields of its neighbours. */
+struct gradient_moments {
+    double inverse[2][5]; /* rows d/dX and d/dY of the inverse moment matrix */
+    bool quadratic;
+};
+
+/* Monomials of the offset from a particle, in units of h. */
+static void basis(double x, double y, double b[5])
+{
+    b[0] = x;
+    b[1] = y;
+    b[2] = 0.5 * x * x;
+    b[3] = x * y;
+    b[4] = 0.5 * y * y;
+}
+
+/* Solves M z = e_row for a symmetric positive matrix by Cholesky; false where it is (nearly) singular. */
+static bool solve_row(const double M[5][5], int n, int row, double z[5])
+{
+    double C[5][5];
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j <= i; j++) {
+            double sum = M[i][j];
+            for (int k = 0; k < j; k++) sum -= C[i][k] * C[j][k];
+            if (i == j && !(sum > 1e-4 * M[i][i])) return false;
+            C[i][j] = i == j ? sqrt(sum) : sum / C[j][j];
+        }
+    }
+    for (int i = 0; i < n; i++) {
+        double sum = i == row;
+        for (int k = 0; k < i; k++) sum -= C[i][k] * z[k];
+        z[i] = sum / C[i][i];
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        double sum = z[i];
+        for (int k = i + 1; k < n; k++) sum -= C[k][i] * z[k];
+        z[i] = sum / C[i][i];
+    }
+    return true;
+}
+
+/* Moment matrix of a particle with the weight |grad W|/r: its linear block is L of Eq. 13c, so that two
+ * rows give the paper's corrected gradient and all five one that is exact for quadratic fields as well
+ * (moving least squares). Where the neighbours cannot tell a quadratic field, as across two particles,
+ * the linear one stays. false: not even that. */
+static bool find_moments(const struct solid *s, const struct particles *p, int64_t i,
+                         const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
+{
+    const double h = s->body[p->body[i]].h, dp = s->body[p->body[i]].dp;
+    double M[5][5] = {{0}};
+    for (int k = 0; k < n; k++) {
+        const double x = reference_distance(p->X[found[k]], p->X[i], dp) / h;
+        const double y = reference_distance(p->Y[found[k]], p->Y[i], dp) / h;
+        const double weight = -square(h * dp) * kernel_slope(h * sqrt(x * x + y * y), h);
+        double b[5];
+        basis(x, y, b);
+        for (int r = 0; r < 5; r++)
+            for (int c = 0; c < 5; c++) M[r][c] += weight * b[r] * b[c];
+    }
+    memset(m, 0, sizeof *m);
+    m->quadratic =
+        quadratic && solve_row(M, 5, 0, m->inverse[0]) && solve_row(M, 5, 1, m->inverse[1]);
+    if (m->quadratic) return true;
+    memset(m, 0, sizeof *m);
+    return solve_row(M, 2, 0, m->inverse[0]) && solve_row(M, 2, 1, m->inverse[1]);
+}
+
+/* G_ab: the weight of u_b - u_a in the gradient at a, for X_ab = (X, Y). */
+static void gradient_weight(const struct solid_body *own, const struct gradient_moments *m,
+                            double X, double Y, double G[2])
+{
+    const double h = own->h;
+    double b[5];
+    basis(-X / h, -Y / h, b);
+    const double weight = -square(h * own->dp) * kernel_slope(sqrt(X * X + Y * Y), h) / h;
+    for (int axis = 0; axis < 2; axis++) {
+        G[axis] = 0;
+        for (int k = 0; k < (m->quadratic ? 5 : 2); k++)
+            G[axis] += weight * m->inverse[axis][k] * b[k];
+    }
+}
+
+/* Fills one lane of a slot with the constants of the pair (i, j). */
+static void slot_set(struct draft *slot, int lane, const struct solid *s, const struct particles *p,
+                     const struct gradient_moments *moments, int64_t i, int64_t j)
+{
+    const struct solid_body *const a = &s->body[p->body[i]], *const b = &s->body[p->body[j]];
+    const double X = reference_distance(p->X[i], p->X[j], a->dp),
+                 Y = reference_distance(p->Y[i], p->Y[j], a->dp);
+    const double r2 = X * X + Y * Y, V = a->dp * a->dp, young = 0.5 * (a->young + b->young);
+    double G[2], H[2];
+    gradient_weight(a, &moments[i], X, Y, G);
+    gradient_weight(b, &moments[j], -X, -Y, H);
+    slot->weight[W_GX][lane] = G[0];
+    slot->weight[W_GY][lane] = G[1];
+    slot->weight[W_HX][lane] = -H[0];
+    slot->weight[W_HY][lane] = -H[1];
+    slot->weight[W_X][lane] = X;
+    slot->weight[W_Y][lane] = Y;
+    slot->weight[W_HALF_K][lane] =
+        0.5 * a->kappa * young * V * kernel_w(sqrt(r2), a->h) / (r2 * a->density);
+}
+
+static int compare_slot(const void *a, const void *b)
+{
+    const int64_t x = ((const struct draft *)a)->offset, y = ((const struct draft *)b)->offset;
+    return (x > y) - (x < y);
+}
+
+/* Where the slots of a pack come from: the reference positions, or a solid that this one is a part of. */
+struct slot_source {
+    /* Makes the slots of a pack, in any order; returns their number. */
+    int (*fill)(const struct slot_source *from, const struct solid *s,
+                const struct solid_pack *pack, struct draft *slots);
+    const struct particles *p;
+    const struct bucket_grid *grid;
+    const struct gradient_moments *moments;
+    const struct solid *whole;
+    const int32_t *global, *local, *pack_of; /* pack_of: the pack of each particle of the whole */
+};
+
+static int slots_from_positions(const struct slot_source *from, const struct solid *s,
+                                const struct solid_pack *pack, struct draft *slots)
+{
+    int32_t found[MAX_NEIGHBOURS];
+    int n = 0;
+    for (int l = 0; l < pack->lanes; l++) {
+        const int64_t i = pack->i + l;
+        const int count = neighbours_of(s, from->grid, from->p, i, found);
+        for (int k = 0; k < count; k++)
+            slot_set(slot_for(slots, &n, found[k] - i), l, s, from->p, from->moments, i, found[k]);
+    }
+    return n;
+}
+
+static int slots_from_whole(const struct slot_source *from, const struct solid *s,
+                            const struct solid_pack *pack, struct draft *slots)
+{
+    const struct solid *const whole = from->whole;
+    const int lanes = s->sweeps->lanes;
+    int n = 0;
+    for (int l = 0; l < pack->lanes; l++) {
+        const int32_t i = pack->i + l, g = from->global[i];
+        const struct solid_pack *const theirs = &whole->pack[from->pack_of[g]];
+        for (int64_t m = theirs->first_slot; m < theirs->first_slot + theirs->n_slots; m++) {
+            const int64_t weights = m * SOLID_WEIGHTS * lanes + g - theirs->i;
+            if (solid_get(whole, whole->weight, weights + W_X * lanes) == NOBODY) continue;
+            const int32_t j = from->local[g + whole->offset[m]];
+            if (j < 0) continue;
+            struct draft *const slot = slot_for(slots, &n, j - i);
+            for (int w = 0; w < SOLID_WEIGHTS; w++)
+                slot->weight[w][l] = solid_get(whole, whole->weight, weights + w * lanes);
+        }
+    }
+    return n;
+}
+
+/* The slots of one pack, in ascending order of neighbours. */
+static int pack_slots(const struct slot_source *from, const struct solid *s,
+                      const struct solid_pack *pack, struct draft *slots)
+{
+    const int n = from->fill(from, s, pack, slots);
+    qsort(slots, (size_t)n, sizeof *slots, compare_slot);
+    return n;
+}
+
+/* Slots as the sweeps take them. */
+struct slots {
+    int64_t *offset;
+    char *weight;
+};
+
+/* Bytes of the weights of a slot. */
+static size_t slot_bytes(const struct solid *s)
+{
+    return SOLID_WEIGHTS * (size_t)s->sweeps->lanes * s->sweeps->size;
+}
+
+static enum err create_slots(struct slots *t, const struct solid *s, struct arena *a, int64_t n,
+                             struct diag *d)
+{
+    t->offset = arena_alloc(a, (size_t)n, sizeof *t->offset, "slots of the solid", d);
+    t->weight = arena_alloc(a, (size_t)n, slot_bytes(s), "slots of the solid", d);
+    return t->offset && t->weight ? ERR_OK : ERR_MEMORY;
+}
+
+static void copy_slots(struct slots *to, int64_t at, const struct slots *from, int64_t n,
+                       const struct solid *s)
+{
+    memcpy(&to->offset[at], from->offset, (size_t)n * sizeof *to->offset);
+    memcpy(&to->weight[(size_t)at * slot_bytes(s)], from->weight, (size_t)n * slot_bytes(s));
+}
+
+static void take_drafts(struct slots *to, const struct solid *s, const struct draft *drafts, int n)
+{
+    const int lanes = s->sweeps->lanes;
+    for (int m = 0; m < n; m++) {
+        to->offset[m] = drafts[m].offset;
+        for (int w = 0; w < SOLID_WEIGHTS; w++)
+            for (int l = 0; l < lanes; l++)
+                solid_set(s, to->weight, (m * SOLID_WEIGHTS + w) * lanes + l,
+                          drafts[m].weight[w][l]);
+    }
+}
+
+/* Sets of slots that were stored already, by hash. */
+struct slot_sets {
+    int32_t *pack; /* [size] a pack with this set, -1: free */
+    size_t size;   /* a power of two */
+    struct slots all;
+};
+
+static uint64_t hash_bytes(uint64_t h, const void *data, size_t n)
+{
+    const unsigned char *const bytes = data;
+    for (size_t k = 0; k < n; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
+    return h;
+}
+
+static uint64_t slots_hash(const struct solid *s, const struct slots *t, int n)
+{
+    const uint64_t h = hash_bytes(0xcbf29ce484222325u, t->offset, (size_t)n * sizeof *t->offset);
+    return hash_bytes(h, t->weight, (size_t)n * slot_bytes(s));
+}
+
+static bool equal_slots(const struct solid *s, const struct slots *all, int64_t at,
+                        const struct slots *t, int n)
+{
+    return memcmp(&all->offset[at], t->offset, (size_t)n * sizeof *t->offset) == 0 &&
+           memcmp(&all->weight[(size_t)at * slot_bytes(s)], t->weight, (size_t)n * slot_bytes(s)) ==
+               0;
+}
+
+/* Finds an equal set or stores this one. */
+static void reuse_slots(struct solid *s, struct slot_sets *sets, int32_t pack_index,
+                        const struct slots *slots, int n)
+{
+    struct solid_pack *const pack = &s->pack[pack_index];
+    pack->n_slots = n;
+    size_t k = slots_hash(s, slots, n) & (sets->size - 1);
+    for (; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
+        const struct solid_pack *const other = &s->pack[sets->pack[k]];
+        if (other->body == pack->body && other->n_slots == n &&
+            equal_slots(s, &sets->all, other->first_slot, slots, n)) {
+            pack->first_slot = other->first_slot;
+            return;
+        }
+    }
+    sets->pack[k] = pack_index;
+    pack->first_slot = (int32_t)s->n_slots;
+    copy_slots(&sets->all, s->n_slots, slots, n, s);
+    s->n_slots += n;
+}
+
+static void cut_packs(struct solid *s, const struct particles *p)
+{
+    for (int64_t i = 0; i < p->n;) {
+        struct solid_pack *const pack = &s->pack[s->n_packs++];
+        *pack = (struct solid_pack){.i = (int32_t)i, .body = p->body[i]};
+        while (pack->lanes < s->sweeps->lanes && i < p->n && p->body[i] == pack->body) {
+            pack->lanes++;
+            i++;
+        }
+    }
+}
+
+/* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
+static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
+                            const struct slot_source *from, struct diag *d)
+{
+    struct slot_sets sets = {.size = 1};
+    struct slots own, kept;
+    while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
+    sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
+    struct draft *const work =
+        arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
+    if (!sets.pack || !work) return ERR_MEMORY;
+    int64_t total = 0;
+    for (int64_t k = 0; k < s->n_packs; k++) total += pack_slots(from, s, &s->pack[k], work);
+    TRY(create_slots(&own, s, scratch, MAX_SLOTS, d));
+    TRY(create_slots(&sets.all, s, scratch, total, d));
+    memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const int n = pack_slots(from, s, &s->pack[k], work);
+        take_drafts(&own, s, work, n);
+        reuse_slots(s, &sets, (int32_t)k, &own, n);
+    }
+    TRY(create_slots(&kept, s, a, s->n_slots, d));
+    copy_slots(&kept, 0, &sets.all, s->n_slots, s);
+    s->offset = kept.offset;
+    s->weight = kept.weight;
+    return ERR_OK;
+}
+
+/* Moments of every particle, and the neighbours' number checked on the way. */
+static enum err all_moments(struct solid *s, const struct bucket_grid *g, const struct particles *p,
+                            struct gradient_moments *moments, struct diag *d)
+{
+    int32_t found[MAX_NEIGHBOURS];
+    for (int64_t i = 0; i < p->n; i++) {
+        const int n = neighbours_of(s, g, p, i, found);
+        if (n < 0)
+            return diag_fail(
+                d, ERR_INPUT,
+                "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
+                "are bodies sampled twice, or is h_over_dp too large?",
+                p->X[i], p->Y[i], MAX_NEIGHBOURS);
+        for (int k = 0; k < n; k++)
+            if (p->body[found[k]] != p->body[i]) s->body[p->body[i]].touches = true;
+        const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
+        if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
+            return diag_fail(
+                d, ERR_INPUT,
+                "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
+                "deformation gradient; a body needs at least 2 particles across",
+                p->X[i], p->Y[i]);
+    }
+    return ERR_OK;
+}
+
+/* Sums of the gradient weights over the neighbours, which do not change. */
+static void sum_weights(const struct solid *s)
+{
+    const int lanes = s->sweeps->lanes;
+    for (int64_t k = 0; k < s->n_packs; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        for (int l = 0; l < pack->lanes; l++) {
+            double Gx = 0, Gy = 0;
+            for (int64_t m = pack->first_slot; m < pack->first_slot + pack->n_slots; m++) {
+                Gx += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GX) * lanes + l);
+                Gy += solid_get(s, s->weight, (m * SOLID_WEIGHTS + W_GY) * lanes + l);
+            }
+            solid_set(s, s->lane[S_GX], pack->i + l, Gx);
+            solid_set(s, s->lane[S_GY], pack->i + l, Gy);
+        }
+    }
+}
+
+static enum err create_packs(struct solid *s, struct arena *a, const struct particles *p,
+                             struct diag *d)
+{
+    s->n_packs = s->n_slots = 0;
+    s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
+    if (!s->pack) return ERR_MEMORY;
+    cut_packs(s, p);
+    return ERR_OK;
+}
+
+enum err solid_stencil_create(struct solid *s, struct arena *a, const struct particles *p,
+                              struct diag *d)
+{
+    TRY(create_packs(s, a, p, d));
+    struct arena scratch = {.limit = a->limit};
+    struct bucket_grid grid;
+    double reach = 0;
+    for (int k = 0; k < s->n_bodies; k++) reach = max2(reach, KERNEL_REACH * s->body[k].h);
+    struct gradient_moments *const moments =
+        arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
+    const struct slot_source from = {.fill = slots_from_positions,
+                                     .p = p,
+                                     .grid = &grid,
+                                     .moments = moments};
+    enum err e = moments ? buckets_create(&grid, &scratch, p, reach, d) : ERR_MEMORY;
+    if (!e) e = all_moments(s, &grid, p, moments, d);
+    if (!e) e = store_slots(s, a, &scratch, &from, d);
+    arena_free(&scratch);
+    if (!e) sum_weights(s);
+    return e;
+}
+
+enum err solid_stencil_of_part(struct solid *part, struct arena *a, const struct particles *p,
+                               const struct solid *whole, const int32_t *global,
+                               const int32_t *local, struct diag *d)
+{
+    TRY(create_packs(part, a, p, d));
+    struct arena scratch = {.limit = a->limit};
+    const struct solid_pack *const last = &whole->pack[whole->n_packs - 1];
+    int32_t *const pack_of = arena_alloc(&scratch, (size_t)last->i + (size_t)last->lanes,
+                                         sizeof *pack_of, "packs of the solid", d);
+    for (int32_t k = 0; pack_of && k < whole->n_packs; k++)
+        for (int l = 0; l < whole->pack[k].lanes; l++) pack_of[whole->pack[k].i + l] = k;
+    const struct slot_source from = {.fill = slots_from_whole,
+                                     .whole = whole,
+                                     .global = global,
+                                     .local = local,
+                                     .pack_of = pack_of};
+    const enum err e = pack_of ? store_slots(part, a, &scratch, &from, d) : ERR_MEMORY;
+    arena_free(&scratch);
+    if (!e) sum_weights(part);
+    return e;
+}

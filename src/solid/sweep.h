@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT
+ * The sweeps of the solid, one text for both precisions: solid/sweep_mixed.c and solid/sweep_double.c
+ * include it after the words of base/real_float.h and base/real_double.h. A pack of particles goes
+ * through its slots, one neighbour for each lane at a time; every particle is written by its own pack
+ * alone. */
+#include "solid/material.h"
+#include "solid/solid.h"
+#include "solid/pair_laws.h"
+
+/* Writes the lanes of a pack only: what follows belongs to the next. */
+SPHFSI_INLINE void store_packed(const struct solid *s, int lane, const struct solid_pack *pack,
+                                vreal value)
+{
+    vput((real *)s->lane[lane] + pack->i, value, pack->lanes);
+}
+
+SPHFSI_INLINE void keep_tensor(const struct solid *s, int lane, const struct solid_pack *pack,
+                               struct vtensor2 t)
+{
+    store_packed(s, lane, pack, t.xx);
+    store_packed(s, lane + 1, pack, t.xy);
+    store_packed(s, lane + 2, pack, t.yx);
+    store_packed(s, lane + 3, pack, t.yy);
+}
+
+/* Adds a share to the stress of a pack. */
+SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pack,
+                              struct vtensor2 more)
+{
+    const int64_t i = pack->i;
+    keep_tensor(s, S_PXX, pack,
+                (struct vtensor2){lane_of(s, S_PXX, i) + more.xx, lane_of(s, S_PXY, i) + more.xy,
+                                  lane_of(s, S_PYX, i) + more.yx, lane_of(s, S_PYY, i) + more.yy});
+}
+
+/* The slots of a pack: the weights of one after the other, and where its neighbours are. */
+#define SLOT_SIZE (SOLID_WEIGHTS * LANES)
+#define EACH_SLOT(s, pack, slot, j)                                                         \
+    const real *slot = (const real *)(s)->weight + (size_t)(pack)->first_slot * SLOT_SIZE;  \
+    const int64_t *offset = (s)->offset + (pack)->first_slot, *const end =                  \
+                                                                  offset + (pack)->n_slots; \
+    for (int64_t j; offset < end && (j = (pack)->i + *offset, true); offset++, slot += SLOT_SIZE)
+
+/* Where real is double the lanes are the fields themselves. */
+static void look(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    if (!SPLIT || first == last) return;
+    real *const ux = s->lane[S_UX], *const uy = s->lane[S_UY], *const low_x = s->lane[S_LOW_X],
+                *const low_y = s->lane[S_LOW_Y], *const vx = s->lane[S_VX],
+                *const vy = s->lane[S_VY];
+    const int64_t end = s->pack[last - 1].i + s->pack[last - 1].lanes;
+#pragma omp simd
+    for (int64_t i = s->pack[first].i; i < end; i++) {
+        ux[i] = (real)p->ux[i];
+        uy[i] = (real)p->uy[i];
+        low_x[i] = (real)(p->ux[i] - (double)ux[i]);
+        low_y[i] = (real)(p->uy[i] - (double)uy[i]);
+        vx[i] = (real)p->vx[i];
+        vy[i] = (real)p->vy[i];
+    }
+}
+
+/* Sums of the differences to the neighbours times G_ab^T. */
+SPHFSI_INLINE void add_gradient(struct vtensor2 *sum, const real *slot, struct vvector2 between)
+{
+    const vreal Gx = weight_of(slot, W_GX), Gy = weight_of(slot, W_GY);
+    sum->xx = vfma(between.x, Gx, sum->xx);
+    sum->xy = vfma(between.x, Gy, sum->xy);
+    sum->yx = vfma(between.y, Gx, sum->yx);
+    sum->yy = vfma(between.y, Gy, sum->yy);
+}
+
+/* Eq. 13b in displacements: U = F - I = sum of (u_b - u_a) G_ab^T. */
+static void stress(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    (void)p;
+    for (int64_t k = first; k < last; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        const struct solid_body *const body = &s->body[pack->body];
+        const struct placed a = placed_at(s, pack->i);
+        struct vtensor2 sum = {vset(0), vset(0), vset(0), vset(0)};
+        EACH_SLOT(s, pack, slot, j)
+        add_gradient(&sum, slot, displacement_between(s, &a, j));
+        const struct vtensor2 U = {-sum.xx, -sum.xy, -sum.yx, -sum.yy};
+        keep_tensor(s, S_UXX, pack, U);
+        if (!body->variational) keep_tensor(s, S_PXX, pack, material_pk1(body, U));
+    }
+}
+
+/* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C : dE/dt with the
+ * tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a) G_ab^T. P gains F times it. */
+static void damping_of_pack(const struct solid *s, const struct solid_pack *pack)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const struct solid_receiver a = receiver_of(s, pack->i);
+    const struct vtensor2 F = deformation(a.U);
+    struct vtensor2 rate = {vset(0), vset(0), vset(0), vset(0)}; /* -dF/dt */
+    EACH_SLOT(s, pack, slot, j) add_gradient(&rate, slot, velocity_between(s, a.v, j));
+    const vreal shear =
+        (F.xx * rate.xy + F.yx * rate.yy + F.xy * rate.xx + F.yy * rate.yx) * (real)0.5;
+    const struct vtensor2 strain_rate = {F.xx * rate.xx + F.yx * rate.yx, shear, shear,
+                                         F.xy * rate.xy + F.yy * rate.yy};
+    const double tau = body->damping_time;
+    add_stress(s, pack,
+               vtensor2_mul(F, hooke(strain_rate, -tau * plane_lambda(body), -tau * body->mu)));
+}
+
+static void damping(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    (void)p;
+    for (int64_t k = first; k < last; k++)
+        if (s->body[s->pack[k].body].damping_time > 0) damping_of_pack(s, &s->pack[k]);
+}
+
+/* What the loop over the slots of a pack sums; constants where it is inlined. */
+struct slot_laws {
+    bool stress, viscous, mixed, symmetric, hourglass, variational;
+};
+
+SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct solid_pack *pack,
+                                          const struct solid_receiver *a, struct slot_laws laws)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const vreal eta2 = vset((real)(0.01 * body->h * body->h)), zero = vset(0);
+    struct solid_sums sums = {zero, zero, zero,
+                              zero, zero, zero,
+                              zero, zero, {zero, zero, zero, zero}};
+    EACH_SLOT(s, pack, slot, j)
+    {
+        if (laws.stress) stress_force(s, slot, j, &sums);
+        if (!laws.viscous && !laws.hourglass) continue;
+        struct solid_pair q = pair_of(s, slot, j, a);
+        if (laws.hourglass || laws.symmetric) q.U_b = load_gradient(s, j);
+        if (laws.viscous) {
+            vreal Pi = viscous_pressure(s, &q, a, eta2);
+            if (laws.mixed) Pi = Pi * mean_viscosity(s, pack->i, j, body);
+            viscous_force(&q, Pi, laws.symmetric, &sums);
+        }
+        if (laws.hourglass && laws.variational) hourglass_variational(&q, a, &sums);
+        if (laws.hourglass && !laws.variational) hourglass_printed(&q, a, &sums);
+    }
+    return sums;
+}
+
+/* What a body has beside its stress. */
+static struct slot_laws pair_laws(const struct solid_body *body)
+{
+    return (struct slot_laws){.viscous = body->viscosity > 0 || body->mixed,
+                              .mixed = body->mixed,
+                              .symmetric = body->symmetric,
+                              .hourglass = body->kappa > 0,
+                              .variational = body->variational};
+}
+
+/* Acceleration by the forces of pairs: the viscous one turned by J F^-T, and that of hourglass control. */
+SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
+                                                 const struct solid_receiver *a,
+                                                 const struct solid_sums *s)
+{
+    const struct vtensor2 cof = vtensor2_cof(deformation(a->U));
+    const real viscosity =
+        (real)((body->mixed ? 1 : body->viscosity) * (body->symmetric ? 0.5 : 1));
+    return (struct vvector2){s->ax + (cof.xx * s->viscous_x + cof.xy * s->viscous_y + s->turned_x) *
+                                         viscosity,
+                             s->ay + (cof.yx * s->viscous_x + cof.yy * s->viscous_y + s->turned_y) *
+                                         viscosity};
+}
+
+/* The variational form adds to the stress, which has to be whole before neighbours sum it, so that its pairs
+ * have a pass of their own. */
+static void pairs_of_pack(const struct solid *s, const struct solid_pack *pack)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const struct solid_receiver a = receiver_of(s, pack->i);
+    const struct slot_laws laws = pair_laws(body);
+    struct solid_sums sums;
+    /* The default is stamped; the others are decided as they go. */
+    if (laws.viscous && laws.symmetric && !laws.mixed)
+        sums = sum_slots(s, pack, &a, (struct slot_laws){false, true, false, true, true, true});
+    else
+        sums = sum_slots(s, pack, &a, laws);
+    const struct vvector2 acc = pairs_acceleration(body, &a, &sums);
+    store_packed(s, S_PAIRS_X, pack, acc.x);
+    store_packed(s, S_PAIRS_Y, pack, acc.y);
+    const real half = (real)(0.5 * body->density);
+    const struct vtensor2 P = material_pk1(body, a.U);
+    keep_tensor(s, S_PXX, pack,
+                (struct vtensor2){P.xx + sums.pull.xx * half, P.xy + sums.pull.xy * half,
+                                  P.yx + sums.pull.yx * half, P.yy + sums.pull.yy * half});
+}
+
+static void pairs(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    (void)p;
+    for (int64_t k = first; k < last; k++)
+        if (s->body[s->pack[k].body].variational) pairs_of_pack(s, &s->pack[k]);
+}
+
+/* Acceleration by stress and the forces of pairs. */
+SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *s, const struct solid_pack *pack)
+{
+    const struct solid_body *const body = &s->body[pack->body];
+    const int64_t i = pack->i;
+    const struct solid_receiver a = receiver_of(s, i);
+    struct slot_laws laws = pair_laws(body);
+    laws.stress = true;
+    struct solid_sums sums;
+    struct vvector2 acc;
+    if (laws.variational) {
+        sums = sum_slots(s, pack, &a, (struct slot_laws){.stress = true});
+        acc = (struct vvector2){lane_of(s, S_PAIRS_X, i), lane_of(s, S_PAIRS_Y, i)};
+    } else {
+        /* The paper's combination is stamped. */
+        if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
+            sums =
+                sum_slots(s, pack, &a, (struct slot_laws){true, true, false, false, true, false});
+        else
+            sums = sum_slots(s, pack, &a, laws);
+        acc = pairs_acceleration(body, &a, &sums);
+    }
+    /* Eq. 13a: the own part of the stress is P_a times the sum of G_ab, which vanishes inside a lattice. */
+    const vreal Gx = lane_of(s, S_GX, i), Gy = lane_of(s, S_GY, i);
+    const vreal own_x = vfma(lane_of(s, S_PXX, i), Gx, lane_of(s, S_PXY, i) * Gy);
+    const vreal own_y = vfma(lane_of(s, S_PYX, i), Gx, lane_of(s, S_PYY, i) * Gy);
+    const real inv_density = (real)(1 / body->density);
+    return (struct vvector2){(sums.stress_x + own_x) * inv_density + acc.x,
+                             (sums.stress_y + own_y) * inv_density + acc.y};
+}
+
+static void forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    for (int64_t k = first; k < last; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        const struct vvector2 acc = own_acceleration(s, pack);
+        vwiden(&p->sx[pack->i], acc.x, pack->lanes);
+        vwiden(&p->sy[pack->i], acc.y, pack->lanes);
+    }
+}
+
+/* Where real is double the lanes are the fields themselves. */
+static void show(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+{
+    if (!SPLIT) return;
+    double *const to[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy, p->Pxx, p->Pxy, p->Pyx, p->Pyy};
+    for (int64_t k = first; k < last; k++)
+        for (int c = 0; c < (int)COUNT_OF(to); c++)
+            vwiden(&to[c][s->pack[k].i], lane_of(s, S_UXX + c, s->pack[k].i), s->pack[k].lanes);
+}
+
+/* Energy of the hourglass force, J/m, half of it since each pair is met twice. Variational: the sum of
+ * k |e|^2/2. The printed force has no potential, since it leaves out how e_ab depends on F: half of force
+ * times stretch of the pair, which is the work it takes for small strains. */
+static void hourglass(const struct solid *s, const struct solid_pack *pack, double *energy)
+{
+    const struct solid_receiver a = receiver_of(s, pack->i);
+    vreal sum = vset(0);
+    EACH_SLOT(s, pack, slot, j)
+    {
+        struct solid_pair q = pair_of(s, slot, j, &a);
+        q.U_b = load_gradient(s, j);
+        vreal ex, ey;
+        hourglass_error(&q, &a, &ex, &ey);
+        const vreal half_k = weight_of(slot, W_HALF_K);
+        if (s->body[pack->body].variational) {
+            sum = sum + (real)0.5 * half_k * (ex * ex + ey * ey);
+            continue;
+        }
+        const vreal x = vsqrt(q.x * q.x + q.y * q.y), X = vsqrt(q.X * q.X + q.Y * q.Y);
+        const vreal stretch =
+            (((real)2 * q.X + q.u.x) * q.u.x + ((real)2 * q.Y + q.u.y) * q.u.y) / (x + X);
+        sum = sum - half_k * (ex * q.x + ey * q.y) / x * stretch;
+    }
+    vwiden(energy, sum * (real)(0.25 * s->body[pack->body].mass), pack->lanes);
+}
+
+const struct solid_sweeps SWEEP(solid_sweeps) = {
+    .name = SWEEP_LABEL,
+    .lanes = LANES,
+    .size = sizeof(real),
+    .look = look,
+    .stress = stress,
+    .pairs = pairs,
+    .damping = damping,
+    .forces = forces,
+    .show = show,
+    .hourglass = hourglass,
+};

@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT
+ * Looking at the fluid: at a point, at its surface, at its front, through a line. */
+#include "time/simulation.h"
+
+#include <math.h>
+
+#include "fluid/eos.h"
+#include "particles/kernel.h"
+
+/* Below a tenth of a full neighbourhood a point is as good as dry. */
+#define DRY 0.1
+
+/* What is done with particle i of a kind at distance r of the point looked at. */
+typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
+
+static void each_near(const struct simulation *s, enum kind kind, double x, double y,
+                      visitor *visit, void *sums)
+{
+    const struct cells *const c = &s->cells;
+    const struct cell_list *const list = &c->kind[kind];
+    const struct particles *const p = &s->kind[kind];
+    /* Cells that may hold particles within reach: they may have strayed since they were sorted. */
+    const double reach = KERNEL_REACH * s->fluid.k.h + c->stray;
+    int first[2], n[2];
+    for (int axis = 0; axis < 2; axis++) {
+        const int cells = axis ? c->ny : c->nx;
+        const double at = ((axis ? y : x) - c->lower[axis]) / c->side[axis],
+                     part = reach / c->side[axis];
+        first[axis] = (int)max2(-1, min2(cells, floor(at - part)));
+        n[axis] = (int)max2(-1, min2(cells, floor(at + part))) - first[axis] + 1;
+        if (c->joined[axis] && n[axis] > cells) n[axis] = cells;
+    }
+    for (int place = 0; place < n[0] * n[1]; place++) {
+        const int32_t cell = cell_at(c, first[0] + place % n[0], first[1] + place / n[0]);
+        if (cell < 0) continue;
+        for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
+            const int64_t i = list->order ? list->order[k] : k;
+            const double dx = cells_short_way(c, 0, p->x[i] - x);
+            const double dy = cells_short_way(c, 1, p->y[i] - y);
+            visit(s, kind, i, hypot(dx, dy), sums);
+        }
+    }
+}
+
+static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i, double r,
+                          void *sums)
+{
+    struct sample *const sum = sums;
+    const struct particles *const p = &s->kind[kind];
+    const double w = kernel_w(r, s->fluid.k.h) * square(s->scene->top.dp);
+    if (kind != KIND_FLUID) {
+        sum->occupied += w;
+        return;
+    }
+    sum->fill += w;
+    sum->pressure += w * eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
+    sum->vx += w * p->vx[i];
+    sum->vy += w * p->vy[i];
+}
+
+static void count_near(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums)
+{
+    (void)kind;
+    (void)i;
+    *(int *)sums += r < KERNEL_REACH * s->fluid.k.h;
+}
+
+int simulation_near(const struct simulation *s, double x, double y)
+{
+    int n = 0;
+    each_near(s, KIND_FLUID, x, y, count_near, &n);
+    if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, count_near, &n);
+    if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, count_near, &n);
+    return n;
+}
+
+struct sample simulation_sample(const struct simulation *s, double x, double y)
+{
+    struct sample sum = {0};
+    if (!(s->effects & FX_FLUID)) return sum;
+    each_near(s, KIND_FLUID, x, y, add_to_sample, &sum);
+    if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, add_to_sample, &sum);
+    if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, add_to_sample, &sum);
+    const double mean = sum.fill > DRY ? 1 / sum.fill : 0;
+    sum.pressure *= mean;
+    sum.vx *= mean;
+    sum.vy *= mean;
+    return sum;
+}
+
+double simulation_pressure_at(const struct simulation *s, double x, double y)
+{
+    return simulation_sample(s, x, y).pressure;
+}
+
+/* How much of what walls and structures leave free the water fills, less a half: positive in the
+ * water, negative outside, zero on the surface. */
+static double wetness(const struct simulation *s, double x, double y)
+{
+    const struct sample at = simulation_sample(s, x, y);
+    return at.fill - 0.5 * max2(1 - at.occupied, 0.05);
+}
+
+double simulation_level(const struct simulation *s, double x, double y)
+{
+    const double step = 0.25 * s->scene->top.dp,
+                 top = s->cells.lower[1] + s->cells.ny * s->cells.side[1];
+    const int reach = (int)(KERNEL_REACH * s->fluid.k.h / step), most = (int)((top - y) / step) + 1;
+    double before = wetness(s, x, y);
+    bool wet = before > 0;
+    for (int k = 1; k <= most && (wet || k <= reach); k++) {
+        const double now = wetness(s, x, y + k * step);
+        if (wet && now <= 0) return y + (k - 1 + before / (before - now)) * step;
+        wet = now > 0;
+        before = now;
+    }
+    return wet ? top : y;
+}
+
+struct crowd {
+    int64_t self;
+    int neighbours;
+};
+
+static void count_neighbour(const struct simulation *s, enum kind kind, int64_t i, double r,
+                            void *sums)
+{
+    struct crowd *const crowd = sums;
+    (void)kind;
+    if (i != crowd->self && r < KERNEL_REACH * s->fluid.k.h) crowd->neighbours++;
+}
+
+/* The thinnest tongue of water is a row of particles, whose first has two others within reach. */
+static bool belongs_together(const struct simulation *s, int64_t i)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    struct crowd crowd = {i, 0};
+    each_near(s, KIND_FLUID, p->x[i], p->y[i], count_neighbour, &crowd);
+    return crowd.neighbours >= 2;
+}
+
+double simulation_front(const struct simulation *s, int direction)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const bool vertical = direction == DIRECTION_UP || direction == DIRECTION_DOWN;
+    const double sign = direction == DIRECTION_RIGHT || direction == DIRECTION_UP ? 1 : -1;
+    const double *const coordinate = vertical ? p->y : p->x;
+    double foremost = -(double)INFINITY, any = -(double)INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double ahead = sign * coordinate[i];
+        any = max2(any, ahead);
+        if (ahead > foremost && belongs_together(s, i)) foremost = ahead;
+    }
+    if (p->n == 0) return (double)NAN;
+    /* The water ends half a spacing beyond the last particle's centre. */
+    return sign * ((isfinite(foremost) ? foremost : any) + 0.5 * s->scene->top.dp);
+}
+
+double simulation_flux(const struct simulation *s, const double a[2], const double b[2])
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    const double tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
+    /* The mean over a strip, weighted by a cosine bell of area 1; with three spacings to either side
+     * its sum over a lattice is exact. */
+    const double dp = s->scene->top.dp, reach = 3 * dp;
+    double sum = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double x = cells_short_way(&s->cells, 0, p->x[i] - a[0]);
+        const double y = cells_short_way(&s->cells, 1, p->y[i] - a[1]);
+        const double along = x * tx + y * ty, across = x * ty - y * tx;
+        if (along < 0 || along > length || fabs(across) >= reach) continue;
+        const double bell = 0.5 / reach * (1 + cos(PI * across / reach));
+        sum += bell * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
+    }
+    return sum;
+}

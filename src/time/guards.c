@@ -1,0 +1,311 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/guards.h"
+
+#include <math.h>
+
+#include "time/simulation.h"
+#include "time/timestep.h"
+
+/* Shares of the limits at which a warning comes first. Speed over c0: beyond it weak compressibility is
+ * being lost. Steps over the largest step of the fluid. */
+#define SPEED_WARNING 0.3
+#define DENS_WARNING 0.1
+#define DET_WARNING 0.2
+#define STEP_WARNING 100 /* times the limit */
+
+struct finding {
+    int64_t at; /* -1: nothing found */
+    const char *quantity;
+    double value;
+};
+
+/* The first particle, in order, whose speed or density is beyond its limit or not a number. */
+static struct finding gather_clusters(const struct particles *p, double speed_limit,
+                                      double dens_limit)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+        if (!(speed <= speed_limit)) return (struct finding){i, "speed (m/s)", speed};
+        if (!isfinite(p->x[i] + p->y[i]))
+            return (struct finding){i, "position (m)", p->x[i] + p->y[i]};
+        if (dens_limit > 0 && !(fabs(p->dens[i]) <= dens_limit))
+            return (struct finding){i, "rho/rho0 - 1", p->dens[i]};
+    }
+    return (struct finding){-1, "", 0};
+}
+
+static enum err complain(const struct simulation *s, enum kind kind, struct finding f,
+                         const char *cause, struct diag *d)
+{
+    const struct particles *const p = &s->kind[kind];
+    return diag_fail(
+        d, ERR_GUARD,
+        "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, which is not "
+        "sound: %s",
+        s->state.time, (long long)s->state.steps, kind_names[kind], (long long)p->id[f.at],
+        p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
+}
+
+/* Whether any speed or density is out of bounds or not a number, by the extremes of the last step. */
+static bool fluid_sound(struct simulation *s)
+{
+    const struct extremes *const e = &s->extremes;
+    const double speed = sqrt(e->speed2);
+    s->state.dens_low = min2(s->state.dens_low, e->dens_low);
+    s->state.dens_high = max2(s->state.dens_high, e->dens_high);
+    s->state.speed_high = max2(s->state.speed_high, speed);
+    return e->nan_probe == 0 && speed <= s->guard.speed_limit &&
+           e->dens_high <= s->guard.dens_limit && e->dens_low >= -s->guard.dens_limit;
+}
+
+#define UNSTABLE                                                                                  \
+    "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, or a " \
+    "wall or light structure presses harder than the fluid can follow"
+/* Molteni's diffusion wears off by how much the density of a front's first particle is above the others',
+ * until it lies in the bed that it runs over. */
+#define STRAY                                                                                     \
+    "fluid had entered a wall or solid before; wall_repulsion = 0.1 or diffusion_form = antuono " \
+    "keeps it out"
+
+static enum err check_fluid(struct simulation *s, struct diag *d)
+{
+    if (!fluid_sound(s)) {
+        const struct finding f =
+            gather_clusters(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
+        if (f.at >= 0)
+            return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
+    }
+    if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
+        s->guard.warned_speed = true;
+        diag_warn(d,
+                  "t = %.6g s: the fluid's speed %.4g m/s is beyond %g of the speed of sound %.4g "
+                  "m/s, where "
+                  "weak compressibility is lost; a higher sound_speed would mend it",
+                  s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
+    }
+    const double dens = max2(s->state.dens_high, -s->state.dens_low);
+    if (!s->guard.warned_dens && dens > DENS_WARNING) {
+        s->guard.warned_dens = true;
+        diag_warn(d,
+                  "t = %.6g s: the fluid's density is off by %.3g of its reference, where a "
+                  "hundredth is usual and %g stops the run; a higher sound_speed would mend it",
+                  s->state.time, dens, s->guard.dens_limit);
+    }
+    return ERR_OK;
+}
+
+bool guards_strain_due(const struct simulation *s)
+{
+    const bool now = !(s->effects & FX_FLUID) || s->state.steps % LOOK_INTERVAL == 0;
+    return s->effects & FX_SOLID && now;
+}
+
+/* det F of every particle, from displacement gradients as of the last stress evaluation. */
+static struct finding smallest_det(const struct particles *p)
+{
+    struct finding f = {-1, "det F", (double)INFINITY};
+    for (int64_t i = 0; i < p->n; i++) {
+        const double det = (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i];
+        if (isnan(det)) return (struct finding){i, "det F", det}; /* nothing compares with it */
+        if (!(det >= f.value)) f = (struct finding){i, "det F", det};
+    }
+    return f;
+}
+
+/* The first particle that outruns the mean of its body by ten times the speed of sound. */
+static struct finding too_fast(const struct simulation *s, const struct particles *p)
+{
+    for (int64_t i = 0; i < p->n;) {
+        const int32_t body = p->body[i];
+        const double limit = 10 * s->solid.body[body].sound_speed;
+        double sum_x = 0, sum_y = 0;
+        int64_t end = i;
+        for (; end < p->n && p->body[end] == body; end++) {
+            if (!isfinite(p->vx[end] + p->vy[end]))
+                return (struct finding){end, "speed (m/s)", p->vx[end] + p->vy[end]};
+            sum_x += p->vx[end];
+            sum_y += p->vy[end];
+        }
+        const double mean_x = sum_x / (double)(end - i), mean_y = sum_y / (double)(end - i);
+        for (; i < end; i++) {
+            const double speed2 = square(p->vx[i] - mean_x) + square(p->vy[i] - mean_y);
+            if (!(speed2 <= limit * limit))
+                return (struct finding){i, "speed (m/s) beside its body", sqrt(speed2)};
+        }
+    }
+    return (struct finding){-1, "", 0};
+}
+
+static enum err check_solid(struct simulation *s, struct diag *d)
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct finding fast = too_fast(s, p);
+    if (fast.at >= 0)
+        return complain(
+            s, KIND_SOLID, fast,
+            "beside its body it is faster than ten times the speed of sound: the solid is "
+            "unstable (a smaller solid_safety may help), or far too soft for its load",
+            d);
+    if (s->contact.crowded)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s, step %lld: more than %d particles push at one particle of a "
+            "solid's surface: bodies have gone into each other; a larger stiffness or a "
+            "smaller gap in [contact] may help",
+            s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
+    if (!guards_strain_due(s)) return ERR_OK;
+    const struct finding det = smallest_det(p);
+    s->state.det_low = min2(s->state.det_low, det.value);
+    if (!(det.value > 0))
+        return complain(
+            s, KIND_SOLID, det,
+            "the material has turned inside out; finer particles, more hourglass control or a "
+            "stiffer law may help",
+            d);
+    if (!s->guard.warned_det && det.value < DET_WARNING) {
+        s->guard.warned_det = true;
+        diag_warn(
+            d,
+            "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is pressed to det F = %.3g; at "
+            "0 the material turns inside out and the run stops",
+            s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+    }
+    return ERR_OK;
+}
+
+static const char *binding_bound(const struct simulation *s)
+{
+    int least = 0;
+    for (int k = 1; k < BOUND_COUNT; k++)
+        if (s->dt_bound[k] < s->dt_bound[least]) least = k;
+    return bound_names[least];
+}
+
+/* Steps that shrink, and sub-steps that grow, out of proportion. */
+static enum err check_step(struct simulation *s, struct diag *d)
+{
+    const double limit = s->guard.step_limit;
+    const bool cut = !(s->dt_bound[BOUND_output] > s->state.dt); /* by an output time */
+    if (s->substeps > SUBSTEPS_MOST)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: the solid's step has collapsed to %.3g s, %d sub-steps a step: "
+            "its material is being crushed or torn; finer particles may help",
+            s->state.time, s->dt_solid, s->substeps);
+    if (cut || s->state.dt > STEP_WARNING * limit) return ERR_OK;
+    if (s->state.dt < limit)
+        return diag_fail(d, ERR_GUARD,
+                         "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow "
+                         "without bound; a higher sound_speed or a smaller cfl may help",
+                         s->state.time, s->state.dt);
+    if (!s->guard.warned_step)
+        diag_warn(d,
+                  "t = %.6g s: the time step has shrunk to %.3g s, bound by %s; at %.3g s the run "
+                  "stops",
+                  s->state.time, s->state.dt, binding_bound(s), limit);
+    s->guard.warned_step = true;
+    return ERR_OK;
+}
+
+/* Walls that are nowhere would be seen by no fluid, and not be missed. */
+static enum err check_motion(const struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < s->wall_motion.n; k++) {
+        const struct moving_wall *const b = &s->wall_motion.body[k];
+        const struct motion_state *const m = &b->placed;
+        const double sum = m->d[0] + m->d[1] + m->v[0] + m->v[1] + m->a[0] + m->a[1] + m->angle +
+                           m->rate + m->angular_acceleration;
+        if (!isfinite(sum))
+            return diag_fail(
+                d, ERR_GUARD,
+                "t = %.6g s: [motion %s] puts [wall %s] at a displacement of (%g, %g) m "
+                "with (%g, %g) m/s and (%g, %g) m/s^2: all of them have to be finite",
+                s->state.time, s->scene->motion[b->motion].common.name,
+                s->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
+                m->a[1]);
+    }
+    return ERR_OK;
+}
+
+enum err guards_check(struct simulation *s, struct diag *d)
+{
+    if (s->effects & FX_MOTION) TRY(check_motion(s, d));
+    if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
+    if (s->effects & FX_SOLID) TRY(check_solid(s, d));
+    return check_step(s, d);
+}
+
+/* Share of the energy in motion and strain that may be missing from the balance: the paper's stress law
+ * has no stored energy and its account is good to a few percent at large strains. */
+#define ENERGY_SLACK 0.05
+/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy, four fifths
+ * of which are then from nowhere, and is stable; a run that is not gets beyond any such share. */
+#define ENERGY_LIMIT 0.9
+
+/* What makes the steps of a run smaller, and what may help it beside that where it gains energy. */
+static const char *step_key(const struct simulation *s)
+{
+    if (s->scene->numerics.fixed_step > 0) return "fixed_step";
+    return s->effects & FX_FLUID ? "cfl" : "solid_safety";
+}
+static const char *atomic_file_step(const struct simulation *s)
+{
+    if (!(s->effects & FX_COUPLING)) return "";
+    if (s->effects & FX_MULTIRATE && !(s->effects & FX_IMPEDANCE))
+        return " or numerics.interface = impedance";
+    if (s->scene->numerics.fixed_step > 0) return "";
+    return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
+}
+
+enum err guards_energy(struct simulation *s, const struct ledger *row, struct diag *d)
+{
+    const double active =
+        row->kinetic + row->internal + row->elastic + row->hourglass + row->contact;
+    const double gained = -row->dissipated;
+    const double noise = 1e-9 * fabs(s->state.energy_start); /* round-off of the sums */
+    if (gained > ENERGY_LIMIT * active + noise)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: %.3g J/m of energy have come from nowhere, nine tenths of the "
+            "%.3g J/m in motion and strain: the run is unstable; a smaller %s%s may help",
+            s->state.time, gained, active, step_key(s), atomic_file_step(s));
+    if (s->guard.warned_energy || gained <= ENERGY_SLACK * active + noise) return ERR_OK;
+    s->guard.warned_energy = true;
+    diag_warn(
+        d,
+        "t = %.6g s: %.3g J/m of energy have come from nowhere, beside %.3g J/m in motion and "
+        "strain: the run is not sound; a smaller %s%s may help",
+        s->state.time, gained, active, step_key(s), atomic_file_step(s));
+    return ERR_OK;
+}
+
+/* Strays that are let go: a share of the fluid, and this many whatever the share. */
+#define CROSSING_SHARE 0.01
+enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * LOOK_INTERVAL };
+
+enum err guards_penetration(struct simulation *s, struct diag *d)
+{
+    if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.steps % CROSSING_INTERVAL)
+        return ERR_OK;
+    int64_t first;
+    const int64_t count = monitor_crossed(s, &first);
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    if (count == 0) return ERR_OK;
+    if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, "
+            "among them %lld at (%.6g, %.6g) m with speed = %.4g m/s: it is too thin, or "
+            "the fluid hits it too hard; wall_repulsion = 0.1, three particles across or a "
+            "higher sound_speed help",
+            s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
+            p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
+    if (s->guard.warned_crossing) return ERR_OK;
+    s->guard.warned_crossing = true;
+    diag_warn(
+        d,
+        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; "
+        "wall_repulsion = 0.1 keeps it out; the run stops when more than 1 %% of the fluid has",
+        s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
+    return ERR_OK;
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * Guards: limits beyond which a state is not sound. */
+#ifndef SPHFSI_TIME_GUARDS_H
+#define SPHFSI_TIME_GUARDS_H
+
+#include "base/base.h"
+
+/* The solid's deformation is looked at every so many steps of the fluid: it takes a pass of its own. At a
+ * tenth of the speed of sound neighbours close in by a third of their distance in that time. */
+enum { LOOK_INTERVAL = 16 };
+
+struct guard {
+    double dens_limit;  /* |rho/rho0 - 1| */
+    double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
+    double step_limit;  /* s: a step below this has collapsed */
+    bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy;
+};
+
+struct simulation;
+struct ledger;
+
+/* Where a ledger shows that energy has come from nowhere: warns once, and fails where that is nine
+ * tenths of what is in motion and strain. */
+enum err guards_energy(struct simulation *s, const struct ledger *row, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Now and then: fluid that has entered a wall or a solid. Warns once, and fails where it is more than
+ * stray particles. */
+enum err guards_penetration(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Number of fluid particles that stand inside of a wall or solid, and the first of them or -1. */
+int64_t monitor_crossed(const struct simulation *s, int64_t *first);
+
+/* Whether the check after this step takes the solid's gradients, which have to be shown for it. */
+bool guards_strain_due(const struct simulation *s);
+
+/* Checks the state after a step. ERR_GUARD with a sentence that names particle, place, time, quantity
+ * and likely cause; warns once where trouble is near. */
+enum err guards_check(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+#endif

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT
+ * Fluid that has entered a wall or a solid: it stands where the body's own particles are. */
+#include <math.h>
+
+#include "time/guards.h"
+#include "time/simulation.h"
+
+/* The shorter way where opposite sides are one. */
+static double nearest(const struct cells *c, int axis, double d)
+{
+    const double width = c->side[axis] * (axis ? c->ny : c->nx);
+    return c->joined[axis] ? d - width * rint(d / width) : d;
+}
+
+/* Spacings from a particle of a body within which a fluid particle stands inside. Fluid at rest is one
+ * spacing away from those at the surface; pressed hard it comes as close as a half. */
+#define TAKEN 0.35
+
+/* Whether (x, y) is that close to particle i of a kind, in spacings of its body's reference configuration:
+ * the body has turned and stretched since. */
+static bool takes(const struct simulation *s, enum kind kind, int64_t i, double x, double y)
+{
+    const struct particles *const p = &s->kind[kind];
+    const double dx = nearest(&s->cells, 0, x - p->x[i]), dy = nearest(&s->cells, 1, y - p->y[i]);
+    if (kind != KIND_SOLID) return dx * dx + dy * dy < square(TAKEN * s->scene->top.dp);
+    const double xx = 1 + p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = 1 + p->Uyy[i];
+    /* F^-1 times det F: no division. */
+    const double X = yy * dx - xy * dy, Y = xx * dy - yx * dx;
+    return X * X + Y * Y < square(TAKEN * s->solid.body[p->body[i]].dp * (xx * yy - xy * yx));
+}
+
+/* Whether some particle of a wall in the cell can be that close to (x, y): at rest it stands within it. */
+static bool wall_near(const struct simulation *s, int32_t cell, double x, double y)
+{
+    const struct cells *const c = &s->cells;
+    const double reach = TAKEN * s->scene->top.dp + (s->effects & FX_MOTION ? c->stray : 0);
+    return fabs(nearest(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
+           fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
+}
+
+/* Whether some wall or solid particle of one cell has (x, y) next to it. */
+static bool taken(const struct simulation *s, int32_t cell, double x, double y)
+{
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct cell_list *const list = &s->cells.kind[kind];
+        if (list->n_active == 0 || list->count[cell] == 0) continue;
+        if (kind == KIND_WALL && !wall_near(s, cell, x, y)) continue;
+        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++)
+            if (takes(s, (enum kind)kind, list->order[j], x, y)) return true;
+    }
+    return false;
+}
+
+int64_t monitor_crossed(const struct simulation *s, int64_t *first)
+{
+    const struct cells *const c = &s->cells;
+    const struct cell_list *const fluid = &c->kind[KIND_FLUID];
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    int64_t count = 0, lowest = INT64_MAX;
+#pragma omp parallel for schedule(static) reduction(+ : count) reduction(min : lowest)
+    for (int32_t k = 0; k < fluid->n_active; k++) {
+        const int32_t cell = fluid->active[k];
+        if (!s->fluid.near_dummies[cell]) continue;
+        int32_t near[9];
+        int n = 0;
+        for (int m = 0; m < 9; m++) {
+            const int32_t other =
+                cell_at(c, cell_x(c, cell) + m % 3 - 1, cell_y(c, cell) + m / 3 - 1);
+            int32_t bodies = 0;
+            for (int kind = KIND_WALL; other >= 0 && kind < KIND_COUNT; kind++)
+                if (s->kind[kind].n) bodies += c->kind[kind].count[other];
+            if (bodies) near[n++] = other;
+        }
+        for (int32_t i = fluid->start[cell]; n && i < fluid->start[cell] + fluid->count[cell];
+             i++) {
+            bool inside = false;
+            for (int m = 0; m < n && !inside; m++) inside = taken(s, near[m], p->x[i], p->y[i]);
+            count += inside;
+            if (inside && i < lowest) lowest = i;
+        }
+    }
+    *first = count ? lowest : -1;
+    return count;
+}

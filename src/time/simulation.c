@@ -1,0 +1,492 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/simulation.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "time/isolated.h"
+#include "fluid/eos.h"
+#include "time/integrators.h"
+#include "time/warnings.h"
+#include "particles/kernel.h"
+#include "time/timestep.h"
+
+const char *const bound_names[BOUND_COUNT] = {
+#define BOUND(name, effect, source) #name,
+#include "time/bounds.def"
+#undef BOUND
+};
+const char *const bound_sources[BOUND_COUNT] = {
+#define BOUND(name, effect, source) source,
+#include "time/bounds.def"
+#undef BOUND
+};
+
+/* Points into particles at rest. */
+static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id, struct diag *d)
+{
+    const struct scene_points *const points = &s->scene->points[kind];
+    const unsigned groups = effects_groups(s->effects, kind, s->scene->top.integrator);
+    struct particles *const p = &s->kind[kind];
+    memset(p, 0, sizeof *p);
+    if (!groups || points->n == 0) return ERR_OK;
+    TRY(particles_create(p, &s->arena, points->n, groups, kind_names[kind], d));
+    p->n = points->n;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] = points->x[i];
+        p->y[i] = points->y[i];
+        p->id[i] = first_id + i;
+        p->body[i] = points->body[i];
+        if (p->X) p->X[i] = points->x[i];
+        if (p->Y) p->Y[i] = points->y[i];
+        if (p->free) p->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
+    }
+    return ERR_OK;
+}
+
+static double expr_or(const struct expr *e, double x, double y, double otherwise)
+{
+    return e ? scene_expr_at(e, x, y) : otherwise;
+}
+
+static void start_fluid(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_fluid *const f = &s->scene->fluid[p->body[i]];
+        const double x = p->x[i], y = p->y[i];
+        /* Hydrostatic start below the free surface. */
+        const double depth = isnan(f->surface) ? 0 : max2(0, f->surface - y);
+        const double pressure =
+            expr_or(f->pressure.e[0], x, y, -s->scene->rho0 * s->scene->top.gravity[1] * depth);
+        p->dens[i] = eos_dens(pressure, s->scene->rho0, s->scene->c0);
+        p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
+        p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
+        if (p->vx_half) {
+            p->vx_half[i] = p->vx[i];
+            p->vy_half[i] = p->vy[i];
+        }
+        if (!p->vx_old) continue;
+        p->vx_old[i] = p->vx[i];
+        p->vy_old[i] = p->vy[i];
+        p->dens_old[i] = p->dens[i];
+    }
+}
+
+static void start_solid(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_solid *const b = &s->scene->solid[p->body[i]];
+        p->vx[i] = p->free[i] * expr_or(b->velocity.e[0], p->X[i], p->Y[i], 0);
+        p->vy[i] = p->free[i] * expr_or(b->velocity.e[1], p->X[i], p->Y[i], 0);
+        if (!p->wx) continue;
+        p->wx[i] = p->vx[i];
+        p->wy[i] = p->vy[i];
+    }
+}
+
+/* How fluid and bodies meet within sub-steps (docs/theory.md, Sec. 7). What a late answer gives to a mode is
+ * at most 0.47 of what a prompt one would take. A body no heavier than the fluid is not expected to go on as
+ * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all that answer at steps beyond
+ * its own, are driven by half of the impedance and by an acceleration that is carried on; by symplectic the
+ * whole impedance drives light ones. */
+static void set_interface(struct simulation *s)
+{
+    const bool leaps = s->effects & FX_LEAPFROG;
+    const bool far = leaps && s->effects & FX_IMPEDANCE && timestep_beyond(s, CFL_LEAPFROG);
+    s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
+    for (int k = 0; k < s->solid.n_bodies; k++) {
+        struct solid_body *const body = &s->solid.body[k];
+        const bool follows = far || body->density <= s->scene->rho0;
+        body->acceleration_weight = follows ? 0 : 1;
+        body->impedance_fraction = follows && leaps ? 1 : 0.5;
+        body->jerk_weight = follows && leaps ? 0 : 1;
+    }
+}
+
+/* Sub-steps pay where the solid's step is the smaller one. */
+static enum err choose_rate(struct simulation *s, struct diag *d)
+{
+    if (!(s->effects & FX_COUPLING)) return ERR_OK;
+    const double ratio = timestep_fluid_limit(s) / s->dt_solid;
+    if (!(ratio <= SUBSTEPS_MOST))
+        return diag_fail(
+            d, ERR_INPUT,
+            "the solid's stable step, %.3g s, goes %.3g times into the fluid's, and at most %d are "
+            "taken: young is too high or density too low beside the fluid's sound_speed",
+            s->dt_solid, ratio, SUBSTEPS_MOST);
+    const int wish = s->scene->numerics.multirate;
+    const bool binds = s->dt_solid < timestep_fluid_limit(s);
+    if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
+    if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)(FX_IMPEDANCE | FX_HELD_FORCE);
+    s->fluid.effects = s->effects;
+    set_interface(s);
+    return ERR_OK;
+}
+
+static void set_guards(struct simulation *s)
+{
+    s->guard = (struct guard){
+        .dens_limit = 0.3,
+        .speed_limit = s->effects & FX_FLUID ? s->scene->c0 : (double)INFINITY,
+        .step_limit = 1e-4 * (s->effects & FX_FLUID ? timestep_fluid_limit(s) : s->dt_solid),
+    };
+}
+
+/* Speed of the fastest particle of one kind, squared. */
+static double fastest(const struct particles *p)
+{
+    double top = 0;
+#pragma omp parallel for schedule(static) reduction(max : top)
+    for (int64_t i = 0; i < p->n; i++) top = max2(top, p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+    return top;
+}
+
+static void find_speed(struct simulation *s)
+{
+    s->speed2 = s->extremes.speed2;
+    if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
+    if (s->effects & FX_MOTION)
+        s->speed2 = max2(s->speed2, wall_motion_speed2(&s->wall_motion, &s->kind[KIND_WALL]));
+}
+
+/* Energy that a fluid particle carries, J/m. */
+static double energy_of(const struct simulation *s, const struct particles *p, int64_t i)
+{
+    const struct fluid_constants *const k = &s->fluid.k;
+    return k->mass * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
+                      k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+}
+
+/* What gravity along joined sides gives to fluid that comes in again opposite. */
+static void book_crossings(struct simulation *s)
+{
+    for (int axis = 0; axis < 2; axis++)
+        s->state.periodic_energy += s->fluid.k.mass * s->fluid.k.gravity[axis] *
+                                    (double)s->cells.crossed[axis] *
+                                    (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
+}
+
+static void forget(struct particles *p, int64_t i)
+{
+    p->p[i] = p->dens[i] = 0;
+    if (p->fx) p->fx[i] = p->fy[i] = 0;
+    if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
+}
+
+/* Particles of the structure that have lost touch with the fluid are not visited any more: before the
+ * cells change, all that were visited forget it. */
+static void forget_touch(struct simulation *s, enum kind kind)
+{
+    struct particles *const p = &s->kind[kind];
+    const struct cell_list *const list = &s->cells.kind[kind];
+    for (int32_t k = 0; k < s->fluid.n_near_fluid[kind]; k++) {
+        const int32_t cell = s->fluid.near_fluid[kind][k];
+        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
+            forget(p, list->order[j]);
+        }
+    }
+}
+
+/* What a checkpoint brings along is of the last evaluation before it. */
+static void forget_all_touch(struct particles *p)
+{
+    for (int64_t i = 0; i < p->n; i++) forget(p, i);
+}
+
+/* Room of the cells as last measured. The next evaluation is at the state as it is, the predictor's second
+ * one half a step of the present velocities on. */
+static void find_skin_left(struct simulation *s)
+{
+    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    const double ahead = predicts ? 1.1 * timestep_fluid_limit(s) * sqrt(s->speed2) : 0;
+    s->skin_left = cells_skin_left(&s->cells, KERNEL_REACH * s->fluid.k.h + ahead);
+}
+
+/* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
+static enum err sort_particles(struct simulation *s, struct diag *d)
+{
+    struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    if (s->effects & FX_WALL) forget_touch(s, KIND_WALL);
+    if (s->effects & FX_COUPLING) forget_touch(s, KIND_SOLID);
+    const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
+    for (int64_t i = fluid->n - lost; i < fluid->n; i++)
+        s->state.lost_energy += energy_of(s, fluid, i);
+    if (s->effects & FX_PERIODIC) book_crossings(s);
+    fluid->n -= lost;
+    s->state.lost += lost;
+    if ((s->effects & FX_WALL) && s->state.sorts == 0)
+        cells_sort(&s->cells, KIND_WALL, &s->kind[KIND_WALL]);
+    else if (s->effects & FX_MOTION)
+        wall_motion_sort(&s->wall_motion, &s->cells, &s->kind[KIND_WALL]);
+    if (s->effects & FX_COUPLING) cells_sort(&s->cells, KIND_SOLID, solid);
+    fluid_find_near(&s->fluid, &s->cells);
+    s->state.sorts++;
+    const int32_t crowd = fluid_crowding(&s->cells);
+    s->crowded = crowd > CELL_CAPACITY;
+    find_skin_left(s);
+    if (s->crowded && s->state.steps == 0)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%d particles start in one cell of %.3g m, which has room for %d: a smaller "
+            "numerics.h_over_dp or a solid's dp nearer to the fluid's would mend it",
+            crowd, s->cells.side[0], CELL_CAPACITY);
+    if (s->crowded)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some twenty "
+            "belong: the run is unstable; a smaller cfl or another sound_speed may help",
+            s->state.time, crowd, s->cells.side[0]);
+    return ERR_OK;
+}
+
+/* Takes off the room what two particles can have gone in the last step: the fluid with the larger of its
+ * speeds before and after and half a step of its acceleration, whatever the integrator, and its shift. */
+static void use_skin_left(struct simulation *s, double speed2_before)
+{
+    const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->extremes.speed2)),
+                 way = dt * (speed + 0.5 * dt * sqrt(s->fluid.extremes.acceleration2)) + s->shifted;
+    s->skin_left -= way + max2(way, s->solid_max_move);
+}
+
+/* Whether a pair may be out of the cells' sight at the next evaluations. Where ways are bounded, the cells
+ * need not be measured at every step: the answer would be no. Round-off of the ways is less than the hair. */
+static bool sorting_due(struct simulation *s)
+{
+    const bool bounded =
+        s->scene->top.integrator != INTEGRATOR_SYMPLECTIC && !(s->effects & FX_MOTION);
+    const double hair = 1e-6 * s->fluid.k.h;
+    if (bounded && s->skin_left > hair) return false;
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        if (s->cells.kind[kind].n_active && (kind != KIND_WALL || s->wall_motion.moved))
+            cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
+    find_skin_left(s);
+    return !(s->skin_left > 0);
+}
+
+static enum err create_fluid(struct simulation *s, struct diag *d)
+{
+    const struct scene *const scene = s->scene;
+    const double reach = KERNEL_REACH * scene->h, stray = scene->numerics.skin * scene->h;
+    TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, stray,
+                     s->kind, d));
+    for (int axis = 0; axis < 2; axis++)
+        if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, reach, d));
+    TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, &s->cells, d));
+    start_fluid(s);
+    return ERR_OK;
+}
+
+static enum err create_contact(struct simulation *s, struct diag *d)
+{
+    static const struct particles none = {0};
+    const bool walls = s->effects & FX_CONTACT_WALL;
+    TRY(contact_create(&s->contact, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID],
+                       walls ? &s->kind[KIND_WALL] : &none, d));
+    s->solid.contact = &s->contact;
+    s->solid.outer_omega2 = s->contact.omega2;
+    s->solid.outer_damping = s->contact.damping;
+    s->solid.stable_step = solid_step_of(square(s->solid.omega_max) + s->contact.omega2,
+                                         s->solid.damping_max + s->contact.damping);
+    return ERR_OK;
+}
+
+static enum err build(struct simulation *s, struct diag *d)
+{
+    simulation_warn_of_scene(s, d);
+    int64_t id = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        TRY(fill_kind(s, (enum kind)kind, id, d));
+        id += s->kind[kind].n;
+    }
+    if (s->effects & FX_FLUID) TRY(create_fluid(s, d));
+    if (s->effects & FX_SOLID) {
+        TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
+        start_solid(s);
+        solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
+        if (s->effects & FX_CONTACT) TRY(create_contact(s, d));
+        if (s->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
+            TRY(loads_create(&s->loads, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID], d));
+            s->solid.loads = &s->loads;
+        }
+        s->state.solid_stiffening = s->state.solid_slowing = 1;
+        timestep_set_solid(s);
+    }
+    if (s->effects & FX_MOTION) {
+        TRY(wall_motion_create(&s->wall_motion, &s->arena, s->scene, &s->kind[KIND_WALL], d));
+        move_walls(s, 0);
+    }
+    TRY(choose_rate(s, d));
+    simulation_warn_of_steps(s, d);
+    set_guards(s);
+    update_extremes(s);
+    find_speed(s);
+    if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
+    const struct ledger start = simulation_ledger(s);
+    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
+                            start.hourglass + start.contact;
+    s->state.det_low = 1;
+    s->evaluated = false; /* the caller may set the scene up further */
+    return ERR_OK;
+}
+
+enum err simulation_create(struct simulation *s, const struct scene *scene, struct diag *d)
+{
+    memset(s, 0, sizeof *s);
+    s->scene = scene;
+    s->effects = effects_of_scene(scene);
+    const enum err e = build(s, d);
+    if (e) simulation_free(s);
+    return e;
+}
+
+enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
+                         struct diag *d)
+{
+    struct push *const push = &s->push[kind];
+    const size_t n = (size_t)s->kind[kind].capacity;
+    if (!push->ax) push->ax = arena_alloc(&s->arena, n, sizeof *push->ax, "accelerations", d);
+    if (!push->ay) push->ay = arena_alloc(&s->arena, n, sizeof *push->ay, "accelerations", d);
+    if (!push->ax || !push->ay) return ERR_MEMORY;
+    push->at = at;
+    push->context = context;
+    if (kind == KIND_SOLID) s->solid.push[0] = at ? push->ax : NULL;
+    if (kind == KIND_SOLID) s->solid.push[1] = at ? push->ay : NULL;
+    return ERR_OK;
+}
+
+void simulation_free(struct simulation *s) { arena_free(&s->arena); }
+
+/* Moves fluid particles to where they are fewer. */
+static double shift_fluid(struct simulation *s, double clock)
+{
+    s->shifted = fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+    return phase_add(s, PHASE_shift, clock);
+}
+
+/* Work that moving walls have done on the fluid in the last step. */
+static void add_wall_work(struct simulation *s)
+{
+    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
+}
+
+/* Size of the impulse that fluid and structure have exchanged in the last step. */
+static void add_exchange(struct simulation *s)
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    double fx = 0, fy = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        fx += p->fx[i];
+        fy += p->fy[i];
+    }
+    s->state.exchanged += s->state.dt * sqrt(fx * fx + fy * fy);
+}
+
+/* Work on the solid from outside in the last step. */
+static void take_work(struct simulation *s)
+{
+    s->state.wall_work += s->solid.work;
+    s->solid.work = 0;
+}
+
+/* Gradients of the solid for those who look at them after this step: the guards, and the search of the
+ * step. */
+static void show_strain(struct simulation *s)
+{
+    if (guards_strain_due(s)) solid_show(&s->solid, &s->kind[KIND_SOLID]);
+}
+
+enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
+{
+    s->solid.time = s->state.time;
+    if (!(s->effects & FX_FLUID)) {
+        solid_only_step(s, t_limit);
+        take_work(s);
+        if (s->effects & FX_MOTION) move_walls(s, s->state.time);
+        find_speed(s);
+        show_strain(s);
+        TRY(guards_check(s, d));
+        timestep_recheck_solid(s);
+        return ERR_OK;
+    }
+    const double speed2_before = s->extremes.speed2;
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
+        symplectic_step(s, t_limit);
+    else if (s->scene->top.integrator == INTEGRATOR_VERLET)
+        verlet_step(s, t_limit);
+    else
+        leapfrog_step(s, t_limit);
+    double clock = wall_clock();
+    /* So that the state does not depend on whether anybody looks at it between two steps. */
+    if (s->effects & FX_SHIFTING) clock = shift_fluid(s, clock);
+    if (s->effects & FX_MOTION) move_walls(s, s->state.time);
+    show_strain(s);
+    const enum err e = guards_check(s, d);
+    find_speed(s);
+    if (s->effects & FX_MOTION) add_wall_work(s);
+    take_work(s);
+    if (s->effects & FX_COUPLING) add_exchange(s);
+    if (!e && guards_strain_due(s)) timestep_recheck_solid(s);
+    clock = phase_add(s, PHASE_update, clock);
+    if (e) return e;
+    use_skin_left(s, speed2_before);
+    /* Now, so that the cells are good for whoever looks at the state between two steps. */
+    if (sorting_due(s)) TRY(sort_particles(s, d));
+    clock = phase_add(s, PHASE_sort, clock);
+    limit_isolated_tension(s);
+    TRY(guards_penetration(s, d));
+    phase_add(s, PHASE_update, clock);
+    return ERR_OK;
+}
+
+enum err simulation_resume(struct simulation *s, struct diag *d)
+{
+    s->evaluated = false;
+    if (s->effects & FX_FLUID) {
+        for (int kind = 0; kind < KIND_COUNT; kind++)
+            if (s->kind[kind].capacity && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
+                cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
+        fluid_find_near(&s->fluid, &s->cells);
+        find_skin_left(s);
+        if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
+        if (s->effects & FX_WALL) forget_all_touch(&s->kind[KIND_WALL]);
+        if (fluid_crowding(&s->cells) > CELL_CAPACITY)
+            return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
+                             CELL_CAPACITY);
+    }
+    if (s->effects & FX_SOLID) {
+        timestep_set_solid(s);
+        solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards look at the last gradients */
+    }
+    update_extremes(s);
+    find_speed(s);
+    return ERR_OK;
+}
+
+void simulation_refresh(struct simulation *s)
+{
+    if ((s->effects & FX_FLUID) && !s->crowded) {
+        double seconds[PHASE_COUNT];
+        memcpy(seconds, s->phase_seconds, sizeof seconds);
+        evaluate_fluid(s, s->state.time);
+        s->state.evaluations--;
+        /* A caller's own forces and motions may change between two looks. */
+        s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
+        if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
+    }
+    if (!(s->effects & FX_SOLID)) return;
+    /* Accelerations of parts would be out of reach after an evaluation of the whole. */
+    if (s->solid.in_parts) solid_show(&s->solid, &s->kind[KIND_SOLID]);
+    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+}
+
+uint64_t simulation_hash(struct simulation *s)
+{
+    simulation_refresh(s);
+    uint64_t h = 0xcbf29ce484222325u;
+    for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&s->kind[kind], h);
+    const unsigned char *const bytes = (const unsigned char *)&s->state;
+    for (size_t k = 0; k < sizeof s->state; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
+    return h;
+}

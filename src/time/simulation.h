@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT
+ * A run in memory: the scene's particles, their neighbours, the models, and what happens in which
+ * order. Knows nothing of files or command lines. */
+#ifndef SPHFSI_TIME_SIMULATION_H
+#define SPHFSI_TIME_SIMULATION_H
+
+#include "particles/cells.h"
+#include "solid/contact.h"
+#include "solid/loads.h"
+#include "case/effects.h"
+#include "fluid/fluid.h"
+#include "time/ledger.h"
+#include "time/guards.h"
+#include "fluid/wall_motion.h"
+#include "particles/particles.h"
+#include "case/scene.h"
+#include "solid/solid.h"
+
+enum bound {
+#define BOUND(name, effect, source) BOUND_##name,
+#include "time/bounds.def"
+#undef BOUND
+    BOUND_COUNT
+};
+extern const char *const bound_names[BOUND_COUNT];
+extern const char *const bound_sources[BOUND_COUNT];
+
+/* Scalars carried from step to step, from time/state.def. */
+struct state {
+#define STATE(type, name, unit, meaning) type name;
+#include "time/state.def"
+#undef STATE
+    int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
+};
+
+/* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). What is not a number they may pass over,
+ * but nothing of it, times zero, is zero. */
+struct extremes {
+    double dens_low, dens_high, speed2, nan_probe;
+};
+
+/* Accelerations from outside, that a program with the library adds to those of the model. */
+typedef void push_function(void *context, double time, const struct particles *p, double *ax,
+                           double *ay);
+struct push {
+    push_function *at; /* NULL: none */
+    void *context;
+    double *ax, *ay; /* m/s^2 */
+};
+
+struct simulation {
+    const struct scene *scene; /* borrowed; outlives the simulation */
+    struct arena arena;
+    struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
+    struct cells cells;
+    struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct wall_motion wall_motion; /* walls that move; unused where none does */
+    struct solid solid;             /* model of the solid; unused without one */
+    struct contact contact;         /* of the solid; unused without it */
+    struct loads loads;             /* of the solid; unused without loads and moving clamps */
+    unsigned effects;               /* bits of case/effects.h */
+    struct state state;
+    double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
+    double dt_solid;              /* stable step of the solid times its safety, s */
+    double dt_lone_solid;         /* the same as if there were no contact */
+    int substeps;                 /* solid steps in the last fluid step */
+    double phase_seconds[PHASE_COUNT];
+    struct extremes extremes; /* of the fluid */
+    double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
+    double
+        solid_max_move; /* longest way of a solid particle in the last step, m (not by symplectic) */
+    double shifted;     /* longest way that a fluid particle was shifted in it, m; 0: none is */
+    double skin_left;   /* what two particles may go together before a sorting can be due, m */
+    bool evaluated;     /* rates, pressures and the fluid's force belong to the present state */
+    bool crowded;       /* cells hold more than the sweeps can take: nothing is evaluated */
+    struct guard guard;
+    struct push push[KIND_COUNT]; /* of fluid and solid */
+};
+
+/* Lets `at` add accelerations to the particles of a kind (fluid or solid) from the next evaluation on:
+ * once for each evaluation of the fluid, held over the sub-steps of the solid. */
+enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
+                         struct diag *d) SPHFSI_CHECKED;
+
+/* Builds the state at time zero from a scene (or, with a checkpoint to be loaded, the frame for it).
+ * On failure nothing remains to be freed. */
+enum err simulation_create(struct simulation *s, const struct scene *scene, struct diag *d)
+    SPHFSI_CHECKED;
+void simulation_free(struct simulation *s);
+
+/* Takes one time step, ending no later than t_limit (> time), and exactly there if the step reaches
+ * within a step of it. ERR_GUARD: the state is no longer sound; the sentence is in d. */
+enum err simulation_step(struct simulation *s, double t_limit, struct diag *d) SPHFSI_CHECKED;
+
+/* After the STATE fields, n of each kind and s->state have been loaded from a checkpoint: rebuilds
+ * everything derived. The next step gives the same bits as in the uninterrupted run. */
+enum err simulation_resume(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* Brings DERIVED fields that output shows (pressure of wall and solid; displacement gradient) up to date
+ * with the state, without changing the state. */
+void simulation_refresh(struct simulation *s);
+
+/* Energy, momentum and extremes now; calls simulation_refresh. */
+struct ledger simulation_ledger(struct simulation *s);
+
+/* Hash of every STATE field and state scalar; calls simulation_refresh. */
+uint64_t simulation_hash(struct simulation *s);
+
+/* The fluid at a fixed point, by the kernel over its particles within reach. Positions and densities
+ * must be up to date, which they are between two steps. */
+struct sample {
+    double fill;     /* sum V W of the fluid: about 1 within it, 0.5 at its surface */
+    double occupied; /* the same of walls and structures */
+    double pressure; /* Pa, mean over the fluid (Shepard); 0 where dry */
+    double vx, vy;   /* m/s, likewise */
+};
+struct sample simulation_sample(const struct simulation *s, double x, double y);
+
+/* Particles of all kinds within reach of a point. */
+int simulation_near(const struct simulation *s, double x, double y);
+
+/* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
+double simulation_pressure_at(const struct simulation *s, double x, double y);
+
+/* Height of the free surface above (x, y): where the water first ends on the way up; y itself where
+ * no water is within reach above it. */
+double simulation_level(const struct simulation *s, double x, double y);
+
+/* Coordinate of the foremost fluid in a direction (enum probe_direction), without single drops of one
+ * or two particles, unless there is nothing else. NAN where there is no fluid. */
+double simulation_front(const struct simulation *s, int direction);
+
+/* Fluid through the line from a to b, to the right of that way, m^2/s per depth. */
+double simulation_flux(const struct simulation *s, const double a[2], const double b[2]);
+
+#endif

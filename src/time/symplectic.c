@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT
+ * Symplectic predictor-corrector (Eqs. 22-24), as the paper has it: two evaluations a step. With solid
+ * sub-steps the predictor carries the structure on (T-35), and the corrector's force is what both sides
+ * feel over the whole step. */
+#include "time/integrators.h"
+#include "time/timestep.h"
+
+static void predict_fluid(struct particles *p, double half)
+{
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x0[i] = p->x[i];
+        p->y0[i] = p->y[i];
+        p->vx0[i] = p->vx[i];
+        p->vy0[i] = p->vy[i];
+        p->dens0[i] = p->dens[i];
+        p->x[i] += half * p->vx[i]; /* Eq. 22a */
+        p->y[i] += half * p->vy[i];
+        p->vx[i] += half * p->ax[i]; /* Eq. 22b */
+        p->vy[i] += half * p->ay[i];
+        p->dens[i] += half * p->ddens[i]; /* Eq. 24a */
+    }
+}
+
+static void correct_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+{
+    const double dt = *(const double *)by;
+#pragma omp simd
+    for (int64_t i = from; i < end; i++) {
+        p->vx[i] = p->vx0[i] + dt * p->ax[i]; /* Eq. 23a */
+        p->vy[i] = p->vy0[i] + dt * p->ay[i];
+        p->x[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]); /* Eq. 23b */
+        p->y[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
+        /* Eq. 24b, less 1, without cancellation. */
+        const double eps = -p->ddens[i] / (1 + p->dens[i]) * dt;
+        p->dens[i] = p->dens0[i] - (1 + p->dens0[i]) * 2 * eps / (2 + eps);
+    }
+}
+
+static void rates_of_solid(struct simulation *s)
+{
+    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+    solid_forces(&s->solid, &s->kind[KIND_SOLID]);
+    s->state.solid_evaluations++;
+}
+
+/* The solid takes the same two stages as the fluid. */
+static void predict_solid(struct particles *p, double half)
+{
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x0[i] = p->ux[i];
+        p->y0[i] = p->uy[i];
+        p->vx0[i] = p->vx[i];
+        p->vy0[i] = p->vy[i];
+        p->ux[i] += half * p->vx[i]; /* Eq. 22 */
+        p->uy[i] += half * p->vy[i];
+        p->vx[i] += half * p->sx[i];
+        p->vy[i] += half * p->sy[i];
+    }
+}
+
+static void correct_solid(struct particles *p, double dt)
+{
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->vx[i] = p->vx0[i] + dt * p->sx[i]; /* Eq. 23 */
+        p->vy[i] = p->vy0[i] + dt * p->sy[i];
+        p->ux[i] = p->x0[i] + 0.5 * dt * (p->vx[i] + p->vx0[i]);
+        p->uy[i] = p->y0[i] + 0.5 * dt * (p->vy[i] + p->vy0[i]);
+    }
+}
+
+/* Single rate: place and velocity as the fluid sees them, and its acceleration with the given weight. */
+static void show_solid(struct particles *p, double newest)
+{
+    place_solid(p);
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->wx[i] = p->vx[i];
+        p->wy[i] = p->vy[i];
+        p->ax[i] += newest * (p->sx[i] - p->ax[i]);
+        p->ay[i] += newest * (p->sy[i] - p->ay[i]);
+    }
+}
+
+/* Sub-steps: position and velocity of the structure as the fluid sees them half a step on (T-35). */
+static void carry_solid(struct simulation *s, double half)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    /* How old the acceleration is that it has on the way there. */
+    const double since = fluid_eval_lag(s, s->state.dt) + 0.5 * s->state.dt + 0.5 * half;
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double ax = p->ax[i] + since * p->jx[i], ay = p->ay[i] + since * p->jy[i];
+        p->x[i] = p->X[i] + p->ux[i] + half * (p->wx[i] + 0.5 * half * ax);
+        p->y[i] = p->Y[i] + p->uy[i] + half * (p->wy[i] + 0.5 * half * ay);
+        p->wx[i] += half * ax;
+        p->wy[i] += half * ay;
+    }
+}
+
+void symplectic_step(struct simulation *s, double t_limit)
+{
+    struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    const bool coupled = s->effects & FX_COUPLING, multirate = s->effects & FX_MULTIRATE;
+    const double time = s->state.time;
+    evaluate_start(s);
+    double clock = wall_clock();
+    if (coupled && !multirate) rates_of_solid(s);
+    clock = phase_add(s, PHASE_solid, clock);
+
+    bool hits;
+    const double dt = timestep_choose(s, t_limit, &hits);
+    predict_fluid(fluid, 0.5 * dt);
+    if (coupled && multirate) carry_solid(s, 0.5 * dt);
+    if (coupled && !multirate) {
+        predict_solid(solid, 0.5 * dt);
+        s->solid.time = time + 0.5 * dt;
+        solid_place_clamps(&s->solid, solid, s->solid.time);
+        show_solid(solid, 0);
+    }
+    phase_add(s, PHASE_update, clock);
+
+    evaluate_fluid(s, time + 0.5 * dt);
+    clock = wall_clock();
+    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
+    if (coupled && !multirate) rates_of_solid(s);
+    clock = phase_add(s, PHASE_solid, clock);
+
+    advance_fluid(s, correct_rows, &dt);
+    if (coupled && !multirate) {
+        correct_solid(solid, dt);
+        solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
+        solid_place_clamps(&s->solid, solid, time + dt);
+        show_solid(solid, filter_weight(s, dt));
+        s->state.solid_substeps++;
+        s->substeps = 1;
+    }
+    timestep_book(s, dt, t_limit, hits);
+    phase_add(s, PHASE_update, clock);
+}
+
+void symplectic_solid(struct simulation *s, double dt)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    rates_of_solid(s);
+    predict_solid(p, 0.5 * dt);
+    s->solid.time += 0.5 * dt;
+    solid_place_clamps(&s->solid, p, s->solid.time);
+    rates_of_solid(s);
+    correct_solid(p, dt);
+    solid_book_work(&s->solid, p, p->vx0, p->vy0, dt);
+    s->solid.time += 0.5 * dt;
+    solid_place_clamps(&s->solid, p, s->solid.time);
+}

@@ -1,0 +1,192 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/timestep.h"
+
+#include <math.h>
+
+/* What a bound follows from: the scene, and the fluid's extremes `now`, which are zero at rest. */
+typedef double bound_function(const struct simulation *s, const struct fluid_extremes *now);
+
+/* Eq. 28a. */
+static double bound_force(const struct simulation *s, const struct fluid_extremes *now)
+{
+    const double size = sqrt(max2(now->acceleration2, 1e-300));
+    return s->scene->numerics.cfl * sqrt(s->fluid.k.h / size);
+}
+
+/* Eq. 28b. */
+static double bound_acoustic(const struct simulation *s, const struct fluid_extremes *now)
+{
+    return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + now->approach);
+}
+
+/* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven lattices. */
+static double bound_decay(const struct simulation *s, double limit, double rate)
+{
+    return 0.9 * limit * s->fluid.k.h / (rate * s->fluid.k.c0);
+}
+
+/* Adams and Bashforth's third-order rule holds to 6/11. */
+static double bound_diffusion(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    return bound_decay(s, s->effects & FX_LEAPFROG ? 6.0 / 11 : 2, 6.5 * s->fluid.k.delta);
+}
+
+/* Leapfrog's velocity, which is seen half a step late, to 1. */
+static double bound_artificial(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
+}
+
+/* L-8: half of the stable 2/omega between two dummies where L-7 is steepest. */
+static double bound_repulsion(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    const struct fluid_constants *const k = &s->fluid.k;
+    return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
+}
+
+/* Morris et al. 1997, Eq. 21. */
+static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    return 0.125 * square(s->fluid.k.h) / s->fluid.k.nu;
+}
+
+static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    if (s->effects & FX_MULTIRATE) return (double)INFINITY;
+    return s->effects & FX_CONTACT ? s->dt_lone_solid : s->dt_solid;
+}
+
+static double bound_contact(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    return s->effects & FX_MULTIRATE ? (double)INFINITY : s->dt_solid;
+}
+
+/* Found below, where the time that is left is known. */
+static double bound_output(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)s, (void)now;
+    return (double)INFINITY;
+}
+
+static double bound_fixed(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    const double fixed = s->scene->numerics.fixed_step;
+    return fixed > 0 ? fixed : (double)INFINITY;
+}
+
+/* One function for each row of time/bounds.def. */
+static bound_function *const bound_functions[BOUND_COUNT] = {
+#define BOUND(name, effect, source) bound_##name,
+#include "time/bounds.def"
+#undef BOUND
+};
+static const unsigned bound_effects[BOUND_COUNT] = {
+#define FX_NONE 0u
+#define BOUND(name, effect, source) FX_##effect,
+#include "time/bounds.def"
+#undef BOUND
+#undef FX_NONE
+};
+
+static double bound_at(const struct simulation *s, int k, const struct fluid_extremes *now)
+{
+    const bool fixed = s->scene->numerics.fixed_step > 0;
+    const bool owned = bound_effects[k] == 0 || s->effects & bound_effects[k];
+    return owned && (!fixed || k == BOUND_fixed) ? bound_functions[k](s, now) : (double)INFINITY;
+}
+
+double timestep_fluid_limit(const struct simulation *s)
+{
+    static const struct fluid_extremes rest = {0};
+    double limit = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (k != BOUND_solid && k != BOUND_contact) limit = min2(limit, bound_at(s, k, &rest));
+    return limit;
+}
+
+double timestep_courant(const struct simulation *s)
+{
+    return timestep_fluid_limit(s) * s->fluid.k.c0 / s->fluid.k.h;
+}
+
+bool timestep_beyond(const struct simulation *s, double cfl)
+{
+    return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
+}
+
+double timestep_choose(struct simulation *s, double t_limit, bool *hits)
+{
+    double dt = (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++) {
+        s->dt_bound[k] = bound_at(s, k, &s->fluid.extremes);
+        dt = min2(dt, s->dt_bound[k]);
+    }
+    /* Equal steps up to the limit rather than full ones and a rest: steps that change in a pattern feed
+     * oscillations near the bound that each of them alone would keep (docs/theory.md). Round-off of the
+     * time makes no step of its own. */
+    const double left = t_limit - s->state.time, steps = ceil(left / dt * (1 - 1e-9));
+    *hits = steps <= 1;
+    if (steps > EQUAL_STEPS || (*hits && left == dt)) return *hits ? left : dt;
+    const double equal = *hits ? left : left / steps;
+    if (equal < dt * (1 - 1e-9)) s->dt_bound[BOUND_output] = equal;
+    return equal;
+}
+
+int timestep_substeps(struct simulation *s, double dt)
+{
+    if (!(s->effects & FX_MULTIRATE)) return 1;
+    const double needed = max2(1, ceil(dt / s->dt_solid)), held = (double)s->state.substeps_held;
+    /* A number that jumps to and fro changes the sub-step by as much. */
+    if (needed > held || needed < 0.6 * held) s->state.substeps_held = (int64_t)min2(needed, 1e9);
+    return (int)s->state.substeps_held;
+}
+
+void timestep_set_solid(struct simulation *s)
+{
+    const double safety = s->scene->numerics.solid_safety;
+    s->dt_solid = safety * s->solid.stable_step * s->state.solid_slowing;
+    s->dt_lone_solid = safety * s->solid.lone_step * s->state.solid_slowing;
+}
+
+/* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses up what
+ * the default solid_safety of 0.9 leaves: 0.9 sqrt(1.15) = 0.965. A softer solid is not urgent. */
+#define STIFFER 1.15
+#define SOFTER 0.6
+
+void timestep_recheck_solid(struct simulation *s)
+{
+    struct state *const st = &s->state;
+    if (s->scene->numerics.fixed_step > 0) return;
+    const double now = solid_stiffening(&s->solid, &s->kind[KIND_SOLID]);
+    if (now <= STIFFER * st->solid_stiffening && now >= SOFTER * st->solid_stiffening) return;
+    double omega, damping;
+    const double step = solid_stable_step(&s->solid, &s->kind[KIND_SOLID], &omega, &damping);
+    if (!(step > 0)) return; /* not a number: the guards will say why */
+    st->solid_stiffening = now;
+    st->solid_slowing = step / s->solid.stable_step;
+    timestep_set_solid(s);
+}
+
+void timestep_book(struct simulation *s, double dt, double t_limit, bool hits)
+{
+    struct state *const st = &s->state;
+    st->time = hits ? t_limit : st->time + dt;
+    st->dt_old = st->dt;
+    st->dt = dt;
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->steps++;
+    st->particle_steps += s->kind[KIND_FLUID].n + s->kind[KIND_SOLID].n;
+    for (int k = 0; k < BOUND_COUNT; k++)
+        if (s->dt_bound[k] <= dt) {
+            st->bound_steps[k]++;
+            break;
+        }
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
+ * (Eq. 27): one evaluation a step. */
+#include "time/integrators.h"
+#include "time/timestep.h"
+
+#include <math.h>
+
+/* Eq. 25, or Eq. 26 where `euler`. For steps that change, the 2 dt of Eq. 25 is the time since the
+ * previous state, dt_old + dt: printed as it is, a free fall would lose g (dt_old - dt). */
+struct stride {
+    double dt, dt_old;
+    bool euler;
+};
+
+static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+{
+    const struct stride *const step = by;
+    const bool euler = step->euler;
+    const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
+#pragma omp simd
+    for (int64_t i = from; i < end; i++) {
+        const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
+        p->x[i] += dt * vx + 0.5 * dt * dt * p->ax[i];
+        p->y[i] += dt * vy + 0.5 * dt * dt * p->ay[i];
+        p->vx[i] = (euler ? vx : p->vx_old[i]) + kick * p->ax[i];
+        p->vy[i] = (euler ? vy : p->vy_old[i]) + kick * p->ay[i];
+        p->dens[i] = (euler ? dens : p->dens_old[i]) + kick * p->ddens[i];
+        p->vx_old[i] = vx;
+        p->vy_old[i] = vy;
+        p->dens_old[i] = dens;
+    }
+}
+
+/* One component of T-36a: the force, and its mean, which begins with the first force and ends where it has
+ * become less than any force that is felt, N/m. */
+SPHFSI_INLINE double carried(double *mean, double force, double per_time, double newest)
+{
+    const double least = 1e-30, old = *mean != 0 ? *mean : force;
+    const double next = old + newest * (force - old);
+    *mean = fabs(next) > least ? next : 0;
+    return force + per_time * (force - old);
+}
+
+/* T-36a: the force that is held over sub-steps is that of their beginning; `ahead`: the time from there to
+ * the middle of their kicks. */
+static void carry_force(struct simulation *s, double ahead)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const double since = s->state.dt, newest = filter_weight(s, since);
+    const double per_time = ahead / (since + smoothing_lag(s));
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->fx[i] = carried(&p->mean_fx[i], p->fx[i], per_time, newest);
+        p->fy[i] = carried(&p->mean_fy[i], p->fy[i], per_time, newest);
+    }
+}
+
+void verlet_step(struct simulation *s, double t_limit)
+{
+    evaluate_start(s);
+    double clock = wall_clock();
+    bool hits;
+    const double dt = timestep_choose(s, t_limit, &hits);
+    const bool euler = s->state.verlet_count == 0;
+    s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
+    advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
+    clock = phase_add(s, PHASE_update, clock);
+    if (s->effects & FX_COUPLING) {
+        const int n = timestep_substeps(s, dt);
+        if (s->effects & FX_HELD_FORCE) carry_force(s, 0.5 * (dt - dt / n));
+        advance_solid(s, dt, n, false);
+    }
+    clock = phase_add(s, PHASE_solid, clock);
+    timestep_book(s, dt, t_limit, hits);
+    phase_add(s, PHASE_update, clock);
+}

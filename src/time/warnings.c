@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/warnings.h"
+
+#include <stdio.h>
+
+#include "case/case.h"
+#include "time/timestep.h"
+
+/* Contact that a scene may expect and does not ask for. */
+static void warn_of_contact(const struct simulation *s, struct diag *d)
+{
+    if (s->effects & FX_CONTACT) return;
+    int loose = 0;
+    for (int k = 0; k < s->scene->n_solid; k++) loose += s->scene->solid[k].clamp.n == 0;
+    if (s->scene->n_solid > 1 || (loose && s->scene->n_wall > 0))
+        diag_warn(d,
+                  "contact is not simulated: solids pass through each other and through walls; a "
+                  "[contact] section calls for it");
+}
+
+/* A body that nothing holds moves away, which is seldom what a case with gravity or a load means. */
+static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < s->scene->n_solid; k++) {
+        const struct scene_solid *const b = &s->scene->solid[k];
+        if (b->clamp.n || b->joined[0]) continue;
+        bool loaded = false;
+        for (int m = 0; m < s->scene->n_load; m++)
+            loaded |= scene_find_solid(s->scene, s->scene->load[m].body) == k;
+        if (b->gravity && s->effects & FX_GRAVITY)
+            diag_warn(
+                d,
+                "[solid %s] is clamped nowhere, and gravity acts on it: it falls unless fluid "
+                "carries it; `clamp` holds it, `gravity = off` spares it",
+                b->common.name);
+        else if (loaded)
+            diag_warn(d,
+                      "[solid %s] is clamped nowhere, and a [load] acts on it: it is driven away; "
+                      "`clamp` holds it",
+                      b->common.name);
+    }
+}
+
+void simulation_warn_of_scene(const struct simulation *s, struct diag *d)
+{
+    warn_of_contact(s, d);
+    warn_of_loose_bodies(s, d);
+}
+
+/* How long the steps are, as the case gives it. */
+static void text_of_step(const struct simulation *s, char text[64])
+{
+    const struct scene_numerics *const n = &s->scene->numerics;
+    if (n->fixed_step > 0)
+        snprintf(text, 64, "numerics.fixed_step = %g s (C_CFL = %.3g)", n->fixed_step,
+                 timestep_courant(s));
+    else
+        snprintf(text, 64, "numerics.cfl = %g", n->cfl);
+}
+
+/* Up to these a column of water that falls together (tests/stability/column.cfg) was found stable; for
+ * leapfrog the analysis of docs/theory.md says the same. */
+static void warn_of_cfl(const struct simulation *s, struct diag *d)
+{
+    static const double largest[] = {0.4, 0.2, 0.6};
+    const double limit = largest[s->scene->top.integrator];
+    char given[64];
+    text_of_step(s, given);
+    if (timestep_beyond(s, limit))
+        diag_warn(d,
+                  "%s is beyond %g, up to which this integrator is stable: the fluid may "
+                  "blow up, and a guard would stop the run",
+                  given, limit);
+}
+
+static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
+{
+    const int light = scene_light_solid(s->scene);
+    if (!(s->effects & FX_LEAPFROG) || light < 0 || !timestep_beyond(s, CFL_PAPER)) return;
+    const struct scene_solid *const b = &s->scene->solid[light];
+    char given[64], place[LOCATION_TEXT];
+    text_of_step(s, given);
+    scene_location(s->scene, b->common.line, place);
+    diag_warn(d,
+              "%s: [solid %s], %.3g times as dense as the fluid, may be driven by leapfrog with "
+              "%s; where neither cfl nor fixed_step is given, C_CFL is %g",
+              place, b->common.name, b->density / s->scene->rho0, given, CFL_PAPER);
+}
+
+/* fixed_step is taken as it is, also where it must end in a blow-up. */
+static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    const bool shared = s->effects & FX_SOLID && !(s->effects & FX_MULTIRATE);
+    if (shared && fixed > s->solid.stable_step)
+        diag_warn(
+            d,
+            "numerics.fixed_step = %g s is beyond the %.4g s of the solid's bound: the run will "
+            "blow up; 0 takes the step from the bounds",
+            fixed, s->solid.stable_step);
+}
+
+void simulation_warn_of_steps(const struct simulation *s, struct diag *d)
+{
+    warn_of_fixed_step(s, d);
+    warn_of_cfl(s, d);
+    warn_of_light_bodies(s, d);
+}

@@ -1,0 +1,252 @@
+/* SPDX-License-Identifier: MIT
+ * What the program says of itself is true: examples are accepted, templates run, sources fit the scene. */
+#include "case/effects.h"
+#include "app/manual.h"
+#include "case/params.h"
+#include "app/preview.h"
+#include "rig.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static struct diag diag;
+static int warnings;
+
+static void on_warning(void *context, const char *text)
+{
+    (void)context;
+    (void)text;
+    warnings++;
+}
+
+void setUp(void)
+{
+    diag = (struct diag){.warn = on_warning};
+    warnings = 0;
+}
+
+void tearDown(void) {}
+
+/* --- examples of keys --- */
+
+/* Two sections of each kind, so that `like` and references between them have something to name; the
+ * examples go into the second. */
+static const char scene_text[] =
+    "dp = 2 mm\nend_time = 1\ngravity = 0, -9.81\n"
+    "[fluid water]\nshape = box 0.2, 0, 0.3, 0.1\nmax_speed = 3\n"
+    "[fluid more]\nlike = water\nshape = box 0.3, 0, 0.4, 0.1\n"
+    "[wall floor]\nshape = box -10 mm, -8 mm, 1.1, -4 mm\n"
+    "[wall more]\nshape = box 1.12, 0, 1.15, 10 mm\n"
+    "[motion lift]\n[motion more]\n"
+    "[solid post]\nshape = box 0.5, 0, 0.52, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+    "[solid more]\nlike = post\nshape = box 0.7, 0, 0.72, 0.1\n"
+    "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
+    "[probe more]\nbody = post\npoint = 0.51, 0.1\n"
+    "[contact more]\n[load more]\nbody = post\nshape = box 0.5, 0, 0.52, 10 mm\nforce = 1, 0\n"
+    "[reference more]\nprobe = tip_dx_m\nformula = 0\n";
+
+static bool is(const struct param *p, const char *section, const char *key)
+{
+    return strcmp(section_table[p->section].word, section) == 0 && strcmp(p->key, key) == 0;
+}
+
+/* Keys that mean something only beside another one, or at a place of this scene. */
+static const char *companion(const struct param *p)
+{
+    if (is(p, "domain", "lower")) return "domain.upper=2.5,1";
+    if (is(p, "domain", "upper")) return "domain.lower=-0.2,-0.1";
+    if (is(p, "solid", "minus") || is(p, "solid", "clamp"))
+        return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
+    if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
+    if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
+    if (is(p, "probe", "point") || is(p, "probe", "to")) return "probe more.quantity=flux";
+    if (is(p, "motion", "poly_x") || is(p, "motion", "poly_y"))
+        return "motion more.kind=polynomial";
+    if (is(p, "motion", "x") || is(p, "motion", "y") || is(p, "motion", "turn"))
+        return "motion more.kind=expression";
+    if (is(p, "motion", "file")) return "motion more.kind=table";
+    if (is(p, "reference", "file")) return "reference more.label=x";
+    return NULL;
+}
+
+static void example_is_accepted(const struct param *p)
+{
+    char example[SCENE_TEXT], set[2 * SCENE_TEXT], text[4096];
+    struct scene scene;
+    manual_example(p, example, sizeof example);
+    if (!example[0]) return;
+    const char *const word = section_table[p->section].word;
+    /* All fluid is of one kind, so that what the first is given the second takes over. */
+    const bool first =
+        p->section == SECTION_fluid && p->type != PARAM_SHAPES && p->type != PARAM_TEXT;
+    if (p->section == SECTION_top)
+        snprintf(set, sizeof set, "%s=%s", p->key, example);
+    else
+        snprintf(set, sizeof set, "%s%s.%s=%s", word,
+                 !section_table[p->section].named ? ""
+                 : first                          ? " water"
+                                                  : " more",
+                 p->key, example);
+    const char *sets[] = {set, companion(p)};
+    snprintf(text, sizeof text, "%s", scene_text);
+    /* Of the two ways to give a reference one is to go, as `body` is where the fluid is probed. */
+    if (is(p, "reference", "file")) *strstr(text, "formula") = '#';
+    if (is(p, "load", "traction")) *strstr(text, "force") = '#';
+    if (is(p, "probe", "point") || is(p, "probe", "to"))
+        memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);
+    diag.code = ERR_OK;
+    const enum err e = scene_parse(&scene, text, "examples.cfg", sets[1] ? 2 : 1, sets, &diag);
+    char why[2048];
+    snprintf(why, sizeof why, "%s: %s", set, diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, why);
+    scene_free(&scene);
+}
+
+static void every_example_is_accepted(void)
+{
+    FILE *const table = fopen("lift.csv", "w"); /* which the motion's example names */
+    TEST_ASSERT_NOT_NULL(table);
+    fputs("0, 0, 0\n1, 0, 0.1\n", table);
+    fclose(table);
+    for (int k = 0; k < PARAM_COUNT; k++) example_is_accepted(&param_table[k]);
+    remove("lift.csv");
+}
+
+/* --- traps --- */
+
+/* Regions are not taken over by `like`, and a clamp is one. */
+static void a_copy_without_its_clamp_is_warned_of(void)
+{
+    static const char posts[] =
+        "dp = 2 mm\nend_time = 1\n"
+        "[solid left]\nshape = box 0, 0, 20 mm, 0.1\nclamp = box 0, 0, 20 mm, 8 mm\n"
+        "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+        "[solid right]\nlike = left\nshape = box 0.1, 0, 0.12, 0.1\n";
+    const char *const mended = "right.clamp=box 0.1, 0, 0.12, 8 mm";
+    struct scene scene;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 0, NULL, &diag));
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 1, &mended, &diag));
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+}
+
+/* --- templates --- */
+
+static void every_template_runs(void)
+{
+    TEST_ASSERT_NOT_NULL(manual_template_name(0));
+    for (int k = 0; manual_template_name(k); k++) {
+        const char *name = manual_template_name(k);
+        struct session x;
+        const struct sphfsi_options o = {.case_text = manual_template(name)};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, session_open(&x, &o, &diag), diag.text);
+        for (int step = 0; step < 3; step++)
+            TEST_ASSERT_EQUAL_INT_MESSAGE(
+                ERR_OK, simulation_step(&x.simulation, x.scene.top.end_time, &diag), diag.text);
+        session_close(&x);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, name);
+    }
+}
+
+static void an_unknown_template_names_the_known(void)
+{
+    TEST_ASSERT_NULL(sphfsi_template("dambreak"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "but dam_break"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "cantilever"));
+}
+
+/* --- messages --- */
+
+static char said[1 << 16];
+
+static void on_message(void *context, enum sphfsi_message kind, const char *line)
+{
+    (void)context;
+    if (kind == SPHFSI_NOTE && strlen(said) + strlen(line) + 2 < sizeof said)
+        strcat(strcat(said, line), "\n");
+}
+
+static void sources_fit_the_scene(void)
+{
+    struct sphfsi_options o = {.case_text = tiny_case, .message = on_message};
+    said[0] = '\0';
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_cite(&o));
+    TEST_ASSERT_NOT_NULL(strstr(said, "Ganzenm"));
+    TEST_ASSERT_NULL(strstr(said, "Fourtakas, G., Dominguez"));
+    TEST_ASSERT_NULL(strstr(said, "Verlet, L."));
+    static const char *const sets[] = {"fluid water.diffusion_form=fourtakas", "integrator=verlet",
+                                       "gate.hourglass=0"};
+    o.sets = sets;
+    o.n_sets = 3;
+    said[0] = '\0';
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_cite(&o), sphfsi_error());
+    TEST_ASSERT_NULL(strstr(said, "Ganzenm"));
+    TEST_ASSERT_NOT_NULL(strstr(said, "Fourtakas, G., Dominguez"));
+    TEST_ASSERT_NOT_NULL(strstr(said, "Verlet, L."));
+}
+
+static void every_key_is_listed(void)
+{
+    const struct sphfsi_options o = {.message = on_message};
+    said[0] = '\0';
+    sphfsi_keys(&o);
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        char row[100];
+        snprintf(row, sizeof row, "\n| `%s` |", param_table[k].key);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(said, row), row);
+    }
+    TEST_ASSERT_NOT_NULL(strstr(said, "| `poisson` | number |  | **needed** | ≥ 0, < 0.5 |"));
+}
+
+/* --- the picture --- */
+
+static void preview_shows_the_scene(void)
+{
+    char more[4096];
+    snprintf(more, sizeof more,
+             "%s[probe flow_through]\nquantity = flux\npoint = 0.05, 0\nto = 0.05, 0.1\n",
+             tiny_case);
+    const struct sphfsi_options o = {.case_text = more,
+                                     .out = tiny_path("p.svg"),
+                                     .message = on_message};
+    said[0] = '\0';
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_preview(&o), sphfsi_error());
+    TEST_ASSERT_NOT_NULL(strstr(said, "p.svg"));
+    FILE *file = fopen(tiny_path("p.svg"), "r");
+    static char svg[1 << 16];
+    svg[fread(svg, 1, sizeof svg - 1, file)] = '\0';
+    fclose(file);
+    TEST_ASSERT_NOT_NULL(strstr(svg, "tiny \"quoted\""));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "fluid water: 0.1 x 0.1 m, 100 particles"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "solid gate: 0.03 x 0.15 m, 45 particles"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "9 clamped"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, ">flow_through</text>"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, "</svg>"));
+}
+
+static void preview_to_nowhere_is_reported(void)
+{
+    const struct sphfsi_options o = {.case_text = tiny_case, .out = "/nowhere/p.svg"};
+    TEST_ASSERT_EQUAL_INT(SPHFSI_IO, sphfsi_preview(&o));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "/nowhere/p.svg: cannot be written"));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    rig_one_thread();
+    RUN_TEST(every_example_is_accepted);
+    RUN_TEST(a_copy_without_its_clamp_is_warned_of);
+    RUN_TEST(every_template_runs);
+    RUN_TEST(an_unknown_template_names_the_known);
+    RUN_TEST(sources_fit_the_scene);
+    RUN_TEST(every_key_is_listed);
+    RUN_TEST(preview_shows_the_scene);
+    RUN_TEST(preview_to_nowhere_is_reported);
+    return UNITY_END();
+}

@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: MIT
+ * What a good case file means: defaults, constants, --set, inheritance, the effective case. */
+#include "case/expr.h"
+#include "case/params.h"
+#include "unity.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct scene scene, again;
+static struct diag diag;
+static const char effective[] = "test_case.tmp";
+
+void setUp(void) { diag = (struct diag){0}; }
+
+void tearDown(void)
+{
+    scene_free(&scene);
+    scene_free(&again);
+    remove(effective);
+}
+
+static void parse(const char *text, int n_sets, const char *const *sets)
+{
+    diag = (struct diag){0};
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&scene, text, "x.cfg", n_sets, sets, &diag),
+                                  diag.text);
+}
+
+#define TOP "dp = 1 mm\nend_time = 1 s\n"
+#define BLOCK                                                                                  \
+    "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1 g/cm^3\nyoung = 1 MPa\npoisson = " \
+    "0.3\n"
+
+static void test_defaults(void)
+{
+    parse(TOP BLOCK, 0, NULL);
+    TEST_ASSERT_EQUAL_DOUBLE(0.001, scene.top.dp);
+    TEST_ASSERT_EQUAL_INT(INTEGRATOR_LEAPFROG, scene.top.integrator);
+    TEST_ASSERT_EQUAL_DOUBLE(1.35, scene.numerics.h_over_dp);
+    TEST_ASSERT_EQUAL_DOUBLE(1.35e-3, scene.h);
+    TEST_ASSERT_EQUAL_INT(40, scene.numerics.verlet_reset);
+    TEST_ASSERT_EQUAL_INT(MULTIRATE_AUTO, scene.numerics.multirate);
+    TEST_ASSERT_EQUAL_INT(1, scene.n_solid);
+    TEST_ASSERT_EQUAL_STRING("a", scene.solid[0].common.name);
+    TEST_ASSERT_EQUAL_INT(3, scene.solid[0].common.line);
+    TEST_ASSERT_EQUAL_DOUBLE(1000, scene.solid[0].density);
+    TEST_ASSERT_EQUAL_DOUBLE(50, scene.solid[0].hourglass);
+    TEST_ASSERT_EQUAL_INT(1, scene.solid[0].gravity);
+    TEST_ASSERT_NULL(scene.solid[0].velocity.e[0]);
+    TEST_ASSERT_EQUAL_INT64(200, scene.points[2].n);
+    TEST_ASSERT_EQUAL_DOUBLE(0, scene.c0);
+}
+
+static const char derived[] = "title = \"a # b\"   # comment\ndp = t/n\nend_time = 2*T\n"
+                              "gravity = 0, -g\n[constants]\nL = 4*t\nt = 4 mm\nn = 4\n"
+                              "g = 9.81 m/s^2\nT = sqrt(L/g)\n" BLOCK "velocity = 0, x/L*dp/T\n";
+
+static void test_constants_in_any_order(void)
+{
+    parse(derived, 0, NULL);
+    TEST_ASSERT_EQUAL_STRING("a # b", scene.top.title);
+    TEST_ASSERT_EQUAL_DOUBLE(0.001, scene.top.dp);
+    TEST_ASSERT_EQUAL_DOUBLE(-9.81, scene.top.gravity[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2 * sqrt(0.016 / 9.81), scene.top.end_time);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.5 * 0.001 / sqrt(0.016 / 9.81),
+                              scene_expr_at(scene.solid[0].velocity.e[1], 0.008, 0));
+}
+
+static void test_set_comes_before_evaluation(void)
+{
+    parse(derived, 1, (const char *const[]){"n=2"});
+    TEST_ASSERT_EQUAL_DOUBLE(0.002, scene.top.dp);
+    TEST_ASSERT_EQUAL_INT64(50, scene.points[2].n);
+    parse(derived, 1, (const char *const[]){"t = 8 mm"});
+    TEST_ASSERT_EQUAL_DOUBLE(0.002, scene.top.dp);
+    parse(derived, 2, (const char *const[]){"dp=1 mm", "dp=2 mm"});
+    TEST_ASSERT_EQUAL_DOUBLE(0.002, scene.top.dp);
+}
+
+static void test_set_of_sections(void)
+{
+    static const char *const sets[] = {"a.young=2 MPa",      "solid a.poisson=0.4",
+                                       "numerics.cfl = 0.1", "a.shape=box 0, 0, 10 mm, 10 mm",
+                                       "constants.L=1 m",    "precision=double"};
+    parse(derived, (int)COUNT_OF(sets), sets);
+    TEST_ASSERT_EQUAL_DOUBLE(2e6, scene.solid[0].young);
+    TEST_ASSERT_EQUAL_DOUBLE(0.4, scene.solid[0].poisson);
+    TEST_ASSERT_EQUAL_DOUBLE(0.1, scene.numerics.cfl);
+    TEST_ASSERT_EQUAL_INT(1, scene.solid[0].shape.n);
+    TEST_ASSERT_EQUAL_INT64(100, scene.points[2].n);
+    TEST_ASSERT_EQUAL_INT(PRECISION_DOUBLE, scene.top.precision);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 2 * sqrt(1 / 9.81), scene.top.end_time);
+}
+
+/* Leapfrog's step is twice as long, but with bodies of less than half of the fluid's density. */
+static void test_default_cfl(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.1, 0.1\n"
+        "sound_speed = 20\n[solid floor]\nshape = box 0, -0.04, 0.1, 0\nyoung = 1e6\n"
+        "poisson = 0.3\ndensity = 500\n";
+    static const char *const sets[] = {"integrator=leapfrog", "floor.density=499",
+                                       "numerics.cfl=0.3"};
+    parse(text, 1, (const char *const[]){"integrator=symplectic"});
+    TEST_ASSERT_EQUAL_DOUBLE(0.2, scene.numerics.cfl);
+    parse(text, 1, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.4, scene.numerics.cfl);
+    parse(text, 2, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.2, scene.numerics.cfl);
+    parse(text, 3, sets);
+    TEST_ASSERT_EQUAL_DOUBLE(0.3, scene.numerics.cfl);
+    static const char more[] =
+        "[solid cork]\nshape = box 0.2, 0, 0.24, 0.1\nyoung = 1e6\npoisson = 0.3\n"
+        "density = 300\n[solid lid]\nlike = cork\n"
+        "shape = box 0.3, 0, 0.34, 0.1\ndensity = 3000\n";
+    char three[1024];
+    snprintf(three, sizeof three, "%s%s", text, more);
+    parse(three, 1, sets);
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0.2, scene.numerics.cfl,
+                                     "the second of three bodies is light");
+    TEST_ASSERT_EQUAL_INT(1, scene_light_solid(&scene));
+    parse(three, 2, (const char *const[]){"integrator=leapfrog", "cork.density=500"});
+    TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0.4, scene.numerics.cfl, "none of three is light");
+}
+
+static void test_like_inherits_values_but_no_regions(void)
+{
+    parse(TOP BLOCK "law = svk\nclamp = box 0, 0, 10 mm, 5 mm\n"
+                    "[solid b]\nlike = a\nyoung = 3 MPa\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
+          0, NULL);
+    TEST_ASSERT_EQUAL_INT(LAW_SVK, scene.solid[1].law);
+    TEST_ASSERT_EQUAL_DOUBLE(3e6, scene.solid[1].young);
+    TEST_ASSERT_EQUAL_DOUBLE(1000, scene.solid[1].density);
+    TEST_ASSERT_EQUAL_INT(1, scene.solid[1].shape.n);
+    TEST_ASSERT_EQUAL_INT(0, scene.solid[1].clamp.n);
+    TEST_ASSERT_EQUAL_STRING("b", scene.solid[1].common.name);
+}
+
+static void test_sound_speed_follows_eq_3(void)
+{
+    parse(TOP "[fluid w]\nshape = box 0, 0, 9 mm, 9 mm\nmax_speed = 2 m/s\nmax_pressure = 9 kPa\n",
+          0, NULL);
+    TEST_ASSERT_EQUAL_DOUBLE(30, scene.c0);
+    TEST_ASSERT_EQUAL_DOUBLE(1000, scene.rho0);
+}
+
+static void test_line_ends_and_marks_of_other_systems(void)
+{
+    parse("\xEF\xBB\xBF"
+          "dp = 1 mm\r\nend_time = 1 s\r\n[solid a]\r\nshape = box 0, 0, 5 mm, 5 mm\r\n"
+          "density = 1\r\nyoung = 1\r\npoisson = 0\r",
+          0, NULL);
+    TEST_ASSERT_EQUAL_INT64(25, scene.points[2].n);
+}
+
+/* --- the effective case --- */
+
+static void same_expressions(const struct scene_expr *a, const struct scene_expr *b)
+{
+    for (int c = 0; c < 2; c++) {
+        TEST_ASSERT_EQUAL_INT(a->e[c] != NULL, b->e[c] != NULL);
+        for (int k = 0; a->e[c] && k < 20; k++)
+            TEST_ASSERT_TRUE(scene_expr_at(a->e[c], 0.01 * k, 0.02 * k) ==
+                             scene_expr_at(b->e[c], 0.01 * k, 0.02 * k));
+    }
+}
+
+static void same_shapes(const struct shape_list *a, const struct shape_list *b)
+{
+    TEST_ASSERT_EQUAL_INT(a->n, b->n);
+    for (int k = 0; k < a->n; k++) {
+        const struct shape *p = &a->item[k], *q = &b->item[k];
+        TEST_ASSERT_TRUE(p->kind == q->kind && p->n == q->n && p->size == q->size);
+        TEST_ASSERT_EQUAL_MEMORY(p->pt, q->pt, (size_t)p->n * sizeof *p->pt);
+    }
+}
+
+static void same_value(const struct param *p, const char *mine, const char *its)
+{
+    const void *a = mine + p->offset, *b = its + p->offset;
+    if (strcmp(p->key, "file") == 0) return; /* the same file, seen from another folder */
+    switch (p->type) {
+    case PARAM_REAL: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(double), p->key); break;
+    case PARAM_VECTOR: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, 2 * sizeof(double), p->key); break;
+    case PARAM_INTEGER:
+    case PARAM_CHOICE: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(int), p->key); break;
+    case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, p->key); break;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR: same_expressions(a, b); break;
+    case PARAM_SHAPES: same_shapes(a, b); break;
+    case PARAM_NUMBERS: {
+        const struct number_list *p_list = a, *q_list = b;
+        TEST_ASSERT_EQUAL_INT(p_list->n, q_list->n);
+        if (p_list->n)
+            TEST_ASSERT_EQUAL_MEMORY(p_list->value, q_list->value,
+                                     (size_t)p_list->n * sizeof *p_list->value);
+        break;
+    }
+    }
+}
+
+static void same_points(const struct scene_points *a, const struct scene_points *b)
+{
+    TEST_ASSERT_EQUAL_INT64(a->n, b->n);
+    if (!a->n) return;
+    const size_t n = (size_t)a->n;
+    TEST_ASSERT_EQUAL_INT(0, memcmp(a->x, b->x, n * sizeof *a->x));
+    TEST_ASSERT_EQUAL_INT(0, memcmp(a->y, b->y, n * sizeof *a->y));
+    TEST_ASSERT_EQUAL_INT(0, memcmp(a->body, b->body, n * sizeof *a->body));
+    if (a->clamped) TEST_ASSERT_EQUAL_INT(0, memcmp(a->clamped, b->clamped, n));
+}
+
+static void round_trip(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, effective, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, &diag), diag.text);
+    for (int id = 0; id < SECTION_COUNT; id++) {
+        const int n = section_count(&scene, (enum section_id)id);
+        TEST_ASSERT_EQUAL_INT(n, section_count(&again, (enum section_id)id));
+        for (int k = 0; k < n * PARAM_COUNT; k++) {
+            const struct param *p = &param_table[k % PARAM_COUNT];
+            if ((int)p->section == id)
+                same_value(p, section_at(&scene, p->section, k / PARAM_COUNT),
+                           section_at(&again, p->section, k / PARAM_COUNT));
+        }
+    }
+    for (int kind = 0; kind < 3; kind++) same_points(&scene.points[kind], &again.points[kind]);
+    TEST_ASSERT_TRUE(scene.h == again.h && scene.c0 == again.c0 && scene.rho0 == again.rho0);
+    TEST_ASSERT_EQUAL_MEMORY(scene.domain_upper, again.domain_upper, sizeof scene.domain_upper);
+    TEST_ASSERT_EQUAL_MEMORY(scene.domain_lower, again.domain_lower, sizeof scene.domain_lower);
+    scene_free(&again);
+}
+
+static void test_every_kind_of_value_comes_back(void)
+{
+    parse(
+        "title = \"# quoted \"\ndp = 1 mm/3\nend_time = 1/3\n[constants]\na = 1/3\nb = sqrt(2 m)\n"
+        "r = 2 m/3 m\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+        "[fluid w]\nshape = circle 5 mm, 5 mm, pi*1 mm\nsurface = 1 cm\nsound_speed = 20/7\n"
+        "velocity = a*x/1 s, b^2/1 s*r\n[fluid v]\nlike = w\npressure = 1 Pa*y\n"
+        "shape = box 0, 10 mm, 10 mm, 20 mm\n[wall b]\nmotion = m\n"
+        "shape = polyline thickness 4 mm: -9 mm, -9 mm; 20 mm, -9 mm\n"
+        "shape = polygon -9 mm, -9 mm; -20 mm, -9 mm; -20 mm, 20 mm\n"
+        "[motion m]\nkind = polynomial\npoly_x = 1/3, 2/7, 1e-300\nstop = 1/9\n",
+        0, NULL);
+    round_trip();
+}
+
+static int cases_of_folder(const char *name)
+{
+    DIR *folder = opendir(name);
+    int n = 0;
+    for (struct dirent *e; folder && (e = readdir(folder)) != NULL;) {
+        const size_t length = strlen(e->d_name);
+        if (length < 4 || strcmp(e->d_name + length - 4, ".cfg") != 0) continue;
+        char path[300];
+        snprintf(path, sizeof path, "%s/%.250s", name, e->d_name);
+        scene_free(&scene);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&scene, path, 0, NULL, &diag), diag.text);
+        round_trip();
+        n++;
+    }
+    if (folder) closedir(folder);
+    return n;
+}
+
+static void test_shipped_cases_come_back(void)
+{
+    const int n = cases_of_folder("cases");
+    if (n == 0) TEST_IGNORE_MESSAGE("run from the top folder");
+    TEST_ASSERT_TRUE(n >= 6);
+    TEST_ASSERT_TRUE(cases_of_folder("cases/verify") >= 6);
+}
+
+static void test_files_are_found_from_the_effective_case(void)
+{
+    FILE *file = fopen("test_case_motion.tmp", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs("0 0 0\n1 1 1\n", file);
+    fclose(file);
+    parse(TOP BLOCK "[wall w]\nshape = box 20 mm, 0, 30 mm, 20 mm\nmotion = m\n"
+                    "[motion m]\nkind = table\nfile = ./test_case_motion.tmp\n",
+          0, NULL);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, "tests/test_case.tmp", &diag),
+                                  diag.text);
+    const enum err err = scene_read(&again, "tests/test_case.tmp", 0, NULL, &diag);
+    remove("tests/test_case.tmp");
+    remove("test_case_motion.tmp");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, err, diag.text);
+    TEST_ASSERT_EQUAL_STRING("../test_case_motion.tmp", again.motion[0].file);
+}
+
+static void test_writing_where_nothing_can_be_written(void)
+{
+    parse(TOP BLOCK, 0, NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_IO, scene_write(&scene, "no/such/folder/x.cfg", &diag));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_defaults);
+    RUN_TEST(test_constants_in_any_order);
+    RUN_TEST(test_set_comes_before_evaluation);
+    RUN_TEST(test_set_of_sections);
+    RUN_TEST(test_default_cfl);
+    RUN_TEST(test_like_inherits_values_but_no_regions);
+    RUN_TEST(test_sound_speed_follows_eq_3);
+    RUN_TEST(test_line_ends_and_marks_of_other_systems);
+    RUN_TEST(test_every_kind_of_value_comes_back);
+    RUN_TEST(test_shipped_cases_come_back);
+    RUN_TEST(test_files_are_found_from_the_effective_case);
+    RUN_TEST(test_writing_where_nothing_can_be_written);
+    return UNITY_END();
+}

@@ -1,0 +1,441 @@
+/* SPDX-License-Identifier: MIT
+ * Bad case files, and the sentence that each of them is answered with (or how it begins). */
+#include "case/params.h"
+#include "case/scene.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define TOP "dp = 1 mm\nend_time = 1 s\n"
+#define SOLID \
+    "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+#define FLUID "[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n"
+
+static const struct {
+    const char *text, *set, *message;
+} bad[] = {
+    {"", NULL, "bad.cfg:1: `dp` is missing at the top of the file: particle spacing (m)"},
+    {"dp 1 mm\n", NULL, "bad.cfg:1: `dp 1 mm` is neither `key = value` nor `[section]`"},
+    {"dp = 1 mm # fine\n= 5\n", NULL,
+     "bad.cfg:2: `` is no name of a key: up to 63 letters, digits and _"},
+    {"dp =\n", NULL, "bad.cfg:1: dp has no value"},
+    {"dp = # nothing\n", NULL, "bad.cfg:1: dp has no value"},
+    {"title = \"open\n", NULL, "bad.cfg:1: title has a quote that is not closed"},
+    {"title = \"a\" b\n", NULL, "bad.cfg:1: title has text behind the closing quote"},
+    {"2dp = 1\n", NULL, "bad.cfg:1: `2dp` is no name of a key: up to 63 letters, digits and _"},
+    {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
+    {TOP "[zebra]\n", NULL,
+     "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, fluid, wall, "
+     "solid, motion, probe, reference"},
+    {TOP "[solid]\n", NULL, "bad.cfg:3: [solid] needs a name: [solid NAME]"},
+    {TOP "[numerics fast]\n", NULL, "bad.cfg:3: [numerics] takes no name"},
+    {TOP "[solid a/b]\n", NULL,
+     "bad.cfg:3: [solid a/b]: a name has up to 63 letters, digits, _ and -"},
+    {TOP "[solid a\n", NULL, "bad.cfg:3: `[` without `]`"},
+    {TOP "[solid a] b\n", NULL, "bad.cfg:3: text behind the section's `]`"},
+    {TOP SOLID SOLID, NULL, "bad.cfg:8: [solid a] is there already, in line 3"},
+    {TOP "[output]\n[output]\n", NULL, "bad.cfg:4: [output] is there already, in line 3"},
+    {"dp = 1 mm\ntitle = a\x01"
+     "b\n",
+     NULL, "bad.cfg:2: control byte 1; a case file is plain text"},
+    {TOP "[solid a]\nyuong = 1 MPa\n", NULL,
+     "bad.cfg:4: unknown key `yuong` in [solid]; did you mean `young`?"},
+    {TOP "colour = 3\n" SOLID, NULL, "bad.cfg:3: unknown key `colour` at the top of the file"},
+    {TOP "young = 1 MPa\n" SOLID, NULL,
+     "bad.cfg:3: unknown key `young` at the top of the file; it belongs in [solid]"},
+    {TOP "dp = 2 mm\n" SOLID, NULL, "bad.cfg:3: dp is given already, in line 1"},
+    {"end_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: `dp` is missing at the top of the file: particle spacing (m)"},
+    {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\n", NULL,
+     "bad.cfg:3: [solid a] lacks `poisson`: Poisson ratio nu"},
+    {TOP, NULL,
+     "bad.cfg:1: nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section"},
+    {"dp = 0.5 MPa\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = 0.5 MPa: a pressure (Pa) where a length (m) is expected"},
+    {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 mm\npoisson = 0.3\n",
+     NULL, "bad.cfg:6: young = 5 mm: a length (m) where a pressure (Pa) is expected"},
+    {TOP
+     "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 foo\npoisson = 0.3\n",
+     NULL,
+     "bad.cfg:6: young = 5 foo: `foo` behind 5 is no unit (units: m km cm mm um, s min ms us, kg "
+     "g, N, Pa kPa MPa GPa, Hz kHz, rad deg, %)"},
+    {TOP
+     "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.5\n",
+     NULL, "bad.cfg:7: poisson = 0.5: out of range: it must be at least 0 and below 0.5"},
+    {TOP
+     "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = -0.1\n",
+     NULL, "bad.cfg:7: poisson = -0.1: out of range: it must be at least 0 and below 0.5"},
+    {"dp = 0\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = 0: out of range: it must be above 0 m and at most 1000 m"},
+    {"dp = 1e999\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = 1e999: 1e999 is too large for a real number"},
+    {"dp = nan\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = nan: unknown name `nan`; define it in [constants]"},
+    {"dp = 1/0\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1/0: division by zero"},
+    {"dp = (1 mm\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = (1 mm: `(` is not closed"},
+    {"dp = 1 mm)\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1 mm): `)` without `(`"},
+    {"dp = 1 mm 2\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = 1 mm 2: `2` where an operator is expected"},
+    {"dp = 1..2\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1..2: `1..2` is no number"},
+    {"dp = 1 mm + 1 s\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = 1 mm + 1 s: a length (m) and a time (s) cannot be added or compared"},
+    {"dp = sqrt(-1)\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = sqrt(-1): the result is not a finite number"},
+    {"dp = sin(1 mm)\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = sin(1 mm): sin of a length (m); it needs a pure number"},
+    {"dp = root(4)\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = root(4): unknown function `root`"},
+    {"dp = max(1 mm)\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = max(1 mm): max needs two values: max(a, b)"},
+    {"dp = x\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = x: `x` has a value only where a key takes an expression in x and y"},
+    {"dp = "
+     "((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((1))))))))))))))))))))))"
+     "))))))))))))))))))))))))))))))))))))))))))))))))\nend_time = 1 s\n" SOLID,
+     NULL,
+     "bad.cfg:1: dp = ((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((...: nested more "
+     "than 64 deep"},
+    {"dp = thicknes/2\nend_time = 1 s\n[constants]\nthickness = 2 mm\n" SOLID, NULL,
+     "bad.cfg:1: dp = thicknes/2: unknown name `thicknes`; did you mean `thickness`?"},
+    {"dp = g\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg:1: dp = g: unknown name `g`; define it in [constants]"},
+    {"dp = a\nend_time = 1 s\n[constants]\na = b\nb = a\n" SOLID, NULL,
+     "bad.cfg:4: a = b: `b` depends on itself, needed for `a`"},
+    {TOP "[constants]\nmm = 3\n" SOLID, NULL,
+     "bad.cfg:4: a constant cannot be named `mm`: that is a unit"},
+    {TOP "[constants]\ndp = 3\n" SOLID, NULL,
+     "bad.cfg:4: a constant cannot be named `dp`: that is a key at the top of the file"},
+    {TOP "[constants]\na = 3\na = 4\n" SOLID, NULL, "bad.cfg:5: a is given already, in line 4"},
+    {TOP "[constants]\nunused = 1/0\n" SOLID, NULL, "bad.cfg:4: unused = 1/0: division by zero"},
+    {TOP "gravity = 9.81\n" SOLID, NULL,
+     "bad.cfg:3: gravity = 9.81: two components are expected, `gravity = X, Y`; there is 1"},
+    {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
+     "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
+    {TOP "integrator = verlett\n" SOLID, NULL,
+     "bad.cfg:3: integrator = verlett: did you mean `verlet`? Known: symplectic|verlet|leapfrog"},
+    {TOP "integrator = rk4\n" SOLID, NULL,
+     "bad.cfg:3: integrator = rk4: unknown choice; known: symplectic|verlet|leapfrog"},
+    {TOP "[numerics]\nverlet_reset = 2.5\n" SOLID, NULL,
+     "bad.cfg:4: verlet_reset = 2.5: a whole number is expected"},
+    {TOP "title = "
+         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
+         "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\n" SOLID,
+     NULL,
+     "bad.cfg:3: title = aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...: longer "
+     "than 255 bytes"},
+    {TOP "title = caf\xE9\n" SOLID, NULL, "bad.cfg:3: title is not UTF-8 text"},
+    {TOP SOLID "velocity = x\n", NULL,
+     "bad.cfg:8: velocity = x: two expressions are expected, with commas between them; there is 1"},
+    {TOP SOLID "velocity = x, z\n", NULL,
+     "bad.cfg:8: velocity = x, z: unknown name `z`; define it in [constants]"},
+    {TOP SOLID "velocity = 1 MPa, 0\n", NULL,
+     "bad.cfg:8: velocity = 1 MPa, 0: a pressure (Pa) where a speed (m/s) is expected"},
+    {TOP SOLID "velocity = 1/(x - x), 0\n", NULL,
+     "bad.cfg:3: [solid a] velocity has no finite value at (0.0005, 0.0005) m"},
+    {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: no earlier [solid] of that name"},
+    {TOP SOLID "clamp = bix 0, 0, 1, 1\n", NULL,
+     "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is no shape; known: box, polygon, polyline, circle"},
+    {TOP SOLID "clamp = box 0, 0, 1\n", NULL,
+     "bad.cfg:8: clamp = box 0, 0, 1: 4 numbers are expected and 3 given in `0, 0, 1`"},
+    {TOP SOLID "clamp = box 1, 0, 0, 1\n", NULL,
+     "bad.cfg:8: clamp = box 1, 0, 0, 1: box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X 1 to "
+     "0, Y 0 to 1 m"},
+    {TOP SOLID "clamp = circle 0, 0, 0\n", NULL,
+     "bad.cfg:8: clamp = circle 0, 0, 0: the radius of a circle must be above 0 m"},
+    {TOP SOLID "clamp = polygon 0, 0; 1, 1\n", NULL,
+     "bad.cfg:8: clamp = polygon 0, 0; 1, 1: 3 points or more are expected, `X, Y; X, Y; ...`; "
+     "there are 2"},
+    {TOP SOLID "clamp = polygon 0, 0; 1, 1; 2, 2\n", NULL,
+     "bad.cfg:8: clamp = polygon 0, 0; 1, 1; 2, 2: the polygon has no area"},
+    {TOP SOLID "clamp = polygon 0, 0; 2, 2; 2, 0; 0, 1\n", NULL,
+     "bad.cfg:8: clamp = polygon 0, 0; 2, 2; 2, 0; 0, 1: edges 1 and 3 of the polygon cross"},
+    {TOP SOLID "clamp = polyline 0, 0; 1, 1\n", NULL,
+     "bad.cfg:8: clamp = polyline 0, 0; 1, 1: write `polyline thickness T: X, Y; X, Y; ...`"},
+    {TOP SOLID "clamp = polyline thickness 0: 0, 0; 1, 1\n", NULL,
+     "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must not be 0, nor beyond "
+     "1e9 m"},
+    {TOP SOLID "clamp = polyline thickness 1 mm: 0, 0; 0, 0\n", NULL,
+     "bad.cfg:8: clamp = polyline thickness 1 mm: 0, 0; 0, 0: points 1 and 2 are the same"},
+    {TOP SOLID "clamp = polyline thickness 1 mm: 0, 0; 1, 0; 0, 0.1\n", NULL,
+     "bad.cfg:8: the polyline turns too sharply at its point 2 (1, 0)"},
+    {TOP SOLID "clamp = polyline thickness 1 m: 0, 0; 0.1, 0; 0.1, 0.1\n", NULL,
+     "bad.cfg:8: segment 1 of the polyline is too short for a thickness of 1 m: the joints at its "
+     "ends cross"},
+    {TOP SOLID "clamp = box 1, 1, 2, 2\n", NULL,
+     "bad.cfg:8: clamp 1 of [solid a] holds no particle: it must cover a part of the body"},
+    {TOP "[solid a]\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n", NULL,
+     "bad.cfg:3: [solid a] has no shape"},
+    {TOP
+     "[solid a]\nshape = box 0, 0, 10 mm, 0.3 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+     NULL,
+     "bad.cfg:4: shape 1 of [solid a] holds no particle: it is narrower than dp = 0.001 m, or lies "
+     "between the lattice's centres"},
+    {TOP "[solid a]\nshape = box 0, 0, 10 mm, 1 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+     NULL,
+     "bad.cfg:3: [solid a] is 1 particle thick at dp = 0.001 m; bending needs at least 2, better "
+     "4"},
+    {TOP SOLID "minus = box -1, -1, 1, 1\n", NULL,
+     "bad.cfg:3: nothing is left of [solid a] after its `minus`"},
+    {"dp = 1e-9 m\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 10 mm, 20 km\ndensity = "
+     "1000\nyoung = 1 MPa\npoisson = 0.3\n",
+     NULL, "bad.cfg: dp = 1e-09 m makes about 2e+20 particles"},
+    {"dp = 1e-300 m\nend_time = 1 s\n" SOLID, NULL,
+     "bad.cfg: dp = 1e-300 m makes about inf particles"},
+    {TOP FLUID SOLID, NULL,
+     "bad.cfg:3: 200 particles of [fluid w] lie in [solid a], the first at (0.0005, 0.0005) m: "
+     "move one of the shapes, or take the place out with `minus`"},
+    {TOP FLUID "[fluid v]\nlike = w\nshape = box 10 mm, 10 mm, 30 mm, 30 mm\n", NULL,
+     "bad.cfg:6: 100 particles of [fluid v] lie in [fluid w], the first at (0.0105, 0.0105) m: "
+     "move one of the shapes, or take the place out with `minus`"},
+    {TOP SOLID "[solid b]\nlike = a\nshape = box 5 mm, 5 mm, 10 mm, 20 mm\n", NULL,
+     "bad.cfg:8: 75 particles of [solid b] lie in [solid a], the first at (0.0055, 0.0055) m: move "
+     "one of the shapes, or take the place out with `minus`"},
+    {TOP SOLID "[wall w]\nshape = box 0, 15 mm, 10 mm, 30 mm\n", NULL,
+     "bad.cfg:8: 50 particles of [wall w] lie in [solid a], the first at (0.0005, 0.0155) m: only "
+     "the clamped part of a solid may lie in a wall"},
+    {TOP FLUID "[wall w]\nshape = box -5 mm, 15 mm, 10 mm, 30 mm\n", NULL,
+     "bad.cfg:3: 50 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0155) m: move "
+     "one of the shapes, or take the place out with `minus`"},
+    {TOP "[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\n", NULL,
+     "bad.cfg:3: [fluid w] needs `sound_speed`, or `max_speed` and `max_pressure` for Eq. 3"},
+    {TOP FLUID "[fluid v]\nlike = w\ndensity = 900\nshape = box 20 mm, 0, 30 mm, 20 mm\n", NULL,
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `density`: 900 and 1000; all fluid is of one "
+     "kind"},
+    {TOP FLUID "[fluid v]\nlike = w\nwall_repulsion = 0.1\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
+     NULL,
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0; all fluid is of "
+     "one "
+     "kind"},
+    {TOP FLUID "shifting = 1\nshifting_speed = largest\n"
+               "[fluid v]\nlike = w\nshifting_speed = own\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
+     NULL,
+     "bad.cfg:8: [fluid v] and [fluid w] differ in `shifting_speed`: own and largest; all fluid is "
+     "of "
+     "one kind"},
+    {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
+     "bad.cfg:3: [fluid w] has both `surface` and `pressure`; one is to go"},
+    {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
+     "bad.cfg:6: motion = lift: no [motion] of that name"},
+    {TOP FLUID "[motion lift]\nkind = table\n", NULL,
+     "bad.cfg:6: [motion lift] kind = table needs `file`"},
+    {TOP FLUID "[motion lift]\nkind = table\nfile = none/such.txt\n", NULL,
+     "bad.cfg:6: [motion lift] file = none/such.txt cannot be opened: No such file or directory"},
+    {TOP FLUID "[motion lift]\nstart = 2\nstop = 1\n", NULL,
+     "bad.cfg:6: [motion lift] start = 2 s must come before stop = 1 s"},
+    {TOP FLUID "[motion lift]\nkind = polynomial\n", NULL,
+     "bad.cfg:6: [motion lift] kind = polynomial needs `poly_x` or `poly_y`"},
+    {TOP SOLID "[output]\nsnapshot_fields = velocity presure\n", NULL,
+     "bad.cfg:8: [output] snapshot_fields: there is no field `presure`; did you mean `pressure`? "
+     "Known: all, or of velocity density pressure kind id body stress von_mises displacement "
+     "det_F"},
+    {TOP SOLID "[probe F]\nquantity = force\nbody = aa\n", NULL,
+     "bad.cfg:8: body = aa: no [solid] or [wall] of that name"},
+    {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
+     "bad.cfg:6: [probe F] measures front of the fluid, at a fixed place; `body` is to go"},
+    {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
+     "bad.cfg:6: [probe Q] measures through a line: `point` and `to` are its ends and must differ"},
+    {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
+     "bad.cfg:8: [probe M1] needs `body`, the solid it belongs to"},
+    {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
+     "bad.cfg:8: body = aa: no [solid] of that name"},
+    {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,
+     "bad.cfg:8: [probe M1] point (0, 1) lies about 0.98 m outside of [solid a]"},
+    {TOP SOLID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
+     "bad.cfg:8: [probe M1] measures pressure, but there is no fluid"},
+    {TOP FLUID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
+     "bad.cfg:6: [probe M1] point (0, 1) lies outside of the domain, (-0.0032, -0.0032) to "
+     "(0.0232, 0.0422) m"},
+    {TOP SOLID "[reference r]\nprobe = M1_dx_m\nfile = a.csv\n", NULL,
+     "bad.cfg:8: [reference r] probe = M1_dx_m: no probe has such a column; a column is "
+     "PROBE_QUANTITY_UNIT, such as M1_dx_m"},
+    {TOP SOLID "[reference r]\nprobe = M1_dx_m\n", NULL,
+     "bad.cfg:8: [reference r] needs `file` or `formula`"},
+    {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
+     "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
+    {TOP FLUID "[wall w]\nshape = box 0, -5 mm, 20 mm, 0\nslip = none\n", NULL,
+     "bad.cfg, line 8: [wall w] slip calls for NO_SLIP, which needs LAMINAR "
+     "(fluid.laminar_viscosity > "
+     "0): fluid sticks to a surface by its laminar viscosity"},
+    {TOP SOLID "slip = none\n", NULL,
+     "bad.cfg, line 8: [solid a] slip calls for NO_SLIP, which needs LAMINAR"},
+    {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
+     "bad.cfg, line 7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET, "
+     "called for "
+     "by line 3: integrator: its two-step form takes friction in the middle"},
+    {TOP FLUID, "w.diffusion_form=fourtakas",
+     "bad.cfg, --set: [fluid w] diffusion_form is of DIFFUSION, which the scene does not have: "
+     "fluid.density_diffusion > 0 calls for it"},
+    {TOP SOLID "hourglass = 0\nhourglass_form = printed\n", NULL,
+     "bad.cfg, line 9: [solid a] hourglass_form is of HOURGLASS, which the scene does not have: "
+     "solid.hourglass > 0 calls for it"},
+    {TOP SOLID "artificial_viscosity = 0\nviscosity_form = printed\n", NULL,
+     "bad.cfg, line 9: [solid a] viscosity_form is of SOLID_VISCOSITY, which the scene does not "
+     "have: solid.artificial_viscosity > 0 calls for it"},
+    {TOP FLUID, "numerics.interface=held",
+     "bad.cfg, --set: [numerics] interface is of COUPLING, which the scene does not have: a "
+     "[fluid] "
+     "and a [solid] section calls for it"},
+    {TOP SOLID "[numerics]\ninterface = held\n", NULL,
+     "bad.cfg, line 9: [numerics] interface is of COUPLING, which the scene does not have: "},
+    {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
+               "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",
+     NULL,
+     "bad.cfg, line 8: [contact c] calls for CONTACT, which excludes PERIODIC, called for by line "
+     "16: [domain] periodic: contact does not reach through the sides"},
+    {TOP FLUID "[contact c]\n", NULL,
+     "bad.cfg:6: [contact c] needs a [solid] and something that it may touch"},
+    {TOP FLUID "[load l]\nshape = box 0, 0, 1 mm, 1 mm\nforce = 1, 0\n", NULL, "bad.cfg:6: "},
+    {TOP FLUID "[wall b]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = m\n[motion m]\nkind = sine\n",
+     NULL, "bad.cfg:9: [motion m] kind = sine needs `period`"},
+    {TOP FLUID "[domain]\nperiodic = x\n", NULL,
+     "bad.cfg:6: [domain] periodic needs `lower` and `upper`"},
+    {TOP FLUID "[domain]\nperiodic = y\nlower = 0, 0\nupper = 0.1, 20.4 mm\n", NULL,
+     "bad.cfg:6: [domain] periodic: the period in y, 0.0204 m, is 20.4 times dp = 0.001 m and must "
+     "be "
+     "a whole number of them; 0.02 m would fit"},
+    {TOP SOLID "[domain]\nperiodic = x\nlower = 0, 0\nupper = 0.1, 0.1\n", NULL,
+     "bad.cfg, line 9: [domain] periodic calls for PERIODIC, which needs FLUID (a [fluid] "
+     "section): "
+     "fluid alone goes round through the sides"},
+    {TOP SOLID
+     "[fluid w]\nshape = box 0, 30 mm, 11 mm, 50 mm\nsound_speed = 20\n[domain]\nperiodic = x\n"
+     "lower = 0, 0\nupper = 11 mm, 0.1\n",
+     NULL,
+     "bad.cfg:11: [domain] periodic: [solid a] and its own image in x are 0.002 m apart, and "
+     "solids "
+     "are not bonded through a periodic side: at least 2 h = 0.0027 m are needed"},
+    {TOP FLUID "[domain]\nperiodic = x\nlower = -1 mm, 0\nupper = 19 mm, 0.1\n", NULL,
+     "bad.cfg:6: [domain] leaves out a fluid particle at (0.0195, 0.0005) m"},
+    {TOP SOLID "[domain]\nlower = 5 mm, 0\nupper = 1, 1\n", NULL,
+     "bad.cfg:8: [domain] leaves out a solid particle at (0.0005, 0.0005) m"},
+    {TOP SOLID, "dp", "--set dp: write key=value or section.key=value"},
+    {TOP SOLID, "dpp=1 mm", "--set dpp=1 mm: unknown key `dpp`; did you mean `dp`?"},
+    {TOP SOLID, "zebra=1", "--set zebra=1: unknown key or constant `zebra`"},
+    {TOP SOLID, "dp=1 MPa",
+     "--set dp=1 MPa: dp = 1 MPa: a pressure (Pa) where a length (m) is expected"},
+    {TOP SOLID, "b.young=1 MPa", "--set b.young=1 MPa: the case has no section `b`"},
+    {TOP SOLID, "a.yuong=1 MPa", "--set a.yuong=1 MPa: unknown key `yuong`; did you mean `young`?"},
+    {TOP SOLID, "solid a.young=", "--set solid a.young=: young has no value"},
+    {TOP SOLID "[wall a]\nshape = box 20 mm, 0, 30 mm, 20 mm\n", "a.shape=circle 0, 0, 1",
+     "--set a.shape=circle 0, 0, 1: [solid a] and [wall a] both have `shape`; write the section's "
+     "kind too"},
+    {TOP SOLID, "numerics.clf=1", "--set numerics.clf=1: unknown key `clf`; did you mean `cfl`?"},
+};
+
+void setUp(void) {}
+
+void tearDown(void) {}
+
+static void test_each_is_refused_with_its_sentence(void)
+{
+    for (size_t k = 0; k < COUNT_OF(bad); k++) {
+        struct scene s;
+        struct diag d = {0};
+        const enum err err =
+            scene_parse(&s, bad[k].text, "bad.cfg", bad[k].set != NULL, &bad[k].set, &d);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, err, bad[k].text);
+        d.text[strlen(bad[k].message)] = '\0';
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(bad[k].message, d.text, bad[k].text);
+    }
+    printf("found: %zu bad case files, each refused with its sentence\n", COUNT_OF(bad));
+}
+
+/* What is wrong with `*value` for a key of this type, or NULL where every text is right. */
+static const char *wrong(const struct param *p, const char **value)
+{
+    static char why[400];
+    switch (p->type) {
+    case PARAM_REAL:
+    case PARAM_INTEGER: *value = "9e300"; return "out of range: it must be ";
+    case PARAM_CHOICE:
+        *value = "zebra";
+        snprintf(why, sizeof why, "unknown choice; known: %s", p->choices);
+        return why;
+    case PARAM_VECTOR:
+        *value = "1";
+        snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1", p->key);
+        return why;
+    case PARAM_FIELD_EXPR:
+    case PARAM_TIME_EXPR:
+    case PARAM_NUMBERS: *value = "(1"; return p->count > 1 ? "" : "`(` is not closed";
+    case PARAM_SHAPES: *value = "cube 1"; return "";
+    case PARAM_TEXT: break;
+    }
+    return NULL;
+}
+
+/* Keys that are added to case/params.def are tried without another line here. */
+static void test_each_key_refuses_a_wrong_value_by_name(void)
+{
+    int tried = 0;
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *p = &param_table[k];
+        const struct section_info *section = &section_table[p->section];
+        const char *value, *why = wrong(p, &value);
+        if (!why) continue;
+        char text[1000], message[600], head[100] = "";
+        if (p->section != SECTION_top)
+            snprintf(head, sizeof head, section->named ? "[%s a]\n" : "[%s]\n", section->word);
+        snprintf(text, sizeof text, "%s%s = %s\n", head, p->key, value);
+        snprintf(message, sizeof message, "bad.cfg:%d: %s = %s: %s", *head ? 2 : 1, p->key, value,
+                 why);
+        struct scene s;
+        struct diag d = {0};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_parse(&s, text, "bad.cfg", 0, NULL, &d),
+                                      text);
+        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(message, d.text, strlen(message), text);
+        tried++;
+    }
+    TEST_ASSERT_TRUE(tried > 60);
+    printf("found: %d keys, each refuses a wrong value by name\n", tried);
+}
+
+static void read_bytes(const char *bytes, size_t n, const char *message)
+{
+    const char *path = "test_case_errors.tmp";
+    FILE *file = fopen(path, "wb");
+    TEST_ASSERT_NOT_NULL(file);
+    fwrite(bytes, 1, n, file);
+    fclose(file);
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, path, 0, NULL, &d));
+    remove(path);
+    TEST_ASSERT_EQUAL_STRING(message, d.text);
+}
+
+static void test_a_zero_byte_is_refused(void)
+{
+    read_bytes("dp = 1\n\0x", 9,
+               "test_case_errors.tmp:2: a byte of value 0; a case file is plain text");
+}
+
+static void test_a_file_that_is_not_there(void)
+{
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, "no/such.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_STRING("no/such.cfg: cannot be opened: No such file or directory", d.text);
+}
+
+static void test_a_folder_is_no_file(void)
+{
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, ".", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_each_key_refuses_a_wrong_value_by_name);
+    RUN_TEST(test_each_is_refused_with_its_sentence);
+    RUN_TEST(test_a_zero_byte_is_refused);
+    RUN_TEST(test_a_file_that_is_not_there);
+    RUN_TEST(test_a_folder_is_no_file);
+    return UNITY_END();
+}

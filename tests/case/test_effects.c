@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ * The active set follows from what the case says, and from nothing else; who called for an effect is
+ * known; phases and field groups follow from the set. */
+#include "rig.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define TOP "dp = 1 cm\nend_time = 1\n"
+#define FLUID "[fluid w]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
+#define WALL "[wall bed]\nshape = box -0.03, -0.03, 0.23, 0\n"
+#define SOLID \
+    "[solid s]\nshape = box 0.05, 0.12, 0.15, 0.16\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+#define PLAIN_SOLID SOLID "hourglass = 0\nartificial_viscosity = 0\n"
+
+/* Each with the lines that call for it, and no other effect that this does not bring along. */
+static const struct {
+    const char *text;
+    unsigned effects;
+    enum effect effect;
+    const char *caller;
+} scenes[] = {
+    {TOP FLUID, FX_FLUID, EFFECT_FLUID, "line 3: [fluid w]"},
+    {TOP FLUID "artificial_viscosity = 0.1\n", FX_FLUID | FX_VISCOSITY, EFFECT_VISCOSITY,
+     "line 6: [fluid w] artificial_viscosity"},
+    {TOP FLUID "density_diffusion = 0.1\n", FX_FLUID | FX_DIFFUSION, EFFECT_DIFFUSION,
+     "line 6: [fluid w] density_diffusion"},
+    {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = fourtakas\n",
+     FX_FLUID | FX_DIFFUSION | FX_FOURTAKAS, EFFECT_FOURTAKAS, "line 7: [fluid w] diffusion_form"},
+    {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\n",
+     FX_FLUID | FX_DIFFUSION | FX_ANTUONO, EFFECT_ANTUONO, "line 7: [fluid w] diffusion_form"},
+    {TOP FLUID "laminar_viscosity = 1e-3\n", FX_FLUID | FX_LAMINAR, EFFECT_LAMINAR,
+     "line 6: [fluid w] laminar_viscosity"},
+    {TOP FLUID "laminar_viscosity = 1e-3\n" WALL "slip = none\n",
+     FX_FLUID | FX_LAMINAR | FX_WALL | FX_NO_SLIP, EFFECT_NO_SLIP, "line 9: [wall bed] slip"},
+    {TOP FLUID "tensile_control = 0.2\n", FX_FLUID | FX_TENSILE, EFFECT_TENSILE,
+     "line 6: [fluid w] tensile_control"},
+    {TOP FLUID "wall_repulsion = 0.1\n" WALL, FX_FLUID | FX_WALL | FX_REPULSION, EFFECT_REPULSION,
+     "line 6: [fluid w] wall_repulsion"},
+    {TOP FLUID "[numerics]\nsides = one\n" WALL, FX_FLUID | FX_WALL | FX_ONE_SIDED,
+     EFFECT_ONE_SIDED, "line 7: [numerics] sides"},
+    {TOP FLUID "shifting = 2\n", FX_FLUID | FX_SHIFTING, EFFECT_SHIFTING,
+     "line 6: [fluid w] shifting"},
+    {TOP "gravity = 0, -9.81\n" FLUID, FX_FLUID | FX_GRAVITY, EFFECT_GRAVITY, "line 3: gravity"},
+    {TOP FLUID "[domain]\nlower = 0, 0\nupper = 0.4, 0.4\nperiodic = y\n", FX_FLUID | FX_PERIODIC,
+     EFFECT_PERIODIC, "line 9: [domain] periodic"},
+    {TOP FLUID WALL, FX_FLUID | FX_WALL, EFFECT_WALL, "line 6: [wall bed]"},
+    {TOP FLUID WALL "motion = m\n[motion m]\nvelocity = 1, 0\n", FX_FLUID | FX_WALL | FX_MOTION,
+     EFFECT_MOTION, "line 8: [wall bed] motion"},
+    {TOP PLAIN_SOLID, FX_SOLID, EFFECT_SOLID, "line 3: [solid s]"},
+    {TOP SOLID "artificial_viscosity = 0\n", FX_SOLID | FX_HOURGLASS, EFFECT_HOURGLASS,
+     "line 3: [solid s] hourglass"},
+    {TOP SOLID "hourglass = 0\n", FX_SOLID | FX_SOLID_VISCOSITY, EFFECT_SOLID_VISCOSITY,
+     "line 3: [solid s] artificial_viscosity"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_COUPLING,
+     "line 6: [solid s]"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_IMPEDANCE,
+     "default: [numerics] interface"},
+    {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_KELVIN_VOIGT, EFFECT_KELVIN_VOIGT,
+     "line 10: [solid s] damping_time"},
+    {TOP PLAIN_SOLID "[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\njoined = s\n",
+     FX_SOLID | FX_JOINED, EFFECT_JOINED, "line 13: [solid t] joined"},
+    {TOP PLAIN_SOLID "[contact c]\n[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\n",
+     FX_SOLID | FX_CONTACT, EFFECT_CONTACT, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID "[contact c]\n" WALL, FX_SOLID | FX_CONTACT | FX_CONTACT_WALL,
+     EFFECT_CONTACT_WALL, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID "[load l]\nbody = s\nshape = box 0.05, 0.12, 0.06, 0.16\nforce = 1, 0\n",
+     FX_SOLID | FX_LOAD, EFFECT_LOAD, "line 10: [load l]"},
+    {TOP PLAIN_SOLID "clamp = box 0.05, 0.12, 0.07, 0.16\nclamp_motion = m\n[motion m]\n",
+     FX_SOLID | FX_CLAMP_MOTION, EFFECT_CLAMP_MOTION, "line 11: [solid s] clamp_motion"},
+    {TOP FLUID WALL "[probe p]\nquantity = force\nbody = bed\n", FX_FLUID | FX_WALL | FX_WALL_FORCE,
+     EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
+    {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
+    {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\ninterface = held\n",
+     FX_FLUID | FX_VERLET | FX_SOLID | FX_COUPLING | FX_HELD_FORCE, EFFECT_HELD_FORCE,
+     "line 3: integrator"},
+    {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
+};
+
+static struct rig rig;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void test_the_set_follows_from_the_case(void)
+{
+    unsigned tested = 1u << EFFECT_MULTIRATE; /* follows from the bounds: test_timestep.c */
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        rig_open(&rig, scenes[k].text, NULL);
+        /* The default integrator is an effect of the fluid. */
+        const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
+        const unsigned integrator = by_default ? FX_LEAPFROG : 0;
+        tested |= 1u << scenes[k].effect;
+        TEST_ASSERT_EQUAL_HEX32_MESSAGE(scenes[k].effects | integrator,
+                                        rig.sim.effects & ~(unsigned)FX_MULTIRATE, scenes[k].text);
+        struct effect_caller by;
+        char text[EFFECT_CALLER_TEXT];
+        TEST_ASSERT_TRUE(effect_called(&rig.scene, scenes[k].effect, &by));
+        effect_caller_text(&rig.scene, &by, text);
+        TEST_ASSERT_EQUAL_STRING(scenes[k].caller, text);
+    }
+    for (int k = 0; k < EFFECT_COUNT; k++)
+        TEST_ASSERT_TRUE_MESSAGE(tested & (1u << k), effect_table[k].name);
+}
+
+static void test_a_set_is_named_as_the_caller(void)
+{
+    struct effect_caller by;
+    char text[EFFECT_CALLER_TEXT];
+    rig_open(&rig, TOP FLUID, "w.artificial_viscosity=0.1", NULL);
+    TEST_ASSERT_TRUE(effect_called(&rig.scene, EFFECT_VISCOSITY, &by));
+    effect_caller_text(&rig.scene, &by, text);
+    TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity", text);
+}
+
+/* Fluid only: no field of a solid; solid only: no cells, no lanes, no field of a fluid; a wall beside
+ * no fluid is nothing. */
+static void test_nothing_is_allocated_that_is_not_needed(void)
+{
+    rig_open(&rig, TOP FLUID WALL, NULL);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_SOLID].capacity);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_FLUID].ux);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].ax);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].X);
+    TEST_ASSERT_NULL(rig.sim.fluid.sticks[KIND_WALL]);
+    TEST_ASSERT_EQUAL_INT(PACKED_FIELDS, rig.sim.fluid.packed[KIND_WALL].n);
+    rig_open(&rig, TOP SOLID WALL, NULL);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_FLUID].capacity);
+    TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_WALL].capacity);
+    TEST_ASSERT_NULL(rig.sim.cells.kind[KIND_SOLID].start);
+    TEST_ASSERT_NULL(rig.sim.fluid.neighbour_scratch);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].p);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_SOLID].fx);
+}
+
+static void check_phases(const char *text, const char *expected)
+{
+    rig_open(&rig, text, NULL);
+    char names[256] = "";
+    for (int k = 0; k < PHASE_COUNT; k++) {
+        if (!phase_runs((enum phase)k, rig.sim.effects)) continue;
+        strcat(names, phase_table[k].name);
+        strcat(names, " ");
+    }
+    TEST_ASSERT_EQUAL_STRING(expected, names);
+    rig_steps(&rig, 3, 1);
+    for (int k = 0; k < PHASE_COUNT; k++)
+        TEST_ASSERT_TRUE(phase_runs((enum phase)k, rig.sim.effects) ||
+                         rig.sim.phase_seconds[k] == 0);
+}
+
+static void test_phases_run_by_need(void)
+{
+    check_phases(TOP FLUID, "sort lanes fluid update output ");
+    check_phases(TOP FLUID WALL, "sort lanes wall fluid update output ");
+    check_phases(TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\nshifting = 1\n",
+                 "sort lanes slope fluid shift update output ");
+    check_phases(TOP SOLID, "solid update output ");
+    check_phases(TOP SOLID "[contact c]\n" WALL, "solid contact update output ");
+    check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid update output ");
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_the_set_follows_from_the_case);
+    RUN_TEST(test_a_set_is_named_as_the_caller);
+    RUN_TEST(test_nothing_is_allocated_that_is_not_needed);
+    RUN_TEST(test_phases_run_by_need);
+    return UNITY_END();
+}

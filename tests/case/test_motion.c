@@ -1,0 +1,359 @@
+/* SPDX-License-Identifier: MIT
+ * Prescribed motion: at rest before and after, velocity and acceleration the derivatives of the
+ * displacement in between. */
+#include "case/scene.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define HEAD                                                                                   \
+    "dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n" \
+    "[wall bed]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = move\n[motion move]\n"
+
+static struct scene scene;
+static struct diag diag;
+
+static enum err read(const char *motion)
+{
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", HEAD, motion);
+    diag = (struct diag){0};
+    return scene_parse(&scene, text, "motion.cfg", 0, NULL, &diag);
+}
+
+static void must_read(const char *motion)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, read(motion), diag.text);
+}
+
+static void must_read_expression(const char *x)
+{
+    char text[128];
+    snprintf(text, sizeof text, "kind = expression\nx = %s\n", x);
+    must_read(text);
+}
+
+static void expect(double time, double dx, double vx, double ax)
+{
+    const struct motion_state m = motion_at(&scene, 0, time);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, dx, m.d[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, vx, m.v[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, ax, m.a[0]);
+}
+
+static void write_table(const char *text)
+{
+    FILE *file = fopen("test_motion.tmp", "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    scene_free(&scene);
+    remove("test_motion.tmp");
+}
+
+static void test_velocity_between_start_and_stop(void)
+{
+    must_read("velocity = 2, 0\nstart = 0.25\nstop = 0.75\n");
+    expect(0, 0, 0, 0);
+    expect(0.25, 0, 2, 0);
+    expect(0.5, 0.5, 2, 0);
+    expect(0.75, 1, 0, 0);
+    expect(9, 1, 0, 0);
+}
+
+static void test_polynomial(void)
+{
+    must_read("kind = polynomial\npoly_x = 1, 2, 3\npoly_y = 0, 1\nstart = 1\nstop = 3\n");
+    expect(0.5, 0, 0, 0);
+    expect(2, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
+    expect(4, 2 + 8 + 24, 0, 0);
+    TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 2).d[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(4, motion_at(&scene, 0, 9).d[1]);
+}
+
+/* A sine from its turning point: A (sin(w t - pi/2) + 1), w = 4 pi: at t = 1/8 s half way up. */
+static void test_sine(void)
+{
+    must_read("kind = sine\namplitude = 0.3, -0.1\nperiod = 0.5\nphase = -pi/2\n");
+    const double w = 4 * M_PI;
+    expect(0, 0, 0, 0.3 * w * w);
+    expect(0.125, 0.3, 0.3 * w, 0);
+    expect(0.25, 0.6, 0, -0.3 * w * w);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.2, motion_at(&scene, 0, 0.25).d[1]);
+}
+
+static struct motion_point point_at(double t, double X, double Y)
+{
+    const struct motion_state m = motion_at(&scene, 0, t);
+    return motion_of_point(&m, X, Y);
+}
+
+/* A quarter turn a second about (1, 2): (3, 2) goes to (1, 4), with velocity (pi/2) 2 to the left and
+ * acceleration (pi/2)^2 2 towards the centre. */
+static void test_rotation_by_hand(void)
+{
+    must_read("kind = rotation\ncentre = 1, 2\nangle = pi/2\nstop = 2\n");
+    const struct motion_point p = point_at(1, 3, 2);
+    const double x[2] = {1, 4}, v[2] = {-M_PI, 0}, a[2] = {0, -M_PI * M_PI / 2};
+    for (int c = 0; c < 2; c++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, x[c], p.x[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[c], p.v[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, a[c], p.a[c]);
+    }
+    const struct motion_point late = point_at(7, 3, 2); /* after the stop: half a turn, at rest */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, -1, late.x[0]);
+    TEST_ASSERT_TRUE(late.v[0] == 0 && late.v[1] == 0 && late.a[0] == 0 && late.a[1] == 0);
+}
+
+/* Velocity and acceleration are the derivatives of the place (central differences over 2e-4 s are good
+ * to 1e-8 of f'''), and distances do not change. All three sources of the angle together. */
+static void test_rotation_is_rigid_and_smooth(void)
+{
+    write_table("0 0 0\n0.5 0.4 0\n1 0.2 0\n");
+    must_read("kind = rotation\ncentre = 0.01, 0.02\nangle = 0.5, -1\nangle_amplitude = 0.2\n"
+              "period = 1\nphase = 0.3\nfile = test_motion.tmp\n");
+    const double h = 1e-4;
+    for (double t = 0.1; t < 0.95; t += 0.17) {
+        const struct motion_point before = point_at(t - h, 0.3, -0.1), p = point_at(t, 0.3, -0.1);
+        const struct motion_point after = point_at(t + h, 0.3, -0.1), q = point_at(t, 0, 0.2);
+        for (int c = 0; c < 2; c++) {
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.x[c] - before.x[c]) / (2 * h), p.v[c]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.v[c] - before.v[c]) / (2 * h), p.a[c]);
+        }
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, hypot(0.3, 0.3), hypot(p.x[0] - q.x[0], p.x[1] - q.x[1]));
+    }
+}
+
+/* An angle of zero leaves the bits of a place alone. */
+static void test_no_rotation_is_the_limit(void)
+{
+    must_read("kind = rotation\ncentre = 0.1, 0.7\nangle = 0\n");
+    const struct motion_point p = point_at(0.5, 0.3, 1.0 / 3);
+    TEST_ASSERT_TRUE(p.x[0] == 0.3 && p.x[1] == 1.0 / 3 && p.v[0] == 0 && p.a[1] == 0);
+}
+
+static void test_table_is_smooth_and_does_not_overshoot(void)
+{
+    write_table("time,dx,dy\n# a comment\n0, 0, 0\n0.1 0.01 0\n0.2; 0.04; 0\n0.3, 0.04, 0\n"
+                "0.5, 0, -0.1\n");
+    must_read("kind = table\nfile = test_motion.tmp\n");
+    TEST_ASSERT_EQUAL_INT(5, scene.motion_data[0].n);
+    expect(0, 0, 0, 0);
+    expect(0.3, 0.04, 0, motion_at(&scene, 0, 0.3).a[0]);
+    expect(0.7, 0, 0, 0);
+    struct motion_state before = motion_at(&scene, 0, -0.01);
+    const double step = 1e-4;
+    for (int k = -100; k < 7000; k++) {
+        const struct motion_state m = motion_at(&scene, 0, k * step);
+        for (int c = 0; c < 2; c++) {
+            TEST_ASSERT_TRUE(isfinite(m.a[c]) && m.d[c] <= 0.04 + 1e-15);
+            TEST_ASSERT_DOUBLE_WITHIN(0.02, before.v[c], m.v[c]);
+            TEST_ASSERT_DOUBLE_WITHIN(5e-6, before.d[c] + 0.5 * step * (before.v[c] + m.v[c]),
+                                      m.d[c]);
+        }
+        before = m;
+    }
+}
+
+/* x = 0.1 sin(2 pi t) + 0.3: from where the body is; velocity and acceleration by hand. After the stop it
+ * rests where it has come to. */
+static void test_expression_by_hand(void)
+{
+    must_read("kind = expression\nx = 0.1*sin(2*pi*t) + 0.3\nstart = 0.5\nstop = 1.75\n");
+    const double w = 2 * M_PI;
+    expect(0.4, 0, 0, 0);
+    expect(0.5, 0, 0.1 * w, 0);
+    expect(0.625, 0.1 * sqrt(0.5), 0.1 * w * sqrt(0.5), -0.1 * w * w * sqrt(0.5));
+    expect(1.25, -0.1, 0, 0.1 * w * w);
+    expect(9, 0.1, 0, 0);
+}
+
+/* A turn about (1, 2), and a way: as the kinds that say the same. */
+static void test_expression_as_rotation_and_polynomial(void)
+{
+    must_read("kind = rotation\ncentre = 1, 2\nangle = 0.5, -1\n");
+    const struct motion_point turned = point_at(0.7, 0.3, -0.1);
+    scene_free(&scene);
+    must_read("kind = expression\ncentre = 1, 2\nturn = 0.5*t - t^2\n");
+    const struct motion_point p = point_at(0.7, 0.3, -0.1);
+    for (int c = 0; c < 2; c++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.x[c], p.x[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.v[c], p.v[c]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-13, turned.a[c], p.a[c]);
+    }
+    scene_free(&scene);
+    must_read("kind = expression\nx = t*(1 + t*(2 + 3*t))\ny = t^2\n");
+    expect(1, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
+    TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 1).d[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(2, motion_at(&scene, 0, 0).a[1]);
+}
+
+/* Every function of the language: derivatives against central differences, at times where none has a kink. */
+static void test_derivatives_of_every_function(void)
+{
+    static const char *const each[] = {"sqrt(t + 1)",
+                                       "sin(3*t)",
+                                       "cos(t*t)",
+                                       "tan(0.5*t)",
+                                       "sinh(t)",
+                                       "cosh(2*t)",
+                                       "tanh(t - 0.2)",
+                                       "exp(-t)*t",
+                                       "log(1 + t)",
+                                       "round(2.6)*t",
+                                       "abs(t - 2)",
+                                       "abs(t)",
+                                       "min(t, t^3)",
+                                       "max(t, t^3)",
+                                       "-t^2",
+                                       "(t^2)^1.5",
+                                       "t^3",
+                                       "(1 + t)^-1.5",
+                                       "(1 + t)^t",
+                                       "2^t",
+                                       "t/(1 + t^2)",
+                                       "(t + 1)^0 - 2*t",
+                                       "min(t/0.1, 1)*sin(2*pi*t)"};
+    for (size_t k = 0; k < COUNT_OF(each); k++) {
+        must_read_expression(each[k]);
+        for (double t = 0.15; t < 0.95; t += 0.2) {
+            const double h = 1e-4;
+            const struct motion_state before = motion_at(&scene, 0, t - h),
+                                      now = motion_at(&scene, 0, t),
+                                      after = motion_at(&scene, 0, t + h);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-6, (after.d[0] - before.d[0]) / (2 * h), now.v[0],
+                                              each[k]);
+            TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1e-5, (after.v[0] - before.v[0]) / (2 * h), now.a[0],
+                                              each[k]);
+        }
+        scene_free(&scene);
+    }
+}
+
+static void refuses(const char *motion, const char *message)
+{
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read(motion));
+    TEST_ASSERT_EQUAL_STRING(message, diag.text);
+}
+
+static void test_bad_expressions(void)
+{
+    refuses("kind = expression\n",
+            "motion.cfg:9: [motion move] kind = expression needs `x`, `y` or "
+            "`turn`, expressions in t");
+    refuses(
+        "kind = expression\nx = 0.1*log(t)\n",
+        "motion.cfg:9: [motion move] 0.1*log(t) is not finite, or its velocity or acceleration is "
+        "not, at t = 0 s since start");
+    refuses(
+        "kind = expression\ny = sqrt(0.5 - t)\n",
+        "motion.cfg:9: [motion move] sqrt(0.5 - t) is not finite, or its velocity or acceleration "
+        "is not, at t = 0.5 s since start");
+    refuses(
+        "kind = expression\nx = 0.1*sin(2*pi*x)\n",
+        "motion.cfg:11: x = 0.1*sin(2*pi*x): `x` has a value only where a key takes an expression "
+        "in x and y");
+    refuses(
+        "kind = expression\nx = sqrt(t^2)\n",
+        "motion.cfg:9: [motion move] sqrt(t^2) is not finite, or its velocity or acceleration is "
+        "not, at t = 0 s since start");
+    refuses("velocity = 1, 0\nx = t\n",
+            "motion.cfg:11: [motion move] `x` is of kind = expression, and "
+            "this one is of kind = velocity");
+    refuses("kind = sine\nperiod = 1\namplitude = 1, 0\nangle = 1\n",
+            "motion.cfg:13: [motion move] `angle` is of kind = rotation, and this one is of kind = "
+            "sine");
+}
+
+/* A body is nowhere moved without a velocity; what is steep, quick or has a kink is not a jump. */
+static void test_jumps_and_poles(void)
+{
+    refuses(
+        "kind = expression\nx = 0.1*round(t)\n",
+        "motion.cfg:11: [motion move] x = 0.1*round(t) jumps where it rounds what depends on t, "
+        "and a motion needs a velocity");
+    refuses(
+        "kind = expression\nx = t\nturn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337)\n",
+        "motion.cfg:12: [motion move] turn = t + 1e-3*(t - 0.33337)/abs(t - 0.33337) jumps or is "
+        "not finite at t = 0.33337 s since start, and a motion needs a velocity");
+    static const char *const bad[] = {"1e-6/(t - 0.33337)", "1e-9/(t - 0.33337)^2",
+                                      "1e-6*tan(20*t)", "log(abs(t - 0.4443))",
+                                      "1e-9/(t - 0.3335)^2"};
+    for (size_t k = 0; k < COUNT_OF(bad); k++) {
+        char text[128];
+        snprintf(text, sizeof text, "kind = expression\ny = %s\n", bad[k]);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, read(text), bad[k]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "jumps or is not finite at t = "),
+                                     diag.text);
+    }
+    static const char *const good[] = {"0.1*tanh(1e6*(t - 0.33337))",
+                                       "0.1*cos(1000*pi*t)",
+                                       "0.1*sin(12345*t)",
+                                       "abs(t - 0.33337)",
+                                       "1000 + max(t, 0.33337)",
+                                       "round(3*0.7)*t",
+                                       "exp(-1e6*(t - 0.5)^2)",
+                                       "0.1*sin(2*pi*t)^3"};
+    for (size_t k = 0; k < COUNT_OF(good); k++) {
+        must_read_expression(good[k]);
+        scene_free(&scene);
+    }
+}
+
+static void bad_table(const char *table, const char *message)
+{
+    write_table(table);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("kind = table\nfile = test_motion.tmp\n"));
+    TEST_ASSERT_EQUAL_STRING(message, diag.text);
+}
+
+static void test_bad_tables(void)
+{
+    bad_table("0, 0, 0\n", "test_motion.tmp: a motion needs two rows or more; there is 1");
+    bad_table("0, 0, 0\n0.2, 1, 0\n0.1, 1, 0\n",
+              "test_motion.tmp:3: time 0.1 s does not come after 0.2 s");
+    bad_table("0, 0, 0\n0.2, 1\n",
+              "test_motion.tmp:2: three numbers are expected: time (s), dx (m), dy (m)");
+    bad_table("0, 0, 0\n0.2, 1, nan\n",
+              "test_motion.tmp:2: three numbers are expected: time (s), dx (m), dy (m)");
+    bad_table("0, 0, 0\n0.2, 1, 2, 3\n",
+              "test_motion.tmp:2: more than three columns; time (s), dx (m), dy (m) are expected");
+    bad_table("0, 1, 0\n0.2, 1, 2\n",
+              "test_motion.tmp:1: the first row must be a time of 0 or more and no displacement, "
+              "`0, 0, 0` as a rule");
+}
+
+static void test_no_motion_is_rest(void)
+{
+    must_read("velocity = 1, 1\n");
+    const struct motion_state m = motion_at(&scene, -1, 0.5);
+    TEST_ASSERT_EQUAL_DOUBLE(0, m.d[0] + m.v[0] + m.a[0] + m.d[1] + m.v[1] + m.a[1]);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_velocity_between_start_and_stop);
+    RUN_TEST(test_polynomial);
+    RUN_TEST(test_sine);
+    RUN_TEST(test_rotation_by_hand);
+    RUN_TEST(test_rotation_is_rigid_and_smooth);
+    RUN_TEST(test_no_rotation_is_the_limit);
+    RUN_TEST(test_table_is_smooth_and_does_not_overshoot);
+    RUN_TEST(test_expression_by_hand);
+    RUN_TEST(test_expression_as_rotation_and_polynomial);
+    RUN_TEST(test_derivatives_of_every_function);
+    RUN_TEST(test_bad_expressions);
+    RUN_TEST(test_jumps_and_poles);
+    RUN_TEST(test_bad_tables);
+    RUN_TEST(test_no_motion_is_rest);
+    return UNITY_END();
+}

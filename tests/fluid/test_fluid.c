@@ -1,0 +1,457 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's laws one by one, on pairs of particles with numbers worked out by hand.
+ *
+ * All pairs: dp = 0.8 m and h_over_dp = 1.25, so that h = 1 m, m = 640 kg/m; rho0 = 1000 kg/m^3,
+ * c0 = 10 m/s; a at (0.6, 0.8), b at the origin, so that q = 1 and
+ *   grad_a W_ab = -5 * 7/(4 pi) * (1/2)^3 x_ab = -0.3481514380135211 (0.6, 0.8).
+ * rho_a = 1010 and rho_b = 1020 kg/m^3 have by Eq. 2 the pressures
+ *   P_a = 1e5/7 (1.01^7 - 1) = 1030.5050301001436 Pa, P_b = 2124.080966418286 Pa. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const char pair[] = "dp = 0.8\nend_time = 1\nprecision = double\n"
+                           "[numerics]\nh_over_dp = 1.25\nskin = 0.5\n"
+                           "[domain]\nlower = -10, -10\nupper = 10, 10\n"
+                           "[fluid w]\nshape = box 0, 0, 1.6, 0.8\nsound_speed = 10\n";
+
+static struct rig rig;
+static struct particles *p;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void place(const char *set, const char *another)
+{
+    rig_open(&rig, pair, set, another, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    TEST_ASSERT_EQUAL_INT64(2, p->n);
+    const double x[2] = {0.6, 0}, y[2] = {0.8, 0}, dens[2] = {0.01, 0.02};
+    for (int64_t i = 0; i < 2; i++) {
+        p->id[i] = i;
+        p->x[i] = x[i];
+        p->y[i] = y[i];
+        p->dens[i] = dens[i];
+        p->vx[i] = p->vy[i] = 0;
+    }
+}
+
+/* Velocities of a and b; evaluates. The cells may have put b first. */
+static int64_t a, b;
+static void evaluate(double ua, double va, double ub, double vb)
+{
+    p->vx[0] = ua;
+    p->vy[0] = va;
+    p->vx[1] = ub;
+    p->vy[1] = vb;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    a = p->id[0] == 0 ? 0 : 1;
+    b = 1 - a;
+}
+
+static void check_forces(double magnitude, double gx, double gy)
+{
+    const double tolerance = 1e-13 * (magnitude + fabs(gx) + fabs(gy));
+    assert_near(tolerance, 0.6 * magnitude + gx, p->ax[a], "ax of a");
+    assert_near(tolerance, 0.8 * magnitude + gy, p->ay[a], "ay of a");
+    assert_near(tolerance, -0.6 * magnitude + gx, p->ax[b], "ax of b");
+    assert_near(tolerance, -0.8 * magnitude + gy, p->ay[b], "ay of b");
+}
+
+/* Eq. 4b: m (P_a + P_b)/(rho_a rho_b) |grad W|
+ *   = 640 * 3154.5859965184296/1030200 * 0.3481514380135211 = 0.6822899792818219 m/s^2, apart. */
+static void test_pressure(void)
+{
+    place("w.density=1000", "gravity=0,0");
+    evaluate(0, 0, 0, 0);
+    check_forces(0.6822899792818219, 0, 0);
+    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
+    assert_near(1e-10, 2124.080966418286, rig_pressure(&rig.sim, b), "P_b");
+    TEST_ASSERT_TRUE(p->ddens[a] == 0);
+}
+
+static void test_gravity_is_added(void)
+{
+    place("gravity=1,-9.81", "w.density=1000");
+    evaluate(0, 0, 0, 0);
+    check_forces(0.6822899792818219, 1, -9.81);
+    assert_near(1e-12,
+                square(0.6 * -0.6822899792818219 + 1) + square(-0.8 * 0.6822899792818219 - 9.81),
+                rig.sim.fluid.extremes.acceleration2, "largest |a|^2");
+}
+
+/* Eq. 4a with v_ab = (2, -2): v_ab . grad W = -0.348151438 * (1.2 - 1.6) = 0.1392605752 1/s;
+ *   drho_a = 1010 * 640/1020 * 0.13926 = 88.2529762870353 kg/(m^3 s), drho_b = 90.00921138028774.
+ * Eq. 28b: |v.x|/(r^2 + 0.01) = 0.4/1.01. */
+static void test_continuity(void)
+{
+    place("w.density=1000", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    assert_near(1e-11, 88.2529762870353, 1000 * p->ddens[a], "drho_a");
+    assert_near(1e-11, 90.00921138028774, 1000 * p->ddens[b], "drho_b");
+    assert_near(1e-14, 0.4 / 1.01, rig.sim.fluid.extremes.approach, "rate of approach");
+    check_forces(0.6822899792818219, 0, 0);
+}
+
+/* Eq. 7 with alpha = 0.1 and v.x = -0.4: Pi = 0.1 * 10/1015 * 0.4/1.01, which adds
+ *   640 * Pi * 0.3481514 = 0.08694022155924634 m/s^2. Nothing for the same pair on its way apart. */
+static void test_viscosity_acts_on_approaching_pairs(void)
+{
+    place("w.artificial_viscosity=0.1", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    check_forces(0.6822899792818219 + 0.08694022155924634, 0, 0);
+    place("w.artificial_viscosity=0.1", "gravity=0,0");
+    evaluate(-1, 0, 1, -2);
+    check_forces(0.6822899792818219, 0, 0);
+    assert_near(1e-11, -88.2529762870353, 1000 * p->ddens[a], "drho_a");
+}
+
+/* Morris et al. 1997 with nu = 0.3 m^2/s and v_ab = (2, -2): 2 nu rho0 m/(rho_a rho_b) |x . grad W|/1.01
+ * = 600 * 640/1030200 * 0.3481514/1.01 = 0.12848620396423277 1/s against the velocity, on its way together
+ * and apart, where Eq. 7 has two laws. */
+static void test_laminar_viscosity(void)
+{
+    for (int sign = -1; sign <= 1; sign += 2) {
+        place("w.laminar_viscosity=0.3", "gravity=0,0");
+        evaluate(sign, 0, -sign, 2 * sign);
+        const double drag = 2 * sign * 0.12848620396423277;
+        assert_near(1e-13, 0.6 * 0.6822899792818219 - drag, p->ax[a], "ax of a");
+        assert_near(1e-13, 0.8 * 0.6822899792818219 + drag, p->ay[a], "ay of a");
+        assert_near(1e-13, -0.6 * 0.6822899792818219 + drag, p->ax[b], "ax of b");
+        assert_near(1e-13, -0.8 * 0.6822899792818219 - drag, p->ay[b], "ay of b");
+    }
+}
+
+/* Viscosity that vanishes leaves the bits of a scene without: 1e-30 m^2/s is not zero but nothing. */
+static void test_no_viscosity_is_the_limit(void)
+{
+    double ax[2], ay[2];
+    for (int k = 0; k < 2; k++) {
+        place(k ? "w.laminar_viscosity=1e-30" : "w.laminar_viscosity=0", "gravity=0,-9.81");
+        evaluate(1, 0, -1, 2);
+        TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_LAMINAR));
+        ax[k] = p->ax[a];
+        ay[k] = p->ay[a];
+    }
+    TEST_ASSERT_TRUE(ax[0] == ax[1] && ay[0] == ay[1]);
+}
+
+/* Eq. 6 with delta = 0.1: D_a = 0.1 * 10 * 640/1020 * 2 * 10/1.01 * 0.3481514 =
+ * 4.325702200129168 kg/(m^3 s); of b, less dense a: -4.368530934783912. */
+static void test_diffusion_levels_densities(void)
+{
+    place("w.density_diffusion=0.1", "gravity=0,0");
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
+    assert_near(1e-12, -4.368530934783912, 1000 * p->ddens[b], "D_b");
+    check_forces(0.6822899792818219, 0, 0);
+}
+
+/* Fourtakas et al. 2019: b lies 0.8 m lower and is to be denser by rho0 g 0.8/c0^2 = 78.48 kg/m^3;
+ * it is so by 10, so that a loses: 4.3257022 * (10 - 78.48)/10 = -29.622408666484546. A pair with just
+ * the hydrostatic difference does not diffuse. */
+static void test_diffusion_spares_the_hydrostatic_part(void)
+{
+    place("w.density_diffusion=0.1", "w.diffusion_form=fourtakas");
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "no gravity: as Eq. 6");
+    rig_open(&rig, pair, "gravity=0,-9.81", "w.density_diffusion=0.1", "w.diffusion_form=fourtakas",
+             NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < 2; i++) {
+        p->id[i] = i;
+        p->x[i] = i ? 0 : 0.6;
+        p->y[i] = i ? 0 : 0.8;
+        p->dens[i] = i ? 0.02 : 0.01;
+    }
+    evaluate(0, 0, 0, 0);
+    assert_near(1e-11, -29.622408666484546, 1000 * p->ddens[a], "D_a");
+    p->dens[a] = 0.02 - 0.07848;
+    rig_evaluate(&rig);
+    assert_near(1e-14, 0, p->ddens[a], "hydrostatic difference");
+}
+
+/* Antuono et al. 2010: a density that rises linearly is taken out of the difference exactly, at the free
+ * surface and among disordered particles as well: dens = 0.01 + 0.02 x - 0.03 y. A disordered one diffuses
+ * without making mass: the sum of V D vanishes. */
+static void disordered_block(const char *form, bool linear)
+{
+    rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35", "gravity=0, 0",
+             "w.density_diffusion=0.1", form, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 19;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] += 0.03 * noise(&seed);
+        p->y[i] += 0.03 * noise(&seed);
+        p->dens[i] = linear ? 0.01 + 0.02 * p->x[i] - 0.03 * p->y[i] : 0.05 * noise(&seed);
+    }
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+}
+
+static void test_diffusion_spares_linear_densities(void)
+{
+    disordered_block("w.diffusion_form=molteni", true);
+    double most = 0;
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, fabs(p->ddens[i]));
+    disordered_block("w.diffusion_form=antuono", true);
+    for (int64_t i = 0; i < p->n; i++) {
+        assert_near(1e-13, 0.02, p->slope_x[i], "gradient, x");
+        assert_near(1e-13, -0.03, p->slope_y[i], "gradient, y");
+        assert_near(1e-12 * most, 0, p->ddens[i], "rate of density");
+    }
+    disordered_block("w.diffusion_form=antuono", false);
+    double sum = 0, size = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        sum += p->ddens[i] / (1 + p->dens[i]);
+        size += fabs(p->ddens[i]);
+    }
+    TEST_ASSERT_TRUE(size > 0.1 * most);
+    assert_near(1e-13 * size, 0, sum, "sum of V D");
+}
+
+/* Two particles span no plane: no gradient, and the pair diffuses by Eq. 6 as it stands. */
+static void test_gradient_of_a_pair_is_none(void)
+{
+    place("w.density_diffusion=0.1", "w.diffusion_form=antuono");
+    evaluate(0, 0, 0, 0);
+    TEST_ASSERT_TRUE(p->slope_x[a] == 0 && p->slope_y[b] == 0);
+    assert_near(1e-12, 4.325702200129168, 1000 * p->ddens[a], "D_a");
+}
+
+/* Diffusion that vanishes leaves the bits of a scene without. */
+static void test_no_diffusion_is_the_limit(void)
+{
+    double rate[2];
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, pair, "dp=0.2", "numerics.h_over_dp=1.35",
+                 k ? "w.density_diffusion=1e-300" : "w.density_diffusion=0",
+                 k ? "w.diffusion_form=antuono" : "w.diffusion_form=molteni", "w.velocity=y, x*x",
+                 NULL);
+        p = &rig.sim.kind[KIND_FLUID];
+        rig_evaluate(&rig);
+        rate[k] = p->ddens[5];
+    }
+    TEST_ASSERT_TRUE(rate[0] == rate[1] && rate[0] != 0);
+}
+
+/* Beyond 2h = 2 m there is nothing, whatever the cells hold. */
+static void test_nothing_beyond_the_support(void)
+{
+    place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
+    p->x[0] = 2.0000001;
+    p->y[0] = 0;
+    evaluate(-1, 0, 1, 0);
+    TEST_ASSERT_TRUE(p->ax[a] == 0 && p->ay[a] == 0 && p->ddens[a] == 0);
+    p->x[a] = p->x[b] + 1.999;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    TEST_ASSERT_TRUE(p->ax[a] > 0 || p->ax[b] > 0);
+}
+
+/* Two particles on the same spot, and one alone: finite, and no force. */
+static void test_coincident_and_lone_particles(void)
+{
+    place("w.artificial_viscosity=0.1", "w.density_diffusion=0.1");
+    p->x[0] = p->x[1];
+    p->y[0] = p->y[1];
+    evaluate(1, 0, -1, 0);
+    for (int64_t i = 0; i < 2; i++)
+        TEST_ASSERT_TRUE(p->ax[i] == 0 && p->ay[i] == 0 && p->ddens[i] == 0);
+    p->x[0] = -8;
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    TEST_ASSERT_TRUE(p->ax[0] == 0 && p->ddens[0] == 0);
+    TEST_ASSERT_TRUE(isfinite(rig.sim.fluid.extremes.approach));
+}
+
+/* Monaghan 2000 with epsilon = 0.2: rho = 990 and 1020 kg/m^3 have P_a = 1e5/7 (0.99^7 - 1) =
+ * -970.4950, P_b = 2124.0810 Pa. W(1)/W(0.8) = ((1/2)^4 3)/((0.6)^4 2.6) = 0.55644587, to the fourth
+ * 0.09587198, so that 0.2 * 970.4950 * 0.09587198 = 18.608656 Pa are added to P_a + P_b = 1153.5859 Pa. */
+static void test_tension_is_pushed_against(void)
+{
+    double ax[2];
+    for (int k = 0; k < 2; k++) {
+        place(k ? "w.tensile_control=0.2" : "w.tensile_control=0", "gravity=0,0");
+        p->dens[0] = -0.01;
+        evaluate(0, 0, 0, 0);
+        ax[k] = p->ax[a];
+        assert_near(1e-13, -ax[k], p->ax[b], "ax of b");
+    }
+    const double pa = 1e5 / 7 * (pow(0.99, 7) - 1), f = 3.0 / 16 / (pow(0.6, 4) * 2.6);
+    const double push = 640 * 0.2 * -pa * pow(f, 4) / (990 * 1020.0) * 0.3481514380135211;
+    TEST_ASSERT_TRUE(push > 3e-3);
+    assert_near(1e-13, 0.6 * push, ax[1] - ax[0], "push");
+}
+
+/* No tension, no bit changed; nor where epsilon vanishes. */
+static void test_no_tension_is_the_limit(void)
+{
+    double ax[4];
+    const char *const control[4] = {"0", "0.2", "0", "1e-300"};
+    for (int k = 0; k < 4; k++) {
+        char set[64];
+        snprintf(set, sizeof set, "w.tensile_control=%s", control[k]);
+        place(set, "gravity=0,0");
+        if (k > 1) p->dens[0] = -0.01;
+        evaluate(1, 0, -1, 2);
+        ax[k] = p->ax[a];
+    }
+    TEST_ASSERT_TRUE(ax[0] == ax[1] && ax[2] == ax[3] && ax[0] != ax[2]);
+}
+
+static double closest_after(const char *control)
+{
+    rig_open(&rig,
+             "dp = 0.1\nend_time = 9\nprecision = double\nintegrator = symplectic\n"
+             "[domain]\nlower = 0, 0\nupper = 1, 1\nperiodic = xy\n"
+             "[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 10\npressure = -1000\n"
+             "artificial_viscosity = 0.1\n",
+             control, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 3;
+    for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.002 * noise(&seed);
+    rig_run(&rig, 1.5);
+    double closest = 1;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int64_t j = 0; j < i; j++)
+            closest = fmin(closest, hypot(cells_short_way(&rig.sim.cells, 0, p->x[i] - p->x[j]),
+                                          cells_short_way(&rig.sim.cells, 1, p->y[i] - p->y[j])));
+    return closest / 0.1;
+}
+
+/* Stretched fluid at -1000 Pa, a lattice disturbed by 2 % of dp, clumps within 1.5 s: its closest pair is
+ * 0.67 dp apart. With epsilon = 0.2 the lattice stays, 0.98 dp. */
+static void test_stretched_fluid_does_not_clump(void)
+{
+    assert_at_most(0.75, closest_after("w.tensile_control=0"), "closest pair over dp, without");
+    assert_at_most(-0.95, -closest_after("w.tensile_control=0.2"), "closest pair over dp, less");
+}
+
+/* Lind et al. 2012, on b: grad C = m/rho_a grad_b W = 640/1010 * 0.3481514380135211 (0.6, 0.8), and the
+ * divergence of the positions 640/1010 * 0.3481514 |x|^2 = 0.2206108122065876: too little for a shift. */
+static void test_concentration_by_hand(void)
+{
+    place("w.shifting=2", "gravity=0,0");
+    evaluate(1, 0, -1, 2);
+    const double size = 0.2206108122065876;
+    assert_near(1e-14, 0.6 * size, p->grad_c_x[b], "gradient, x");
+    assert_near(1e-14, 0.8 * size, p->grad_c_y[b], "gradient, y");
+    assert_near(1e-14, size, p->div_r[b], "divergence");
+    const double x = p->x[b];
+    TEST_ASSERT_TRUE(fluid_shift(&rig.sim.fluid, p, 0.1) == 0 && p->x[b] == x);
+}
+
+static const char block[] = "dp = 0.1\nend_time = 1\nprecision = double\n"
+                            "[domain]\nlower = -2, -2\nupper = 4, 4\n"
+                            "[fluid w]\nshape = box 0, 0, 2, 2\nsound_speed = 10\nshifting = 2\n";
+
+/* Inside of a lattice all is even and nothing is shifted; a particle that is out of its place by
+ * 0.01 = 0.1 dp goes back by A h |v| dt |grad C|; one at the surface stays. |v| is `counts` where
+ * particles move at `moves`. */
+static void shift_evens_out(const char *whose, double moves, double counts)
+{
+    rig_open(&rig, block, whose, NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) p->vx[i] = moves;
+    rig_evaluate(&rig);
+    for (int64_t i = 0; i < p->n; i++) {
+        const double edge = fmin(fmin(p->x[i], 2 - p->x[i]), fmin(p->y[i], 2 - p->y[i]));
+        if (edge < 0.3) continue;
+        assert_near(1e-12, 0, hypot(p->grad_c_x[i], p->grad_c_y[i]), "gradient inside");
+        /* The lattice's quadrature of 2: 1.96566 for h/dp = 1.35. */
+        assert_near(1e-3, 1.9657, p->div_r[i], "divergence inside");
+    }
+    int64_t out = 0, corner = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (hypot(p->x[i] - 1.05, p->y[i] - 1.05) < 0.01) out = i;
+        if (hypot(p->x[i] - 0.05, p->y[i] - 0.05) < 0.01) corner = i;
+    }
+    p->x[out] += 0.01;
+    rig_evaluate(&rig);
+    const double x = p->x[out], y = p->y[out], at = p->x[corner];
+    const double fade = (p->div_r[out] - 1.5) / 0.5;
+    const double expected = 2 * 0.135 * counts * 0.02 * fade * p->grad_c_x[out];
+    TEST_ASSERT_TRUE(fade > 0.5 && p->grad_c_x[out] > 0.1);
+    fluid_shift(&rig.sim.fluid, p, 0.02);
+    assert_near(1e-15, x - expected, p->x[out], "x");
+    assert_near(1e-14, y, p->y[out], "y");
+    TEST_ASSERT_TRUE(p->x[corner] == at);
+}
+
+static void test_shift_evens_out(void)
+{
+    shift_evens_out("w.shifting_speed=own", 3, 3);
+    shift_evens_out("w.shifting_speed=largest", 3, 1); /* c0/10 */
+}
+
+/* A shift that vanishes leaves the bits of a scene without. */
+static void test_no_shift_is_the_limit(void)
+{
+    double x[2], vy[2];
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, block, k ? "w.shifting=1e-300" : "w.shifting=0", "w.velocity=y, -x", NULL);
+        TEST_ASSERT_TRUE(k == !!(rig.sim.effects & FX_SHIFTING));
+        TEST_ASSERT_TRUE(k == !!rig.sim.kind[KIND_FLUID].div_r);
+        rig_steps(&rig, 20, 1);
+        x[k] = rig.sim.kind[KIND_FLUID].x[77];
+        vy[k] = rig.sim.kind[KIND_FLUID].vy[77];
+    }
+    TEST_ASSERT_TRUE(x[0] == x[1] && vy[0] == vy[1]);
+}
+
+/* Momentum of the disordered fluid: forces cancel to the round-off of their sizes. */
+static void test_forces_between_particles_cancel(void)
+{
+    rig_open(&rig, pair, "w.artificial_viscosity=0.5", "dp=0.2", "numerics.h_over_dp=1.35",
+             "w.laminar_viscosity=0.3", "w.tensile_control=0.3", NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    uint64_t seed = 11;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] += 0.05 * noise(&seed);
+        p->y[i] += 0.05 * noise(&seed);
+        p->vx[i] = noise(&seed);
+        p->vy[i] = noise(&seed);
+        p->dens[i] = 0.05 * noise(&seed);
+    }
+    rig_sort(&rig);
+    rig_evaluate(&rig);
+    double sum_x = 0, sum_y = 0, size = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        sum_x += p->ax[i];
+        sum_y += p->ay[i];
+        size += hypot(p->ax[i], p->ay[i]);
+    }
+    TEST_ASSERT_TRUE(p->n == 32 && size > 1);
+    assert_near(1e-13 * size, 0, sum_x, "sum of forces, x");
+    assert_near(1e-13 * size, 0, sum_y, "sum of forces, y");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_pressure);
+    RUN_TEST(test_gravity_is_added);
+    RUN_TEST(test_continuity);
+    RUN_TEST(test_viscosity_acts_on_approaching_pairs);
+    RUN_TEST(test_laminar_viscosity);
+    RUN_TEST(test_no_viscosity_is_the_limit);
+    RUN_TEST(test_diffusion_levels_densities);
+    RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
+    RUN_TEST(test_diffusion_spares_linear_densities);
+    RUN_TEST(test_gradient_of_a_pair_is_none);
+    RUN_TEST(test_no_diffusion_is_the_limit);
+    RUN_TEST(test_nothing_beyond_the_support);
+    RUN_TEST(test_coincident_and_lone_particles);
+    RUN_TEST(test_tension_is_pushed_against);
+    RUN_TEST(test_no_tension_is_the_limit);
+    RUN_TEST(test_stretched_fluid_does_not_clump);
+    RUN_TEST(test_concentration_by_hand);
+    RUN_TEST(test_shift_evens_out);
+    RUN_TEST(test_no_shift_is_the_limit);
+    RUN_TEST(test_forces_between_particles_cancel);
+    return UNITY_END();
+}

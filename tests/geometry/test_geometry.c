@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT
+ * Sampling of shapes: neither a gap nor a double particle, whatever the lattice and the shapes. */
+#include "particles/particles.h"
+#include "case/scene.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct scene scene;
+static struct diag diag;
+static char warnings[8192];
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    const size_t n = strlen(warnings);
+    snprintf(warnings + n, sizeof warnings - n, "%s\n", text);
+}
+
+static enum err read(const char *text, const char *set)
+{
+    scene_free(&scene);
+    warnings[0] = '\0';
+    diag = (struct diag){.warn = note};
+    return scene_parse(&scene, text, "geometry.cfg", set != NULL, &set, &diag);
+}
+
+static void must_read(const char *text, const char *set)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, read(text, set), diag.text);
+}
+
+static int64_t count(enum kind kind) { return scene.points[kind].n; }
+
+static int64_t total(void) { return count(KIND_FLUID) + count(KIND_WALL) + count(KIND_SOLID); }
+
+/* Smallest distance between any two points, in dp, by brute force. */
+static double nearest(void)
+{
+    static double x[20000], y[20000];
+    int64_t n = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        for (int64_t k = 0; k < count((enum kind)kind); k++) {
+            TEST_ASSERT_TRUE(n < (int64_t)COUNT_OF(x));
+            x[n] = scene.points[kind].x[k];
+            y[n++] = scene.points[kind].y[k];
+        }
+    }
+    double least = HUGE_VAL;
+    for (int64_t i = 0; i < n; i++)
+        for (int64_t j = 0; j < i; j++)
+            least = min2(least, square(x[i] - x[j]) + square(y[i] - y[j]));
+    return sqrt(least) / scene.top.dp;
+}
+
+void setUp(void) {}
+
+void tearDown(void) { scene_free(&scene); }
+
+static const char tank[] =
+    "dp = 2 mm\nend_time = 1 s\n[constants]\nwall = 8 mm\n"
+    "[fluid w]\nshape = box 0, 0, 60 mm, 40 mm\nsound_speed = 20\n"
+    "[wall tank]\n"
+    "shape = polyline thickness -wall: 0, 60 mm; 0, 0; 60 mm, 0; 60 mm, 60 mm\n";
+
+static void test_a_tank_is_filled_without_gap(void)
+{
+    must_read(tank, NULL);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    TEST_ASSERT_EQUAL_INT64(30 * 20, count(KIND_FLUID));
+    TEST_ASSERT_EQUAL_INT64(2 * 4 * 34 + 30 * 4, count(KIND_WALL));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 1, nearest());
+}
+
+static void test_fluid_comes_row_by_row(void)
+{
+    must_read(tank, NULL);
+    const struct scene_points *p = &scene.points[KIND_FLUID];
+    for (int64_t k = 0; k < p->n; k++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2e-3 * (double)(k % 30) + 1e-3, p->x[k]);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2e-3 * (double)(k / 30) + 1e-3, p->y[k]);
+    }
+}
+
+/* Boxes that share edges cover what their union covers, wherever the lattice lies. */
+static void test_shapes_that_abut(void)
+{
+    static const char text[] =
+        "dp = 1 mm\nend_time = 1 s\n[constants]\na = 7 mm\nb = 13 mm\nox = 0 mm\noy = 0 mm\n"
+        "[numerics]\nlattice_origin = ox, oy\n"
+        "[fluid w]\nsound_speed = 20\nshape = box 0, 0, a, b\nshape = box a, 0, 20 mm, b\n"
+        "shape = box 0, b, a, 20 mm\nshape = polygon a, b; 20 mm, b; 20 mm, 20 mm\n"
+        "shape = polygon a, b; 20 mm, 20 mm; a, 20 mm\n";
+    static const char *const sets[] = {"a=7 mm",         "a=7.5 mm",    "a=6.4999999 mm",
+                                       "a=6.5000001 mm", "b=9.5 mm",    "b=3.3 mm",
+                                       "ox=0.5 mm",      "ox=0.25 mm",  "oy=0.3 mm",
+                                       "ox=1e-10 mm",    "oy=-1e-11 mm"};
+    for (size_t k = 0; k < COUNT_OF(sets); k++) {
+        must_read(text, sets[k]);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(400, total(), sets[k]);
+        TEST_ASSERT_TRUE_MESSAGE(nearest() > 0.99, sets[k]);
+    }
+}
+
+static void test_regions_that_abut_share_no_particle(void)
+{
+    static const char text[] =
+        "dp = 1 mm\nend_time = 1 s\n[constants]\ntilt = 3.3 mm\n"
+        "[fluid w]\nsound_speed = 20\nshape = polygon 0, 0; 20 mm, tilt; 20 mm, 30 mm; 0, 30 mm\n"
+        "[wall bed]\nshape = polygon 0, 0; 20 mm, tilt; 20 mm, -10 mm; 0, -10 mm\n";
+    static const char *const sets[] = {"tilt=0", "tilt=20 mm", "tilt=10 mm", "tilt=1 mm",
+                                       "tilt=0.5 mm"};
+    for (size_t k = 0; k < COUNT_OF(sets); k++) {
+        must_read(text, sets[k]);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(800, total(), sets[k]);
+        TEST_ASSERT_TRUE_MESSAGE(nearest() > 0.99, sets[k]);
+    }
+}
+
+static void test_slanted_band_has_its_area(void)
+{
+    must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = polyline thickness 10 mm: 0, 0; 40 mm, 13 mm; 80 mm, 0; 120 mm, 50 mm\n",
+              NULL);
+    double length = 2 * hypot(40, 13) + hypot(40, 50), area = 10 * length;
+    /* Each mitre adds or takes a kite of thickness^2 tan(half the turn). */
+    const double down = 2 * atan2(13, 40), up = atan2(50, 40) + atan2(13, 40);
+    area += 100 * (tan(down / 2) - tan(up / 2));
+    TEST_ASSERT_DOUBLE_WITHIN(0.01 * area, area, (double)total());
+    TEST_ASSERT_TRUE(nearest() > 0.99);
+}
+
+static void test_closed_polyline_and_circle(void)
+{
+    must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\nshape = circle 0, 0, 20 mm\n"
+              "[wall ring]\nshape = polyline thickness 5 mm: -30 mm, -30 mm; -30 mm, 30 mm; "
+              "30 mm, 30 mm; 30 mm, -30 mm; -30 mm, -30 mm\n",
+              NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(20, 3.14159265 * 400, (double)count(KIND_FLUID));
+    TEST_ASSERT_EQUAL_INT64(70 * 70 - 60 * 60, count(KIND_WALL));
+}
+
+static const char gate[] =
+    "dp = 1 mm\nend_time = 1 s\n[constants]\nx0 = 20 mm\n"
+    "[wall top]\nshape = box 10 mm, 30 mm, 40 mm, 50 mm\nshape = box 30 mm, 30 mm, 50 mm, 40 mm\n"
+    "[solid gate]\nshape = box x0, 0, x0 + 5 mm, 40 mm\nclamp = box x0, 30 mm, x0 + 5 mm, 40 mm\n"
+    "density = 1100\nyoung = 7.8 MPa\npoisson = 0.4\n";
+
+static void test_clamp_takes_the_place_of_the_wall(void)
+{
+    must_read(gate, NULL);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
+    TEST_ASSERT_EQUAL_INT64(30 * 20 + 10 * 10 - 5 * 10, count(KIND_WALL));
+    const struct scene_points *p = &scene.points[KIND_SOLID];
+    int held = 0;
+    for (int64_t k = 0; k < p->n; k++) {
+        held += p->clamped[k];
+        TEST_ASSERT_EQUAL_INT(p->y[k] > 0.030, p->clamped[k]);
+        TEST_ASSERT_TRUE(k == 0 || p->y[k] > p->y[k - 1] || p->x[k] > p->x[k - 1]);
+    }
+    TEST_ASSERT_EQUAL_INT(50, held);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-3, p->y[1] - p->y[0]);
+    TEST_ASSERT_TRUE(nearest() > 0.99);
+}
+
+static void test_a_solid_off_the_lattice_keeps_its_corner(void)
+{
+    must_read(gate, "x0=20.3 mm");
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "its own lattice begins there"));
+    TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20.8e-3, scene.points[KIND_SOLID].x[0]);
+    TEST_ASSERT_TRUE(nearest() > 0.69);
+}
+
+static void test_off_lattice_edges_are_told(void)
+{
+    must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 5.3 mm, 5 mm\n",
+              NULL);
+    TEST_ASSERT_EQUAL_STRING("geometry.cfg:5: [fluid w] box from x = 0 to 0.0053 m is 10.6 dp wide "
+                             "and off the lattice: sampled as 11 columns from 0 to 0.0055 m; edges "
+                             "at 0 and 0.0055 m would fit\n",
+                             warnings);
+    TEST_ASSERT_EQUAL_INT64(11 * 10, total());
+}
+
+static void test_thin_walls_and_slits_are_told(void)
+{
+    must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 5 mm, 5 mm\n[wall a]\nshape = box 0, -2 mm, 5 mm, 0\n"
+              "[wall b]\nshape = box 5.4 mm, -5 mm, 10 mm, 5 mm\n",
+              NULL);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "[wall a] is 0.002 m thick, less than the kernel's reach "
+                                          "2 h = 0.0027 m"));
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "between [wall a] and [wall b] is a slit of 0.0004 m"));
+}
+
+static void test_domain_holds_moving_walls(void)
+{
+    must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 5 mm, 5 mm\n[wall a]\nshape = box 0, -4 mm, 5 mm, 0\nmotion = m\n"
+              "[motion m]\nvelocity = -3, 2\n",
+              NULL);
+    TEST_ASSERT_TRUE(scene.domain_lower[0] < -3 && scene.domain_upper[1] > 2);
+    TEST_ASSERT_TRUE(scene.domain_upper[0] > 0.005 && scene.domain_lower[1] < -0.004);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_tank_is_filled_without_gap);
+    RUN_TEST(test_fluid_comes_row_by_row);
+    RUN_TEST(test_shapes_that_abut);
+    RUN_TEST(test_regions_that_abut_share_no_particle);
+    RUN_TEST(test_slanted_band_has_its_area);
+    RUN_TEST(test_closed_polyline_and_circle);
+    RUN_TEST(test_clamp_takes_the_place_of_the_wall);
+    RUN_TEST(test_a_solid_off_the_lattice_keeps_its_corner);
+    RUN_TEST(test_off_lattice_edges_are_told);
+    RUN_TEST(test_thin_walls_and_slits_are_told);
+    RUN_TEST(test_domain_holds_moving_walls);
+    return UNITY_END();
+}

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT
+ * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
+#include "output/checkpoint.h"
+#include "fuzz.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static struct diag diag;
+static struct scene scene;
+static struct simulation first, second;
+static struct image image, other;
+static char path[RUN_DIR_PATH];
+
+static void open_with(int n, const char *const *sets)
+{
+    diag = (struct diag){.code = ERR_OK};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&first, &scene, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&second, &scene, &diag));
+}
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    simulation_free(&first);
+    simulation_free(&second);
+    scene_free(&scene);
+    checkpoint_free(&image);
+    checkpoint_free(&other);
+}
+
+static void step(struct simulation *s, int n)
+{
+    for (int k = 0; k < n; k++)
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, simulation_step(s, 1.0, &diag), diag.text);
+}
+
+static void store(const char *folder, struct simulation *s)
+{
+    mkdir(folder, 0777);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, s, "the case", "1.2.3", &diag));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_store(&image, folder, path, &diag), diag.text);
+}
+
+static void goes_on_with_the_same_bits(int n_sets, const char *const *sets)
+{
+    open_with(n_sets, sets);
+    step(&first, 137);
+    simulation_ledger(&first);
+    store(tiny_path("bits"), &first);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_read(&other, path, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&other, &second, &diag), diag.text);
+    TEST_ASSERT_TRUE(simulation_hash(&first) == simulation_hash(&second));
+    for (int k = 0; k < 100; k++) {
+        step(&first, 1);
+        step(&second, 1);
+    }
+    TEST_ASSERT_TRUE(first.state.time == second.state.time);
+    TEST_ASSERT_TRUE(simulation_hash(&first) == simulation_hash(&second));
+}
+
+static void same_bits_symplectic(void) { goes_on_with_the_same_bits(0, NULL); }
+
+static void same_bits_verlet(void)
+{
+    goes_on_with_the_same_bits(1, (const char *[]){"integrator=verlet"});
+}
+
+static void same_bits_double_single_rate(void)
+{
+    goes_on_with_the_same_bits(2, (const char *[]){"precision=double", "numerics.multirate=off"});
+}
+
+static void says_what_it_is(void)
+{
+    open_with(0, NULL);
+    step(&first, 3);
+    store(tiny_path("info"), &first);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
+    const struct image_info info = checkpoint_info(&other);
+    TEST_ASSERT_TRUE(info.time == first.state.time && info.steps == 3);
+    TEST_ASSERT_TRUE(info.count[KIND_FLUID] == 100);
+    TEST_ASSERT_EQUAL_STRING("the case", info.case_text);
+    TEST_ASSERT_EQUAL_STRING("1.2.3", info.version);
+}
+
+/* Cells are numbers of a grid: those of another one are refused, whatever they name. */
+static void cells_of_another_grid_are_refused(void)
+{
+    const int32_t wrong[] = {-2, 0, INT32_MAX};
+    const char *const why[] = {"is in cell -2", "is nowhere near cell 0", "is in cell 2147483647"};
+    for (int k = 0; k < 3; k++) {
+        open_with(0, NULL);
+        step(&first, 3);
+        first.kind[KIND_FLUID].cell[99] = wrong[k];
+        store(tiny_path("grid"), &first);
+        TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
+        diag = (struct diag){0};
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_apply(&other, &second, &diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, why[k]), diag.text);
+        tearDown();
+        setUp();
+    }
+}
+
+/* --- damage: two checkpoints of a small run, of which the newer one is damaged --- */
+
+static int warnings;
+
+static void count_warning(void *context, const char *text)
+{
+    (void)context;
+    warnings += strstr(text, "step-000000003.ckpt: is not a sound checkpoint: ") != NULL ||
+                strstr(text, "step-000000003.ckpt: has format") != NULL ||
+                strstr(text, "step-000000003.ckpt: was written in big-endian") != NULL;
+}
+
+static void store_two(const char *folder)
+{
+    mkdir(folder, 0777);
+    for (int steps = 0; steps <= 3; steps += 3) {
+        snprintf(path, sizeof path, "%s/step-%09d.ckpt", folder, steps);
+        TEST_ASSERT_EQUAL_INT(0, fuzz_write_checkpoint(path, steps));
+    }
+    diag = (struct diag){.code = ERR_OK, .warn = count_warning};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_read(&image, path, &diag), diag.text);
+}
+
+/* With `n` bytes of the image in its place the newer one is found to be damaged, which is said, and the
+ * one before it is used. */
+static void the_one_before_is_used(const char *folder, size_t n, size_t at)
+{
+    char message[64], newer[RUN_DIR_PATH];
+    snprintf(message, sizeof message, "%zu bytes, damaged at %zu", n, at);
+    snprintf(newer, sizeof newer, "%s/step-000000003.ckpt", folder);
+    FILE *file = fopen(newer, "wb");
+    TEST_ASSERT_EQUAL_INT(n, fwrite(image.bytes, 1, n, file));
+    fclose(file);
+    warnings = 0;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_newest(&other, folder, path, &diag), message);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(1, warnings, message);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, checkpoint_info(&other).steps, message);
+}
+
+static void every_flipped_byte_is_found(void)
+{
+    const char *const folder = tiny_path("flip");
+    store_two(folder);
+    for (size_t k = 0; k < image.size; k++) {
+        image.bytes[k] ^= (unsigned char)(1 << k % 8);
+        the_one_before_is_used(folder, image.size, k);
+        image.bytes[k] ^= (unsigned char)(1 << k % 8);
+    }
+    printf("found: %zu bytes flipped\n", image.size);
+}
+
+/* In memory: every single bit of all bytes, and all changes of some. */
+static void every_changed_byte_is_found(void)
+{
+    store_two(tiny_path("change"));
+    for (size_t k = 0; k < image.size; k++) {
+        const unsigned char was = image.bytes[k];
+        for (int c = 1; c < 256; c += k % 97 == 0 ? 1 : c) {
+            image.bytes[k] = was ^ (unsigned char)c;
+            diag.code = ERR_OK;
+            TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&image, "x.ckpt", &diag));
+        }
+        image.bytes[k] = was;
+    }
+    diag.code = ERR_OK;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_check(&image, "x.ckpt", &diag));
+}
+
+static void every_cut_is_found(void)
+{
+    const char *const folder = tiny_path("cut");
+    store_two(folder);
+    for (size_t n = 0; n < image.size; n++) the_one_before_is_used(folder, n, n);
+    printf("found: %zu lengths cut\n", image.size);
+}
+
+static void bytes_behind_the_end_are_found(void)
+{
+    open_with(0, NULL);
+    store(tiny_path("long"), &first);
+    struct image longer = {calloc(1, image.size + 8), image.size + 8, image.size + 8};
+    memcpy(longer.bytes, image.bytes, image.size);
+    TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&longer, "x.ckpt", &diag));
+    checkpoint_free(&longer);
+}
+
+static int kept(const char *folder, const int *steps, int n)
+{
+    int found = 0;
+    for (int k = 0; k < n; k++) {
+        char name[RUN_DIR_PATH];
+        snprintf(name, sizeof name, "%s/step-%09d.ckpt", folder, steps[k]);
+        found |= (access(name, F_OK) == 0) << k;
+    }
+    return found;
+}
+
+static void the_last_two_are_kept(void)
+{
+    open_with(0, NULL);
+    for (int k = 0; k < 4; k++) {
+        step(&first, 5);
+        store(tiny_path("two"), &first);
+    }
+    TEST_ASSERT_EQUAL_HEX(0xc, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_forget_later(tiny_path("two"), 15, &diag));
+    TEST_ASSERT_EQUAL_HEX(0x4, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
+}
+
+static void an_empty_folder_has_none(void)
+{
+    open_with(0, NULL);
+    mkdir(tiny_path("empty"), 0777);
+    TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_newest(&other, tiny_path("empty"), path, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "empty"));
+}
+
+/* A sound file of another case: every count is compared before anything is copied. */
+static void another_case_is_refused(void)
+{
+    struct image larger = {0};
+    open_with(1, (const char *[]){"dp=5mm"});
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&larger, &first, "", "", &diag));
+    tearDown();
+    open_with(0, NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_apply(&larger, &second, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "particles"));
+    checkpoint_free(&larger);
+}
+
+int main(void)
+{
+    /* In memory where that is possible: thousands of files are written. */
+    if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
+    UNITY_BEGIN();
+    RUN_TEST(same_bits_symplectic);
+    RUN_TEST(same_bits_verlet);
+    RUN_TEST(same_bits_double_single_rate);
+    RUN_TEST(says_what_it_is);
+    RUN_TEST(cells_of_another_grid_are_refused);
+    RUN_TEST(every_flipped_byte_is_found);
+    RUN_TEST(every_changed_byte_is_found);
+    RUN_TEST(every_cut_is_found);
+    RUN_TEST(bytes_behind_the_end_are_found);
+    RUN_TEST(the_last_two_are_kept);
+    RUN_TEST(an_empty_folder_has_none);
+    RUN_TEST(another_case_is_refused);
+    return UNITY_END();
+}

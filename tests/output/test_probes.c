@@ -1,0 +1,336 @@
+/* SPDX-License-Identifier: MIT
+ * Probes: exact values on states made by hand; names of columns; files. */
+#include "case/params.h"
+#include "output/probes.h"
+#include "rig.h"
+#include "tiny.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static struct rig rig;
+static struct arena arena;
+static struct probes probes;
+static char text[4096];
+
+/* The tiny scene with further lines behind it. */
+static void open_with(const char *more, const char *set)
+{
+    snprintf(text, sizeof text, "%s%s", tiny_case, more);
+    rig_open(&rig, text, "precision=double", set, NULL);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, probes_create(&probes, &rig.sim, &arena, &rig.diag),
+                                  rig.diag.text);
+}
+
+void setUp(void) {}
+
+void tearDown(void)
+{
+    rig_close(&rig);
+    arena_free(&arena);
+}
+
+/* The values of the last probe of the scene. */
+static const double *last_values(void)
+{
+    static double row[PROBE_MAX_COLUMNS];
+    probes_values(&probes, &rig.sim, probes.n - 1, row);
+    return row;
+}
+
+/* --- material points --- */
+
+static void set_linear_field(void)
+{
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ux[i] = 0.5 + 2 * p->X[i] - 3 * p->Y[i];
+        p->uy[i] = -0.25 + p->X[i] + 4 * p->Y[i];
+        p->vx[i] = 10 * p->ux[i];
+        p->vy[i] = 10 * p->uy[i];
+    }
+}
+
+static void weights_reproduce_linear_fields(const char *point)
+{
+    open_with("", point);
+    set_linear_field();
+    double row[8];
+    probes_sample(&probes, &rig.sim, 0, row);
+    const double *at = probes.probe[0].point;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, 0.5 + 2 * at[0] - 3 * at[1], row[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, -0.25 + at[0] + 4 * at[1], row[2]);
+    at = probes.probe[1].point;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (0.5 + 2 * at[0] - 3 * at[1]), row[3]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 10 * (-0.25 + at[0] + 4 * at[1]), row[4]);
+}
+
+static void linear_at_the_corner(void) { weights_reproduce_linear_fields("M1.point=0.13, 0"); }
+
+static void linear_inside(void) { weights_reproduce_linear_fields("M1.point=0.1171, 0.0613"); }
+
+static void linear_on_a_particle(void) { weights_reproduce_linear_fields("M1.point=0.115, 0.055"); }
+
+/* Stretches the gate along x by a share `e`. */
+static void stretch(double e)
+{
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ux[i] = e * p->X[i];
+        p->uy[i] = 0;
+        p->vx[i] = 3;
+        p->vy[i] = -4;
+    }
+}
+
+static void stress_of_a_stretched_body(void)
+{
+    open_with("[probe S]\nquantity = stress\nbody = gate\npoint = 0.13, 0\n", "gate.law=svk");
+    const double e = 0.01, E = e + 0.5 * e * e;
+    stretch(e);
+    const struct solid_body *b = &rig.sim.solid.body[0];
+    const double xx = (1 + e) * (b->lambda + 2 * b->mu) * E, yy = b->lambda * E / (1 + e);
+    const double *row = last_values();
+    assert_near(1e-9 * xx, xx, row[0], "sxx");
+    assert_near(1e-9 * xx, yy, row[1], "syy");
+    assert_near(1e-9 * xx, yy, row[2], "szz");
+    assert_near(1e-9 * xx, 0, row[3], "sxy");
+    assert_near(1e-9 * xx, xx - yy, row[4], "von Mises");
+}
+
+static void energy_of_a_body(void)
+{
+    open_with("[solid post]\nlike = gate\nshape = box 0.3, 0, 0.33, 0.1\n"
+              "[probe E]\nquantity = energy\nbody = gate\n",
+              "gate.law=svk");
+    const double e = 0.01, E = e + 0.5 * e * e, area = 0.03 * 0.15;
+    stretch(e);
+    const struct solid_body *b = &rig.sim.solid.body[0];
+    const double *row = last_values();
+    const double elastic = area * 0.5 * (b->lambda + 2 * b->mu) * E * E;
+    assert_near(1e-9, 0.5 * 1100 * area * 25, row[0], "kinetic energy");
+    assert_near(1e-9 * elastic, elastic, row[1], "elastic energy");
+    assert_near(1e-9 * elastic, 0, row[2], "hourglass energy");
+}
+
+/* --- the fluid --- */
+
+static void set_flow(double vx, double vy)
+{
+    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->vx[i] = vx;
+        p->vy[i] = vy;
+        p->dens[i] = 0;
+    }
+}
+
+static void velocity_at_a_fixed_point(void)
+{
+    open_with("[probe U]\nquantity = velocity\npoint = 0.001, 0.037\n", NULL);
+    set_flow(2, -0.5);
+    assert_near(1e-14, 2, last_values()[0], "vx");
+    assert_near(1e-14, -0.5, last_values()[1], "vy");
+}
+
+static void velocity_where_it_is_dry(void)
+{
+    open_with("[probe U]\nquantity = velocity\npoint = 0.3, 0.2\n", NULL);
+    set_flow(2, -0.5);
+    TEST_ASSERT_TRUE(last_values()[0] == 0 && last_values()[1] == 0);
+}
+
+static void pressure_is_hydrostatic_at_the_start(void)
+{
+    open_with("", NULL);
+    double row[8];
+    probes_sample(&probes, &rig.sim, 0, row);
+    TEST_ASSERT_DOUBLE_WITHIN(0.03 * 1000 * 9.81 * 0.1, 1000 * 9.81 * 0.08, row[5]);
+}
+
+static void pressure_is_a_mean_of_the_near_fluid(void)
+{
+    open_with("", "P.point=0.001, 0.03");
+    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 1e-3;
+    double row[8];
+    probes_sample(&probes, &rig.sim, 0, row);
+    assert_near(1e-9, 400.0 * 1000 / 7 * (pow(1.001, 7) - 1), row[5], "pressure of equal density");
+}
+
+static void level_of_still_water(void)
+{
+    static const char *const x[] = {"L.point=0.05, 0.005", "L.point=0.0478, 0", "L.point=0.0005, 0",
+                                    "L.point=0.099, 0"};
+    for (size_t k = 0; k < COUNT_OF(x); k++) {
+        open_with("[probe L]\nquantity = level\n", x[k]);
+        assert_near(2e-4, 0.1, last_values()[0], x[k]); /* a fiftieth of dp */
+        tearDown();
+    }
+}
+
+static void level_of_a_dry_bed(void)
+{
+    open_with("[probe L]\nquantity = level\npoint = 0.3, 0\n", NULL);
+    TEST_ASSERT_TRUE(last_values()[0] == 0);
+}
+
+/* Moves the last n fluid particles into a row at x, a spacing apart, and sorts. */
+static void splash(int n, double x)
+{
+    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    for (int k = 0; k < n; k++) {
+        p->x[p->n - 1 - k] = x - 0.01 * k;
+        p->y[p->n - 1 - k] = 0.005;
+    }
+    rig_sort(&rig);
+}
+
+static void front_without_single_drops(void)
+{
+    open_with("[probe F]\nquantity = front\n", NULL);
+    assert_near(1e-15, 0.1, last_values()[0], "column");
+    splash(2, 0.3);
+    assert_near(1e-15, 0.1, last_values()[0], "column and a drop of two");
+    splash(3, 0.3);
+    assert_near(1e-15, 0.305, last_values()[0], "a tongue of three");
+}
+
+static void front_in_other_directions(void)
+{
+    static const char *const way[] = {"F.direction=left", "F.direction=up", "F.direction=down"};
+    static const double edge[] = {0, 0.1, 0};
+    for (size_t k = 0; k < COUNT_OF(way); k++) {
+        open_with("[probe F]\nquantity = front\n", way[k]);
+        assert_near(1e-15, edge[k], last_values()[0], way[k]);
+        tearDown();
+    }
+}
+
+static void flux_of_a_uniform_flow(void)
+{
+    open_with("[probe Q]\nquantity = flux\npoint = 0.0533, 0\nto = 0.0533, 0.2\n", NULL);
+    set_flow(2, 5);
+    assert_near(1e-14, 0.2, last_values()[0], "flux to the right of the way up");
+    tearDown();
+    open_with("[probe Q]\nquantity = flux\npoint = 0.0533, 0.05\nto = 0.0533, 0\n", NULL);
+    set_flow(2, 5);
+    assert_near(1e-14, -0.1, last_values()[0], "half of it, on the way down");
+}
+
+/* What walls and gate feel is what the fluid feels, with the sign reversed. */
+static void forces_balance(void)
+{
+    open_with(
+        "[probe T]\nquantity = force\nbody = tank\n[probe G]\nquantity = force\nbody = gate\n",
+        "integrator=symplectic");
+    rig_steps(&rig, 20, 1);
+    double tank[3], gate[3], fluid[2] = {0};
+    probes_values(&probes, &rig.sim, probes.n - 2, tank);
+    probes_values(&probes, &rig.sim, probes.n - 1, gate);
+    const struct particles *p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        fluid[0] += 0.1 * p->ax[i];
+        fluid[1] += 0.1 * (p->ay[i] + 9.81);
+    }
+    const double weight = 1000 * 9.81 * 0.01;
+    assert_near(1e-5 * weight, -fluid[0], tank[0] + gate[0], "horizontal");
+    assert_near(1e-5 * weight, -fluid[1], tank[1] + gate[1], "vertical");
+    TEST_ASSERT_TRUE(gate[0] > 0.05 * weight && tank[1] < -0.1 * weight);
+}
+
+/* Moving the point by s changes the moment by -s x F. */
+static void moment_about_a_point(void)
+{
+    open_with("[probe G]\nquantity = force\nbody = gate\npoint = 0.1, 0\n"
+              "[probe H]\nquantity = force\nbody = gate\npoint = 0.3, 0.1\n",
+              NULL);
+    double g[3], h[3];
+    probes_values(&probes, &rig.sim, probes.n - 2, g);
+    probes_values(&probes, &rig.sim, probes.n - 1, h);
+    assert_near(1e-11, g[2] - (0.2 * g[1] - 0.1 * g[0]), h[2], "moment");
+    TEST_ASSERT_TRUE(g[2] < 0); /* the push to the right turns the gate clockwise about its foot */
+}
+
+static void walls_carry_forces_only_when_asked(void)
+{
+    open_with("", NULL);
+    TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].fx);
+    tearDown();
+    open_with("[probe T]\nquantity = force\nbody = tank\n", NULL);
+    TEST_ASSERT_NOT_NULL(rig.sim.kind[KIND_WALL].fx);
+}
+
+/* --- columns and files --- */
+
+static void columns_are_named(void)
+{
+    open_with("", NULL);
+    TEST_ASSERT_EQUAL_INT(1, probes.n_files);
+    TEST_ASSERT_EQUAL_STRING("probes.csv", probes.file[0].name);
+    TEST_ASSERT_EQUAL_STRING("time_s,M1_dx_m,M1_dy_m,V_vx_m_per_s,V_vy_m_per_s,P_p_Pa",
+                             probes.file[0].header);
+    TEST_ASSERT_EQUAL_INT(6, probes.file[0].columns);
+}
+
+static void an_interval_of_its_own_makes_a_file(void)
+{
+    open_with("[probe fast]\nquantity = stress\nbody = gate\npoint = 0.13, 0\ninterval = 10 us\n"
+              "[probe front]\nquantity = front\n",
+              NULL);
+    TEST_ASSERT_EQUAL_INT(2, probes.n_files);
+    TEST_ASSERT_EQUAL_STRING("probes_fast.csv", probes.file[1].name);
+    TEST_ASSERT_EQUAL_STRING("time_s,fast_sxx_Pa,fast_syy_Pa,fast_szz_Pa,fast_sxy_Pa,fast_mises_Pa",
+                             probes.file[1].header);
+    TEST_ASSERT_TRUE(probes.file[1].interval == 1e-5 && probes.file[0].interval == 1e-4);
+    TEST_ASSERT_NULL(strstr(probes.file[0].header, "fast"));
+    TEST_ASSERT_NOT_NULL(strstr(probes.file[0].header, ",front_front_m"));
+}
+
+/* case/quantities.def and the choice in case/params.def are the same list. */
+static void every_quantity_has_its_name(void)
+{
+    static const char *const names[] = {
+#define QUANTITY(NAME, name, target, columns, meaning) #name,
+#include "case/quantities.def"
+#undef QUANTITY
+    };
+    const struct param *p = param_find(SECTION_probe, "quantity");
+    char name[SCENE_NAME];
+    size_t length = 0;
+    for (size_t k = 0; k < COUNT_OF(names); k++) {
+        param_choice_name(p, (int)k, name);
+        TEST_ASSERT_EQUAL_STRING(names[k], name);
+        length += strlen(name) + 1;
+    }
+    TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(p->choices));
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    rig_one_thread();
+    RUN_TEST(linear_at_the_corner);
+    RUN_TEST(linear_inside);
+    RUN_TEST(linear_on_a_particle);
+    RUN_TEST(stress_of_a_stretched_body);
+    RUN_TEST(energy_of_a_body);
+    RUN_TEST(velocity_at_a_fixed_point);
+    RUN_TEST(velocity_where_it_is_dry);
+    RUN_TEST(pressure_is_hydrostatic_at_the_start);
+    RUN_TEST(pressure_is_a_mean_of_the_near_fluid);
+    RUN_TEST(level_of_still_water);
+    RUN_TEST(level_of_a_dry_bed);
+    RUN_TEST(front_without_single_drops);
+    RUN_TEST(front_in_other_directions);
+    RUN_TEST(flux_of_a_uniform_flow);
+    RUN_TEST(forces_balance);
+    RUN_TEST(moment_about_a_point);
+    RUN_TEST(walls_carry_forces_only_when_asked);
+    RUN_TEST(columns_are_named);
+    RUN_TEST(an_interval_of_its_own_makes_a_file);
+    RUN_TEST(every_quantity_has_its_name);
+    return UNITY_END();
+}

@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT
+ * Comparison of probes with the references that a case names: by hand-made rows. */
+#include "output/reference.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "tiny.h"
+#include "unity.h"
+
+static struct scene scene;
+static struct arena arena;
+static struct references references;
+static struct diag diag;
+
+static const char head[] =
+    "dp = 0.1\nend_time = 1\n[constants]\nw = 2\n[solid s]\nshape = box 0, 0, 1, 1\n"
+    "density = 1\nyoung = 1\npoisson = 0\n[probe P]\nbody = s\npoint = 0.5, 0.5\n"
+    "[reference r]\nprobe = P_dx_m\n";
+
+void setUp(void)
+{
+    memset(&arena, 0, sizeof arena);
+    diag = (struct diag){.code = ERR_OK};
+}
+
+void tearDown(void)
+{
+    remove(tiny_path("r.csv"));
+    arena_free(&arena);
+    scene_free(&scene);
+}
+
+static void put(const char *name, const char *text)
+{
+    FILE *file = fopen(tiny_path(name), "w");
+    TEST_ASSERT_NOT_NULL(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static enum err open_with(const char *lines, const char *header)
+{
+    char text[1000];
+    snprintf(text, sizeof text, "%s%s", head, lines);
+    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_parse(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
+                              diag.text);
+    return references_open(&references, &scene, 1, &header, &arena, &diag);
+}
+
+static struct score score_of(const char *lines, const char *rows)
+{
+    struct score score;
+    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, open_with(lines, "time_s,P_dx_m,P_dy_m"), diag.text);
+    put("probes.csv", rows);
+    TEST_ASSERT_EQUAL(ERR_OK,
+                      references_score(&references, 0, tiny_path("probes.csv"), &score, &diag));
+    return score;
+}
+
+static void test_file_is_compared_at_its_rows(void)
+{
+    /* The rows stand backwards and with a comment; the probe is interpolated to 1, 2, 2. */
+    put("r.csv", "# by hand\ntime_s,value\n0.5,5\n0.25,3\n0,1\n9,99\n");
+    const struct score c =
+        score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n0,1,7\n0.5,3,7\n1,2,7\n");
+    TEST_ASSERT_EQUAL(3, c.points);
+    TEST_ASSERT_EQUAL_DOUBLE(sqrt((0 + 1 + 4) / 3.0), c.rms);
+    TEST_ASSERT_EQUAL_DOUBLE(2, c.largest);
+    TEST_ASSERT_EQUAL_DOUBLE(-1, c.mean);
+    TEST_ASSERT_EQUAL_DOUBLE(3, c.peak);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, c.peak_time);
+    TEST_ASSERT_EQUAL_DOUBLE(5, c.peak_wanted);
+}
+
+static void test_formula_and_window(void)
+{
+    const struct score c = score_of("formula = w*t\nfrom = 0.5\n",
+                                    "time_s,P_dx_m,P_dy_m\n0,9,0\n0.5,1,0\n1,1,0\n2,4,0\n3,0");
+    TEST_ASSERT_EQUAL(3, c.points); /* the torn last row is none */
+    TEST_ASSERT_EQUAL_DOUBLE(sqrt(1 / 3.0), c.rms);
+    TEST_ASSERT_EQUAL_DOUBLE(4, c.peak);
+    TEST_ASSERT_EQUAL_DOUBLE(4, c.scale);
+}
+
+static void test_one_row_is_constant_and_the_first_of_equal_peaks_counts(void)
+{
+    put("r.csv", "0 2\n");
+    const struct score c =
+        score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n0,0,0\n1,-1.99,0\n2,0,0\n3,2,0\n4,0,0\n");
+    TEST_ASSERT_EQUAL(5, c.points);
+    TEST_ASSERT_EQUAL_DOUBLE(-1.99, c.peak);
+    TEST_ASSERT_EQUAL_DOUBLE(1, c.peak_time);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, (0 - 1.99 + 0 + 2 + 0) / 5 - 2, c.mean);
+}
+
+static void test_nothing_in_common(void)
+{
+    const struct score c = score_of("formula = t\nfrom = 5\n", "time_s,P_dx_m,P_dy_m\n0,0,0\n");
+    TEST_ASSERT_EQUAL(0, c.points);
+    char text[300];
+    reference_line(&references.item[0], &c, text, sizeof text);
+    TEST_ASSERT_EQUAL_STRING("P_dx_m: no time in common with r", text);
+}
+
+static void refuses(const char *lines, const char *header, const char *words)
+{
+    TEST_ASSERT_EQUAL(ERR_INPUT, open_with(lines, header));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, words), diag.text);
+}
+
+static void test_missing_file(void)
+{
+    refuses("file = none.csv\n", "time_s,P_dx_m", "a.cfg:13: [reference r] file: ");
+}
+
+static void test_malformed_row(void)
+{
+    put("r.csv", "time_s,value\n0,1\n0.1,two\n");
+    refuses("file = r.csv\n", "time_s,P_dx_m",
+            "r.csv:3: '0.1,two' is no row of a reference; two numbers are expected");
+}
+
+static void test_third_column(void)
+{
+    put("r.csv", "0,1,2\n");
+    refuses("file = r.csv\n", "time_s,P_dx_m", "r.csv:1: '0,1,2' is no row");
+}
+
+static void test_empty_file(void)
+{
+    put("r.csv", "# nothing\ntime_s,value\n");
+    refuses("file = r.csv\n", "time_s,P_dx_m", "holds no row of time and value");
+}
+
+static void test_unknown_column(void)
+{
+    refuses("formula = 0\n", "time_s,P_dy_m,Q_p_Pa",
+            "[reference r] probe = P_dx_m: the probes have the columns P_dy_m,Q_p_Pa; the "
+            "nearest is P_dy_m");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_file_is_compared_at_its_rows);
+    RUN_TEST(test_formula_and_window);
+    RUN_TEST(test_one_row_is_constant_and_the_first_of_equal_peaks_counts);
+    RUN_TEST(test_nothing_in_common);
+    RUN_TEST(test_missing_file);
+    RUN_TEST(test_malformed_row);
+    RUN_TEST(test_third_column);
+    RUN_TEST(test_empty_file);
+    RUN_TEST(test_unknown_column);
+    return UNITY_END();
+}

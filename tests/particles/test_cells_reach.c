@@ -1,0 +1,170 @@
+/* SPDX-License-Identifier: MIT
+ * A sorting is called outgrown before any pair within reach can be out of sight, and not while all the
+ * fluid travels together. */
+#include "rig.h"
+#include "particles/kernel.h"
+#include "unity.h"
+
+#include <math.h>
+
+static const char tank[] =
+    "dp = 1 cm\nend_time = 10\nprecision = double\n[numerics]\nskin = 1\n"
+    "[domain]\nlower = -1, -1\nupper = 1, 1\n[fluid w]\nshape = box -0.3, -0.3, 0.3, 0.3\n"
+    "sound_speed = 20\n[wall bed]\nshape = box -0.3, -0.36, 0.3, -0.32\n"
+    "[solid beam]\nshape = box 0.32, -0.3, 0.36, 0.3\ndensity = 1e3\nyoung = 1e6\npoisson = 0.3\n";
+
+static struct rig rig;
+
+void setUp(void) { rig_open(&rig, tank, NULL); }
+void tearDown(void) { rig_close(&rig); }
+
+static bool outgrown(void)
+{
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        cells_measure(&rig.sim.cells, (enum kind)kind, &rig.sim.kind[kind]);
+    return !(cells_skin_left(&rig.sim.cells, KERNEL_REACH * rig.sim.fluid.k.h) > 0);
+}
+
+/* Whether some fluid particle has any other within reach in a cell that does not touch its own. */
+static bool pair_unseen(void)
+{
+    const struct cells *const c = &rig.sim.cells;
+    const struct particles *const a = &rig.sim.kind[KIND_FLUID];
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const b = &rig.sim.kind[kind];
+        for (int64_t i = 0; i < a->n; i++)
+            for (int64_t j = 0; j < b->n; j++) {
+                const int dx = cell_x(c, a->cell[i]) - cell_x(c, b->cell[j]);
+                const int dy = cell_y(c, a->cell[i]) - cell_y(c, b->cell[j]);
+                if (dx * dx <= 1 && dy * dy <= 1) continue;
+                if (hypot(a->x[i] - b->x[j], a->y[i] - b->y[j]) < KERNEL_REACH * rig.sim.fluid.k.h)
+                    return true;
+            }
+    }
+    return false;
+}
+
+/* Particles wander at random until the sorting is called outgrown: up to then nothing is unseen, and going
+ * on without sorting something is soon. */
+static void test_no_pair_is_unseen(void)
+{
+    uint64_t seed = 5;
+    int unseen_after = 0;
+    for (int trial = 0; trial < 8; trial++) {
+        rig_open(&rig, tank, NULL);
+        const double step = 0.002 * (1 + trial % 4);
+        int steps = 0;
+        for (; steps < 200; steps++) {
+            for (int kind = 0; kind < KIND_COUNT; kind += 2) /* fluid and solid */
+                for (int64_t i = 0; i < rig.sim.kind[kind].n; i++) {
+                    rig.sim.kind[kind].x[i] += step * noise(&seed);
+                    rig.sim.kind[kind].y[i] += step * noise(&seed);
+                }
+            if (outgrown()) break;
+            TEST_ASSERT_FALSE(pair_unseen());
+        }
+        TEST_ASSERT_TRUE(steps > 0 && steps < 200);
+        for (int more = 0; more < 3 * steps + 3 && !pair_unseen(); more++)
+            for (int64_t i = 0; i < rig.sim.kind[KIND_FLUID].n; i++)
+                rig.sim.kind[KIND_FLUID].x[i] += step * noise(&seed);
+        unseen_after += pair_unseen();
+    }
+    TEST_ASSERT_TRUE(unseen_after >= 4);
+}
+
+/* Fluid alone that moves as one: nothing to be done until it strays too far. */
+static void test_common_motion_is_free(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+             "[fluid w]\nshape = box -0.3, -0.3, 0.3, 0.3\nsound_speed = 20\n",
+             NULL);
+    const double stray = rig.sim.cells.stray;
+    assert_near(1e-12, rig.sim.scene->numerics.skin * rig.sim.fluid.k.h, stray, "stray");
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    double way = 0;
+    while (!outgrown()) {
+        for (int64_t i = 0; i < p->n; i++) p->x[i] += 0.1 * stray;
+        way += 0.1 * stray;
+    }
+    TEST_ASSERT_TRUE(way >= stray);
+    assert_at_most(1.1 * stray + rig.sim.scene->top.dp, way, "way gone");
+    TEST_ASSERT_FALSE(pair_unseen());
+}
+
+/* Two blobs that jump towards each other over more than a cell. */
+static void test_leap_is_noticed(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    TEST_ASSERT_FALSE(outgrown());
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->x[i] < -0.2) p->x[i] += 0.4;
+    TEST_ASSERT_TRUE(outgrown());
+}
+
+/* A block that falls at a still tank: it comes over a whole cell towards fluid that hardly moves. */
+static const char falling[] =
+    "dp = 1 cm\nend_time = 10\nprecision = double\ngravity = 0, -9.81\n"
+    "[domain]\nlower = -0.3, -0.3\nupper = 0.3, 0.7\n"
+    "[fluid w]\nshape = box -0.2, -0.15, 0.2, 0\nsound_speed = 20\nsurface = 0\n"
+    "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
+    "[wall tank]\nshape = polyline thickness -0.04: -0.2, 0.6; -0.2, -0.15; 0.2, -0.15; 0.2, 0.6\n"
+    "[solid beam]\nshape = box -0.05, 0.1, 0.05, 0.2\ndensity = 1500\nyoung = 1 MPa\n"
+    "poisson = 0.35\nvelocity = 0, -3\n";
+
+/* The room that is left after each step against what measuring finds; and the same scene with a measuring at
+ * each step, which must sort when this one does and end with its bits. */
+static void check_room(const char *scene, const char *integrator, const char *more, int steps,
+                       int least_unmeasured)
+{
+    struct simulation *const s = &rig.sim;
+    uint64_t hash[2];
+    int64_t sorts[2];
+    for (int measured = 0; measured < 2; measured++) {
+        rig_open(&rig, scene, integrator, more, "beam.artificial_viscosity=0.05", "gravity=0, -10",
+                 "numerics.skin=0.15", NULL);
+        int unmeasured = 0;
+        for (int step = 0; step < steps; step++) {
+            if (measured) s->skin_left = 0;
+            rig_steps(&rig, 1, 10);
+            if (measured) continue;
+            const double room = s->skin_left;
+            for (int kind = 0; kind < KIND_COUNT; kind++)
+                cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
+            const double found = cells_skin_left(&s->cells, KERNEL_REACH * s->fluid.k.h);
+            assert_at_most(found + 1e-12, room, "room");
+            const bool looks = step % 20 == 0;
+            TEST_ASSERT_FALSE(looks && pair_unseen());
+            unmeasured += room < found - 1e-12;
+        }
+        if (!measured) assert_at_most(unmeasured, least_unmeasured, "steps without measuring");
+        hash[measured] = simulation_hash(s);
+        sorts[measured] = s->state.sorts;
+    }
+    TEST_ASSERT_EQUAL_INT64(sorts[1], sorts[0]);
+    TEST_ASSERT_EQUAL_HEX64(hash[1], hash[0]);
+    TEST_ASSERT_TRUE(sorts[0] > 1);
+}
+
+/* Cells are not measured while no particle can have gone far enough: what is taken off their room is never
+ * less than what is found by measuring them. (With symplectic they always are.) */
+static void test_room_is_never_overstated(void)
+{
+    check_room(tank, "integrator=leapfrog", "dp=2cm", 600, 100);
+    check_room(tank, "integrator=leapfrog", "w.shifting=2", 200, 20);
+    check_room(tank, "integrator=verlet", "dp=2cm", 600, 100);
+    check_room(falling, "integrator=verlet", "numerics.multirate=off", 300, 20);
+    check_room(falling, "integrator=leapfrog", "dp=1cm", 150, 20);
+    check_room(falling, "integrator=verlet", "dp=1cm", 150, 20);
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_no_pair_is_unseen);
+    RUN_TEST(test_common_motion_is_free);
+    RUN_TEST(test_leap_is_noticed);
+    RUN_TEST(test_room_is_never_overstated);
+    return UNITY_END();
+}

@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: MIT
+ * The fluid's answer to a structure within its sub-steps (T-35a, T-35b). */
+#include "time/integrators.h"
+#include "solid/interface.h"
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A light block in the middle of water, free to move, no gravity: nothing acts from outside. */
+static const char block[] =
+    "dp = 1 cm\nend_time = 1\nprecision = double\n"
+    "[fluid water]\nshape = box 0, 0, 0.24, 0.24\nminus = box 0.1, 0.1, 0.14, 0.14\n"
+    "sound_speed = 20\nartificial_viscosity = 0.1\ndensity_diffusion = 0.1\n"
+    "[solid block]\nshape = box 0.1, 0.1, 0.14, 0.14\ndensity = 100\nyoung = 1e6\npoisson = 0.3\n"
+    "velocity = 0.2, 0.1\n[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n";
+
+static struct rig rig;
+static struct particles *fluid, *solid;
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void open(const char *set, const char *another)
+{
+    rig_open(&rig, block, set, another, NULL);
+    fluid = &rig.sim.kind[KIND_FLUID];
+    solid = &rig.sim.kind[KIND_SOLID];
+}
+
+static void held(const char *set)
+{
+    open(set, NULL);
+    TEST_ASSERT_FALSE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, set);
+    TEST_ASSERT_TRUE(rig.sim.solid.impedance == 0);
+    rig_close(&rig);
+}
+
+static void test_wherever_there_are_substeps(void)
+{
+    held("numerics.interface=held");
+    held("numerics.multirate=off");
+    held("numerics.fixed_step=1e-9");
+    open("numerics.interface=held", NULL);
+    TEST_ASSERT_NULL(solid->interface_impulse_x);
+    rig_close(&rig);
+    static const char *const densities[] = {"block.density=100", "block.density=7800"};
+    for (size_t k = 0; k < COUNT_OF(densities); k++) {
+        open(densities[k], "block.young=1e8");
+        TEST_ASSERT_TRUE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, densities[k]);
+        assert_near(1e-12, 1000 * 20, rig.sim.solid.impedance, "rho0 c0");
+        rig_close(&rig);
+    }
+}
+
+/* A pressure of 1 Pa everywhere presses with the force of the height on the middle of a straight side:
+ * a column of particles across it has the surface dp, within the 1.7 % by which sums on the lattice
+ * differ from integrals. */
+static void test_surface_of_a_straight_side(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\nprecision = double\n"
+             "[fluid water]\nshape = box 0, 0, 0.24, 0.1\nsound_speed = 20\n"
+             "[solid floor]\nshape = box 0, -0.04, 0.24, 0\ndensity = 100\nyoung = 1e6\n"
+             "poisson = 0.3\n[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
+             NULL);
+    solid = &rig.sim.kind[KIND_SOLID];
+    rig_evaluate(&rig);
+    double across = 0, along = 0;
+    for (int64_t i = 0; i < solid->n; i++) {
+        if (fabs(solid->X[i] - 0.115) > 0.004) continue;
+        across += solid->wet_y[i];
+        along += solid->wet_x[i];
+    }
+    assert_near(0.02 * 0.01, -0.01, across, "surface");
+    assert_near(1e-12, 0, along, "along it");
+}
+
+/* Particle 0 with the surface (0.006, 0.008) m goes at (3, 4) m/s where the fluid saw (0, 1.25) m/s and
+ * (30, 40) m/s^2; takes its face for sub-steps of 1e-4 s. */
+static void face_one(void)
+{
+    solid->wet_x[0] = 0.006;
+    solid->wet_y[0] = 0.008;
+    solid->vx[0] = 3;
+    solid->vy[0] = 4;
+    solid->wx[0] = 0;
+    solid->wy[0] = 1.25;
+    solid->ax[0] = 30;
+    solid->ay[0] = 40;
+    interface_begin(&rig.sim.solid, solid, 1e-4, 10);
+}
+
+/* The whole impedance for a light body by leapfrog: k = 2, of 4 m/s 2/3 go. */
+static void test_light_bodies_by_leapfrog(void)
+{
+    open("integrator=leapfrog", NULL);
+    face_one();
+    impedance_kick(solid, 0, 0.02);
+    assert_near(1e-12, 3 - 1.6, solid->vx[0], "vx");
+    assert_near(1e-12, 4 - 1.6 * 4 / 3, solid->vy[0], "vy");
+}
+
+/* By hand: mass 100 * 1e-4 = 0.01 kg/m, half of the impedance 1e4, dt = 1e-4: k = 1e-4 * 1e4 * 0.01/0.01 = 1;
+ * along the surface 0.6 * 3 + 0.8 * 2.75 = 4 m/s faster, of which 1/2 go: kick (-1.2, -1.6), owed 0.01 of it.
+ * What the fluid saw of its acceleration does not count. */
+static void test_answer_and_return_by_hand(void)
+{
+    open("integrator=symplectic", NULL);
+    face_one();
+    impedance_kick(solid, 0, 0.02);
+    assert_near(1e-12, 3 - 1.2, solid->vx[0], "vx");
+    assert_near(1e-12, 4 - 1.6, solid->vy[0], "vy");
+    interface_end(&rig.sim.solid, solid);
+    assert_near(1e-14, -0.012, solid->interface_impulse_x[0], "owed, x");
+    assert_near(1e-14, -0.016, solid->interface_impulse_y[0], "owed, y");
+    solid->fx[0] = 7;
+    interface_begin(&rig.sim.solid, solid, 1e-4, 10);
+    assert_near(1e-10, 7 + 0.02 * 0.012 / 1e-3, solid->fx[0], "fx");
+    assert_near(1e-14, -0.012 * 0.98, solid->interface_impulse_x[0], "still owed, x");
+}
+
+/* Bodies no heavier than the fluid, and with leapfrog's steps beyond its default all. */
+static void test_who_follows_the_fluid(void)
+{
+    static const struct {
+        const char *integrator, *density, *step;
+        double prompt, expected, carried;
+    } row[] = {
+        {"integrator=leapfrog", "block.density=1001", NULL, 0.5, 1, 1},
+        {"integrator=leapfrog", "block.density=1000", NULL, 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.cfl=0.5", 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.fixed_step=0.3 ms", 1, 0, 0},
+        {"integrator=leapfrog", "block.density=1001", "numerics.fixed_step=0.2 ms", 0.5, 1, 1},
+        {"integrator=symplectic", "block.density=1000", "numerics.cfl=0.4", 0.5, 0, 1},
+        {"integrator=verlet", "block.density=1000", NULL, 0.5, 0, 1},
+        {"integrator=verlet", "block.density=1001", NULL, 0.5, 1, 1},
+    };
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        rig_open(&rig, block, row[k].integrator, row[k].density, "block.young=1e8", row[k].step,
+                 NULL);
+        const struct solid_body *const body = &rig.sim.solid.body[0];
+        assert_near(0, row[k].prompt, body->impedance_fraction, "prompt");
+        assert_near(0, row[k].expected, body->acceleration_weight, "expected");
+        assert_near(0, row[k].carried, body->jerk_weight, "carried");
+        rig_close(&rig);
+    }
+    /* Not where a long step is not taken, nor where nothing is answered. */
+    static const char *const others[] = {"water.artificial_viscosity=1", "numerics.interface=held",
+                                         "numerics.multirate=off"};
+    for (size_t k = 0; k < COUNT_OF(others); k++) {
+        rig_open(&rig, block, "integrator=leapfrog", "block.density=1001", "block.young=1e8",
+                 "numerics.cfl=0.5", others[k], NULL);
+        assert_near(0, 1, rig.sim.solid.body[0].jerk_weight, others[k]);
+        rig_close(&rig);
+    }
+    open(NULL, NULL);
+}
+
+/* The first body is heavy, the second light: each is met as it is alone. */
+static void test_bodies_are_met_each_its_own_way(void)
+{
+    static const char with_bar[] =
+        "dp = 1 cm\nend_time = 1\nintegrator = leapfrog\n"
+        "[fluid water]\nshape = box 0, 0, 0.24, 0.24\nsound_speed = 20\n"
+        "[solid bar]\nshape = box 0.24, 0, 0.3, 0.24\ndensity = 7800\nyoung = 1e9\npoisson = 0.3\n"
+        "[solid cork]\nshape = box 0, 0.24, 0.24, 0.3\ndensity = 600\nyoung = 1e6\npoisson = 0.3\n"
+        "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n";
+    rig_open(&rig, with_bar, NULL);
+    const struct solid_body *const body = rig.sim.solid.body;
+    for (int k = 0; k < 2; k++) {
+        assert_near(0, k == 0 ? 0.5 : 1, body[k].impedance_fraction, "prompt");
+        assert_near(0, k == 0, body[k].acceleration_weight, "expected");
+        assert_near(0, k == 0, body[k].jerk_weight, "carried");
+    }
+    rig_close(&rig);
+    open(NULL, NULL);
+}
+
+/* By hand, of 20 times the fluid's density: k = 0.005, of which 1/201 go. After 0.02 s the fluid expects
+ * 0.8 * 1.25 + 0.02 * 50 = 2 m/s along the surface, where there are 5. A clamped particle has no face. */
+static void test_answer_to_what_was_not_expected(void)
+{
+    open("block.density=20000", "block.young=1e8");
+    face_one();
+    impedance_kick(solid, 0, 0.02);
+    assert_near(1e-12, 3 - 0.6 * 3 / 201, solid->vx[0], "vx");
+    assert_near(1e-12, 4 - 0.8 * 3 / 201, solid->vy[0], "vy");
+    impedance_kick(solid, 0, 0.02);
+    assert_near(1e-12, 3 - 0.6 * 3 * (1 - square(200 / 201.0)), solid->vx[0], "vx, twice");
+    interface_end(&rig.sim.solid, solid);
+    assert_near(1e-13, -2 * 0.6 * 3 * (1 - square(200 / 201.0)), solid->interface_impulse_x[0],
+                "owed, x");
+    solid->free[0] = 0;
+    face_one();
+    impedance_kick(solid, 0, 0.02);
+    TEST_ASSERT_TRUE(solid->vx[0] == 3 && solid->vy[0] == 4);
+}
+
+/* Sub-steps written out: kick, answer, drift, with times since the evaluation, which is `ahead` after the
+ * first begins; centred ones begin and end with half a drift. */
+static void substeps_by_hand(double dt, int n, bool centred, double ahead)
+{
+    const double half = centred ? 0.5 * dt : 0;
+    for (int64_t i = 0; i < solid->n; i++) {
+        solid->ux[i] += half * solid->vx[i];
+        solid->uy[i] += half * solid->vy[i];
+    }
+    for (int k = 1; k <= n; k++) {
+        solid_stress(&rig.sim.solid, solid);
+        solid_forces(&rig.sim.solid, solid);
+        for (int64_t i = 0; i < solid->n; i++) {
+            solid->vx[i] += dt * solid->sx[i];
+            solid->vy[i] += dt * solid->sy[i];
+            const double wet = hypot(solid->wet_x[i], solid->wet_y[i]);
+            const double mass = 2000 * 1e-4, stiff = dt * 0.5 * 1000 * 20 * wet / mass;
+            const double nx = wet > 0 ? solid->wet_x[i] / wet : 0,
+                         ny = wet > 0 ? solid->wet_y[i] / wet : 0;
+            const double since = k * dt - ahead;
+            const double faster = (solid->vx[i] - solid->wx[i] - since * solid->ax[i]) * nx +
+                                  (solid->vy[i] - solid->wy[i] - since * solid->ay[i]) * ny;
+            const double kick = -stiff / (1 + stiff) * faster;
+            solid->vx[i] += kick * nx;
+            solid->vy[i] += kick * ny;
+            solid->interface_impulse_x[i] += mass * kick * nx;
+            solid->interface_impulse_y[i] += mass * kick * ny;
+            const double drift = k < n ? dt : dt - half;
+            solid->ux[i] += drift * solid->vx[i];
+            solid->uy[i] += drift * solid->vy[i];
+        }
+    }
+}
+
+static void twin(const char *integrator, bool centred, double ahead)
+{
+    enum { FIELDS = 6, MOST = 32 };
+    static double start[FIELDS][MOST], end[FIELDS][MOST];
+    open(integrator, "block.density=2000");
+    rig_steps(&rig, 30, 1);
+    rig_evaluate(&rig);
+    double *const field[FIELDS] = {solid->ux,
+                                   solid->uy,
+                                   solid->vx,
+                                   solid->vy,
+                                   solid->interface_impulse_x,
+                                   solid->interface_impulse_y};
+    const size_t bytes = (size_t)solid->n * sizeof(double);
+    TEST_ASSERT_TRUE(solid->n <= MOST);
+    for (int64_t i = 0; i < solid->n; i++)
+        solid->interface_impulse_x[i] = solid->interface_impulse_y[i] = 0;
+    for (int f = 0; f < FIELDS; f++) memcpy(start[f], field[f], bytes);
+    const double dt = rig.sim.dt_solid;
+    substeps_by_hand(dt, 5, centred, ahead * dt);
+    for (int f = 0; f < FIELDS; f++) memcpy(end[f], field[f], bytes);
+    for (int f = 0; f < FIELDS; f++) memcpy(field[f], start[f], bytes);
+    advance_solid(&rig.sim, 5 * dt, 5, centred);
+    double owed = 0;
+    for (int64_t i = 0; i < solid->n; i++) {
+        for (int f = 0; f < FIELDS; f++)
+            assert_near(1e-13 * (f < 2 ? 1e-3 : 1), end[f][i], field[f][i], "a field");
+        owed = fmax(owed, fabs(solid->interface_impulse_x[i]));
+    }
+    TEST_ASSERT_TRUE(owed > 1e-9);
+    rig_close(&rig);
+}
+
+static void test_substeps_by_hand(void)
+{
+    twin("integrator=verlet", false, 0);
+    twin("integrator=leapfrog", true, 0);
+    twin("integrator=symplectic", true, 2.5);
+    open(NULL, NULL);
+}
+
+static double momentum(double *size)
+{
+    double sum = 0;
+    *size = 0;
+    for (int64_t i = 0; i < fluid->n; i++) {
+        sum += rig.sim.fluid.k.mass * fluid->vx[i];
+        *size += rig.sim.fluid.k.mass * fabs(fluid->vx[i]);
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        const double part = rig.sim.solid.body[0].mass * solid->vx[i];
+        sum += part - solid->interface_impulse_x[i];
+        *size += fabs(part);
+    }
+    return sum;
+}
+
+/* Fluid, structure and what the structure owes the fluid: nothing is lost. */
+static void test_momentum_closes(void)
+{
+    open("integrator=symplectic", NULL);
+    double size;
+    const double start = momentum(&size);
+    rig_steps(&rig, 200, 1);
+    const double end = momentum(&size);
+    double owed = 0;
+    for (int64_t i = 0; i < solid->n; i++) owed += fabs(solid->interface_impulse_x[i]);
+    TEST_ASSERT_TRUE(owed > 1e-6 * size);
+    assert_near(1e-11 * size, start, end, "momentum");
+}
+
+/* Water that leaves a light wall takes nothing of what is owed along: once a particle is dry, its force is
+ * what it is given back, which fades. */
+static void test_dry_particles_owe_less_and_less(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\nprecision = double\n"
+             "[fluid water]\nshape = box 0, 0, 0.1, 0.2\nsound_speed = 20\nvelocity = -1, 0\n"
+             "[solid wall]\nshape = box 0.1, 0, 0.13, 0.2\nclamp = box 0.1, 0, 0.13, 0.03\n"
+             "density = 100\nyoung = 1e6\npoisson = 0.3\nvelocity = -0.5, 0\n"
+             "[domain]\nlower = -1, -0.2\nupper = 0.5, 0.5\n",
+             NULL);
+    solid = &rig.sim.kind[KIND_SOLID];
+    rig_run(&rig, 0.02);
+    double owed = 0;
+    for (int64_t i = 0; i < solid->n; i++) owed = fmax(owed, fabs(solid->interface_impulse_x[i]));
+    rig_run(&rig, 0.2);
+    TEST_ASSERT_TRUE(owed > 0);
+    const double kept = owed * pow(0.98, 300);
+    for (int64_t i = 0; i < solid->n; i++) {
+        TEST_ASSERT_TRUE(solid->wet_x[i] == 0);
+        assert_at_most(kept, fabs(solid->interface_impulse_x[i]), "owed");
+        assert_at_most(0.02 * kept / rig.sim.state.dt, fabs(solid->fx[i]),
+                       "force of what is given back");
+    }
+}
+
+/* What is clamped to a motion answers to its clamp: it owes the fluid nothing, its neighbours do. */
+static void test_moving_clamps_owe_nothing(void)
+{
+    rig_open(
+        &rig,
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.24, 0.1\nsound_speed = 20\n"
+        "[solid floor]\nshape = box 0, -0.04, 0.24, 0\ndensity = 2000\nyoung = 1e7\npoisson = 0.3\n"
+        "clamp = box 0, -0.04, 0.1, 0\nclamp_motion = shake\n"
+        "[motion shake]\nkind = polynomial\npoly_y = 0, 5\n"
+        "[domain]\nlower = -0.2, -0.2\nupper = 0.5, 0.5\n",
+        NULL);
+    TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
+    solid = &rig.sim.kind[KIND_SOLID];
+    rig_steps(&rig, 20, 1);
+    double most = 0, wet = 0;
+    for (int64_t i = 0; i < solid->n; i++) {
+        const double owed = hypot(solid->interface_impulse_x[i], solid->interface_impulse_y[i]);
+        most = fmax(most, owed);
+        if (solid->X[i] > 0.1) continue;
+        wet = fmax(wet, hypot(solid->wet_x[i], solid->wet_y[i]));
+        TEST_ASSERT_TRUE(owed == 0);
+    }
+    TEST_ASSERT_TRUE(most > 0 && wet > 0);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_wherever_there_are_substeps);
+    RUN_TEST(test_surface_of_a_straight_side);
+    RUN_TEST(test_answer_and_return_by_hand);
+    RUN_TEST(test_light_bodies_by_leapfrog);
+    RUN_TEST(test_who_follows_the_fluid);
+    RUN_TEST(test_bodies_are_met_each_its_own_way);
+    RUN_TEST(test_answer_to_what_was_not_expected);
+    RUN_TEST(test_substeps_by_hand);
+    RUN_TEST(test_momentum_closes);
+    RUN_TEST(test_dry_particles_owe_less_and_less);
+    RUN_TEST(test_moving_clamps_owe_nothing);
+    return UNITY_END();
+}

@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: MIT
+ * The guards: a state that is not sound is found, and the sentence names particle, place, quantity. */
+#include "time/guards.h"
+
+#include "time/integrators.h"
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const char scene[] =
+    "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+    "[fluid water]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nsurface = 0.1\n"
+    "[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.4, 0\n"
+    "[solid gate]\nshape = box 0.1, 0, 0.13, 0.15\nclamp = box 0.1, 0.12, 0.13, 0.15\n"
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+
+static struct rig rig;
+static char warning[512];
+static int warnings;
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    warnings++;
+    snprintf(warning, sizeof warning, "%s", text);
+}
+
+void setUp(void)
+{
+    warnings = 0;
+    rig_open(&rig, scene, NULL);
+    rig_steps(&rig, 3, 1);
+    rig.diag = (struct diag){.warn = note};
+}
+
+void tearDown(void) { rig_close(&rig); }
+
+/* The check after a step that has left the state as it stands. */
+static enum err check(void)
+{
+    update_extremes(&rig.sim);
+    return guards_check(&rig.sim, &rig.diag);
+}
+
+/* The sentence holds the particle's kind and number, its place, the quantity and the time. */
+static void expect(enum kind kind, int64_t at, const char *quantity)
+{
+    const struct particles *const p = &rig.sim.kind[kind];
+    char text[128];
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, rig.diag.code);
+    snprintf(text, sizeof text, "%s particle %lld at (%.6g, %.6g) m", kind_names[kind],
+             (long long)p->id[at], p->x[at], p->y[at]);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, text), rig.diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, quantity), rig.diag.text);
+    snprintf(text, sizeof text, "t = %.6g s, step %lld", rig.sim.state.time,
+             (long long)rig.sim.state.steps);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, text), rig.diag.text);
+}
+
+static void test_a_sound_state_passes(void)
+{
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+}
+
+static void test_nan_velocity_of_the_fluid(void)
+{
+    rig.sim.kind[KIND_FLUID].vy[37] = (double)NAN;
+    expect(KIND_FLUID, 37, "speed");
+}
+
+static void test_infinite_velocity_of_the_fluid(void)
+{
+    rig.sim.kind[KIND_FLUID].vx[99] = -(double)INFINITY;
+    expect(KIND_FLUID, 99, "speed (m/s) = inf");
+}
+
+static void test_speed_of_sound_of_the_fluid(void)
+{
+    rig.sim.kind[KIND_FLUID].vx[12] = 19.9;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    rig.sim.kind[KIND_FLUID].vx[12] = 20.1;
+    expect(KIND_FLUID, 12, "speed (m/s) = 20.1");
+}
+
+static void test_density_of_the_fluid(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    p->dens[5] = 0.29;
+    p->dens[6] = -0.29;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    assert_near(0, 0.29, rig.sim.state.dens_high, "highest density so far");
+    assert_near(0, -0.29, rig.sim.state.dens_low, "lowest density so far");
+    p->dens[50] = 0.31;
+    expect(KIND_FLUID, 50, "rho/rho0 - 1 = 0.31");
+}
+
+static void test_tension_and_nan_of_the_density(void)
+{
+    rig.sim.kind[KIND_FLUID].dens[50] = -0.31;
+    expect(KIND_FLUID, 50, "rho/rho0 - 1 = -0.31");
+    rig.diag = (struct diag){0};
+    rig.sim.guard.warned_crossing = true; /* then that is the likely cause */
+    expect(KIND_FLUID, 50, "fluid had entered a wall or solid before");
+    rig.diag = (struct diag){0};
+    rig.sim.kind[KIND_FLUID].dens[50] = (double)NAN;
+    expect(KIND_FLUID, 50, "rho/rho0 - 1");
+}
+
+static void test_velocity_of_the_solid(void)
+{
+    rig.sim.kind[KIND_SOLID].vx[20] = (double)NAN;
+    expect(KIND_SOLID, 20, "speed");
+    rig.sim.kind[KIND_SOLID].vx[20] = 11 * rig.sim.solid.body[0].sound_speed;
+    rig.diag = (struct diag){0};
+    expect(KIND_SOLID, 20, "speed");
+}
+
+/* A particle pushed through its neighbours turns the material inside out; found within 64 steps, where
+ * the gradient is looked at, and in a lone solid after every batch. */
+static void test_inverted_solid(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    int64_t at = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (hypot(p->X[i] - 0.115, p->Y[i] - 0.055) < 1e-6) at = i;
+    p->Uxx[at] = -1.5;
+    rig.sim.state.steps = 64;
+    expect(KIND_SOLID, at, "det F");
+    p->Uxx[at] = (double)NAN;
+    rig.diag = (struct diag){0};
+    expect(KIND_SOLID, at, "det F");
+}
+
+static void test_lone_solid_turned_inside_out(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
+             "density = 1000\nyoung = 1e6\npoisson = 0.3\nlaw = svk\n",
+             NULL);
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) p->ux[i] = -1.9 * p->X[i];
+    const enum err e = simulation_step(&rig.sim, 1e-9, &rig.diag);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, e);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "solid particle"), rig.diag.text);
+}
+
+/* A step that shrinks below 1e-4 of the fluid's limit has collapsed; one cut short by an output time
+ * has not. */
+static void test_collapsed_step(void)
+{
+    rig.sim.state.dt = 1e-9;
+    rig.sim.dt_bound[BOUND_output] = 1e-9;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    rig.sim.dt_bound[BOUND_output] = INFINITY;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "time step has collapsed"), rig.diag.text);
+}
+
+/* Beyond 0.3 c0 one warning, not one a step. */
+static void test_one_warning_for_fast_fluid(void)
+{
+    rig.sim.kind[KIND_FLUID].vx[12] = 6.5;
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "6.5"), warning);
+}
+
+/* Fluid where the tank's particles are: one particle is a warning, once, more than a few are the end. In
+ * the solid as well, where it has moved. */
+static void test_fluid_inside_of_bodies(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_FLUID], *const solid = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < solid->n; i++) solid->x[i] += 0.02;
+    rig.sim.state.steps = 64;
+    rig_sort(&rig);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    p->x[3] = solid->x[30] + 0.003;
+    p->y[3] = solid->y[30];
+    const int64_t id = p->id[3];
+    rig_sort(&rig);
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_penetration(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    char text[64];
+    snprintf(text, sizeof text, "fluid particle %lld at", (long long)id);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
+    for (int k = 0; k < 5; k++) {
+        p->x[10 + k] = 0.005 + 0.01 * k;
+        p->y[10 + k] = -0.013;
+    }
+    rig_sort(&rig);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_penetration(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "6 fluid particles have entered"),
+                                 rig.diag.text);
+}
+
+/* A twentieth of what moves is a warning, once, nine tenths of it the end. */
+static void test_energy_from_nowhere(void)
+{
+    struct ledger row = {.kinetic = 3, .elastic = 1, .dissipated = -0.1};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    row.dissipated = -0.3;
+    for (int k = 0; k < 3; k++)
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    row.dissipated = -3.7;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "3.7 J/m of energy have come from nowhere"),
+                                 rig.diag.text);
+}
+
+static void advises(const char *text, const char *what, const char *set, const char *another)
+{
+    const struct ledger row = {.kinetic = 3, .dissipated = -3};
+    rig_open(&rig, text, set, another, NULL);
+    rig.diag = (struct diag){.warn = note};
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
+}
+
+/* A setting that is named does something in the run. */
+static void test_what_may_help_is_said(void)
+{
+    static const char water[] =
+        "dp = 1 cm\nend_time = 1\n[fluid water]\nshape = box 0, 0, 0.1, 0.1\n"
+        "sound_speed = 20\n";
+    static const char bar[] = "dp = 1 cm\nend_time = 1\n[solid bar]\nshape = box 0, 0, 0.3, 0.05\n"
+                              "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+    static const char fixed[] = "numerics.fixed_step=1e-4", small[] = "numerics.fixed_step=1e-5";
+    advises(water, "; a smaller cfl may help", NULL, NULL);
+    advises(water, "; a smaller fixed_step may help", fixed, NULL);
+    advises(bar, "; a smaller solid_safety may help", NULL, NULL);
+    advises(bar, "; a smaller fixed_step may help", small, NULL);
+    advises(scene, "; a smaller cfl or numerics.multirate = off may help", "gate.young=1e8", NULL);
+    advises(scene, "; a smaller cfl or numerics.interface = impedance may help", "gate.young=1e8",
+            "numerics.interface=held");
+    advises(scene, "; a smaller cfl or solid_safety may help", "numerics.multirate=off", NULL);
+    advises(scene, "; a smaller fixed_step may help", "gate.young=1e8", fixed);
+    advises(scene, "; a smaller fixed_step or numerics.interface = impedance may help", fixed,
+            "numerics.interface=held");
+}
+
+/* Warnings that come before the limits, once each. */
+static void test_warnings_before_the_end(void)
+{
+    rig.sim.kind[KIND_FLUID].dens[50] = 0.15;
+    rig.sim.kind[KIND_SOLID].Uxx[7] = -0.9;
+    rig.sim.state.steps = 64;
+    rig.sim.state.dt = 50 * rig.sim.guard.step_limit;
+    rig.sim.dt_bound[BOUND_output] = INFINITY;
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    TEST_ASSERT_EQUAL_INT(3, warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has shrunk"), warning);
+}
+
+static void test_substeps_without_end(void)
+{
+    rig.sim.substeps = 10001;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "10001 sub-steps"), rig.diag.text);
+}
+
+/* In a run: a velocity that is not a number is found by the step that meets it. */
+static void test_a_run_stops_at_once(void)
+{
+    rig.sim.kind[KIND_FLUID].vx[40] = (double)NAN;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, simulation_step(&rig.sim, 1, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "fluid particle"), rig.diag.text);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_sound_state_passes);
+    RUN_TEST(test_nan_velocity_of_the_fluid);
+    RUN_TEST(test_infinite_velocity_of_the_fluid);
+    RUN_TEST(test_speed_of_sound_of_the_fluid);
+    RUN_TEST(test_density_of_the_fluid);
+    RUN_TEST(test_tension_and_nan_of_the_density);
+    RUN_TEST(test_velocity_of_the_solid);
+    RUN_TEST(test_inverted_solid);
+    RUN_TEST(test_lone_solid_turned_inside_out);
+    RUN_TEST(test_collapsed_step);
+    RUN_TEST(test_one_warning_for_fast_fluid);
+    RUN_TEST(test_fluid_inside_of_bodies);
+    RUN_TEST(test_energy_from_nowhere);
+    RUN_TEST(test_what_may_help_is_said);
+    RUN_TEST(test_warnings_before_the_end);
+    RUN_TEST(test_substeps_without_end);
+    RUN_TEST(test_a_run_stops_at_once);
+    return UNITY_END();
+}
