@@ -2,6 +2,7 @@
  * The command line. */
 #include "sphfsi.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,7 +37,7 @@ static const char usage[] =
     "  --keys            print all sections and keys of a case file\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
-    "             130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
+    "             129, 130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
 
 /* What the program does: RUN unless an option says otherwise. */
 enum mode {
@@ -105,6 +106,10 @@ static void install_signals(void)
     sigaction(SIGINT, &once, NULL);
     sigaction(SIGTERM, &again, NULL);
     sigaction(SIGUSR1, &again, NULL);
+    /* nohup asks for SIGHUP to be ignored. */
+    struct sigaction inherited;
+    if (sigaction(SIGHUP, NULL, &inherited) == 0 && inherited.sa_handler != SIG_IGN)
+        sigaction(SIGHUP, &again, NULL);
     /* A file that may not grow further is a failed write, which is reported; so is a closed pipe. */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
@@ -334,6 +339,14 @@ static enum sphfsi_status carry_out(struct command *c)
     return SPHFSI_OK;
 }
 
+/* Whether all of a report has reached the standard output. */
+static int report_is_out(void)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return 1;
+    fprintf(stderr, "sphfsi: the report is not complete: the standard output cannot be written\n");
+    return 0;
+}
+
 static int execute(struct command *c)
 {
     c->terminal = isatty(STDERR_FILENO);
@@ -344,11 +357,24 @@ static int execute(struct command *c)
     const enum sphfsi_status status = carry_out(c);
     clear_line(c);
     if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
+    const int report = c->mode != RUN && c->mode != REFINE;
+    if (!status && report && !report_is_out()) return 2;
     return sphfsi_exit_status(status, requests.stop);
+}
+
+/* A result file must not get the number of a standard stream that the caller has closed: messages would
+ * be written into it. The placeholder is opened for reading, so that writing to the stream still fails. */
+static void fill_standard_streams(void)
+{
+    int fd;
+    do fd = open("/dev/null", O_RDONLY);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd >= 0) close(fd);
 }
 
 int main(int argc, char **argv)
 {
+    fill_standard_streams();
     struct command c = {0};
     const char **sets = calloc((size_t)argc + 1, sizeof *sets);
     if (!sets) return complain("%s%s", "no memory", "");

@@ -32,6 +32,28 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 "$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
 "$sphfsi" --keys | grep -qF '| `end_time` | number | s | **needed** |' || fail "--keys"
 "$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "effects that are on" out || fail "--explain"
+# A report that cannot be written is a failure.
+if [ -c /dev/full ]; then
+    for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" "--explain cantilever.cfg" \
+        "--effective cantilever.cfg"; do
+        # shellcheck disable=SC2086
+        "$sphfsi" $report >/dev/full 2>err
+        [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] || fail "$report to a full device: $(cat err)"
+    done
+fi
+
+# Closed standard streams: no result file takes their numbers, so no message lands in one.
+"$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out plain >/dev/null 2>&1 || fail "a run"
+"$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out closed 0<&- >&- 2>&- || fail "closed streams"
+cmp plain/ledger.csv closed/ledger.csv && cmp plain/probes.csv closed/probes.csv || fail "messages in results"
+
+# A terminal that goes away (SIGHUP) leaves a checkpoint; nohup keeps the run going.
+"$sphfsi" cantilever.cfg --quiet --threads 1 --out hangup & pid=$!
+while [ ! -s hangup/ledger.csv ]; do sleep 0.05; done
+kill -HUP $pid
+wait $pid
+[ $? = 129 ] && ls hangup/*.ckpt >/dev/null || fail "SIGHUP leaves no checkpoint"
+
 "$sphfsi" --version >/dev/null && "$sphfsi" --help >/dev/null || fail "--version, --help"
 "$sphfsi" >out 2>err
 [ $? = 1 ] && grep -q "no case is given" err || fail "no case"
