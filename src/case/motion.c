@@ -28,9 +28,15 @@ struct table_file {
 static int read_row(struct table_file *t, double row[3])
 {
     char text[512];
-    while (fgets(text, sizeof text, t->file)) {
+    /* What fgets does not write stays 1, so the last zero is the one that it has put. */
+    while (memset(text, 1, sizeof text), fgets(text, sizeof text, t->file)) {
         t->line++;
         const size_t length = strlen(text);
+        if (memchr(text + length + 1, 0, sizeof text - length - 1)) {
+            diag_fail(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
+                      t->line);
+            return -1;
+        }
         const char *at = text + strspn(text, " \t\r\n");
         const bool head =
             t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));

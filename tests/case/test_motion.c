@@ -315,6 +315,16 @@ static void bad_table(const char *table, const char *message)
     TEST_ASSERT_EQUAL_STRING(message, diag.text);
 }
 
+static void test_a_table_with_a_zero_byte_is_refused(void)
+{
+    static const char bytes[] = "0, 0, 0\n0.1, 1, 0\0, 5\n0.2, 2, 0\n";
+    FILE *file = fopen("test_motion.tmp", "wb");
+    fwrite(bytes, 1, sizeof bytes - 1, file);
+    fclose(file);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("kind = table\nfile = test_motion.tmp\n"));
+    TEST_ASSERT_EQUAL_STRING("test_motion.tmp:2: a zero byte; a table is plain text", diag.text);
+}
+
 static void test_bad_tables(void)
 {
     bad_table("0, 0, 0\n", "test_motion.tmp: a motion needs two rows or more; there is 1");
@@ -354,6 +364,7 @@ int main(void)
     RUN_TEST(test_bad_expressions);
     RUN_TEST(test_jumps_and_poles);
     RUN_TEST(test_bad_tables);
+    RUN_TEST(test_a_table_with_a_zero_byte_is_refused);
     RUN_TEST(test_no_motion_is_rest);
     return UNITY_END();
 }
