@@ -30,7 +30,7 @@ static bool probes_material(const struct scene *s)
     return any;
 }
 
-void manual_cite(const struct scene *s, unsigned fx, const struct sphfsi_options *o)
+void manual_cite(const struct scene *s, effect_set fx, const struct sphfsi_options *o)
 {
     bool used[CITATION_COUNT] = {false};
 #define CITE(condition, key) used[CITATION_##key] |= (condition) != 0;

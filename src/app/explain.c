@@ -24,7 +24,7 @@ static void say_effects(const struct simulation *s, const struct sphfsi_options 
 {
     session_say(o, "effects that are on, and what called for them");
     for (int k = 0; k < EFFECT_COUNT; k++) {
-        if (!(s->effects & (1u << k))) continue;
+        if (!(s->effects & EFFECT_BIT(k))) continue;
         struct effect_caller by;
         char text[EFFECT_CALLER_TEXT];
         snprintf(text, sizeof text, "%s", effect_table[k].key);
@@ -34,7 +34,7 @@ static void say_effects(const struct simulation *s, const struct sphfsi_options 
     }
     session_say(o, "effects that are off, and what would call for them");
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (!(s->effects & (1u << k)))
+        if (!(s->effects & EFFECT_BIT(k)))
             session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
                         effect_table[k].meaning);
 }

@@ -56,9 +56,13 @@ static uint64_t cache_key(const struct simulation *s)
         h = mix(h, &program.st_mtime, sizeof program.st_mtime);
         h = mix(h, &program.st_size, sizeof program.st_size);
     }
-    const int words[] = {(int)s->effects,    c->top.integrator,
-                         c->top.precision,   s->solid.sweeps ? s->solid.sweeps->lanes : 0,
-                         c->numerics.kernel, c->numerics.suction};
+    const int words[] = {(int)s->effects,
+                         (int)(s->effects >> 32),
+                         c->top.integrator,
+                         c->top.precision,
+                         s->solid.sweeps ? s->solid.sweeps->lanes : 0,
+                         c->numerics.kernel,
+                         c->numerics.suction};
     h = mix(h, words, sizeof words);
     const double numbers[] = {c->numerics.h_over_dp, c->numerics.skin};
     h = mix(h, numbers, sizeof numbers);

@@ -18,6 +18,6 @@ const char *manual_template(const char *name);
 const char *manual_template_name(int k);
 
 /* The references of what a scene uses, line by line through the message callback. */
-void manual_cite(const struct scene *s, unsigned effects, const struct sphfsi_options *o);
+void manual_cite(const struct scene *s, effect_set effects, const struct sphfsi_options *o);
 
 #endif

@@ -71,9 +71,9 @@ static const unsigned effect_bits[EFFECT_COUNT] = {
 #undef EFFECT
 };
 
-unsigned effects_of_scene(const struct scene *s)
+effect_set effects_of_scene(const struct scene *s)
 {
-    unsigned fx = 0;
+    effect_set fx = 0;
     struct effect_caller by;
     for (int k = 0; k < EFFECT_COUNT; k++)
         if (effect_called(s, (enum effect)k, &by)) fx |= effect_bits[k];
@@ -96,11 +96,12 @@ void effect_caller_text(const struct scene *s, const struct effect_caller *by,
     snprintf(text, EFFECT_CALLER_TEXT, "%s: %s%s", where, name, by->key);
 }
 
-unsigned effects_groups(unsigned effects, enum kind kind, int integrator)
+unsigned effects_groups(effect_set effects, enum kind kind, int integrator)
 {
     unsigned groups = 0;
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if ((effects & (1u << k)) && effect_table[k].kind == kind) groups |= effect_table[k].groups;
+        if ((effects & EFFECT_BIT(k)) && effect_table[k].kind == kind)
+            groups |= effect_table[k].groups;
     if (!groups) return 0;
     if (kind == KIND_FLUID && integrator == INTEGRATOR_SYMPLECTIC)
         groups |= G_STAGE | G_STAGE_FLUID;
@@ -112,9 +113,7 @@ unsigned effects_groups(unsigned effects, enum kind kind, int integrator)
 
 const struct phase_info phase_table[PHASE_COUNT] = {
 #define PHASE(name, when, meaning) {#name, meaning, when},
-#define FX_ALWAYS (~0u)
 #include "case/phases.def"
-#undef FX_ALWAYS
 #undef PHASE
 };
 

@@ -13,11 +13,17 @@ enum effect {
     EFFECT_COUNT
 };
 
+/* A set of effects: bit EFFECT_x stands for x. */
+typedef uint64_t effect_set;
+_Static_assert(EFFECT_COUNT <= 64, "a set of effects has 64 bits");
+#define EFFECT_BIT(effect) ((effect_set)1 << (effect))
+
 /* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP leaves effects out of the program: their bits are no bits, and
  * the compiler takes out what asks for them. For the proof that an effect costs nothing where it is off
  * (tests/agree/test_absence.py). */
 enum {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) OUT_##name = 1 << EFFECT_##name,
+#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+    OUT_##name = (uint64_t)1 << EFFECT_##name,
 #include "case/effects.def"
 #undef EFFECT
 };
@@ -27,7 +33,7 @@ enum {
 
 enum {
 #define EFFECT(name, when, key, equation, groups, kind, meaning) \
-    FX_##name = 1 << EFFECT_##name & ~(SPHFSI_WITHOUT),
+    FX_##name = (uint64_t)1 << EFFECT_##name & ~(uint64_t)(SPHFSI_WITHOUT),
 #include "case/effects.def"
 #undef EFFECT
 };
@@ -59,7 +65,9 @@ void effect_caller_text(const struct scene *s, const struct effect_caller *by,
 enum err effects_check(const struct scene *s, struct diag *d) SPHFSI_CHECKED;
 
 /* The set that a scene calls for. MULTIRATE is decided by the simulation, which knows the bounds. */
-unsigned effects_of_scene(const struct scene *s);
+effect_set effects_of_scene(const struct scene *s);
+
+#define FX_ALWAYS (~(effect_set)0)
 
 /* The passes of a step, case/phases.def. */
 enum phase {
@@ -70,15 +78,15 @@ enum phase {
 };
 struct phase_info {
     const char *name, *meaning;
-    unsigned when; /* runs where any of these effects is on */
+    effect_set when; /* runs where any of these effects is on */
 };
 extern const struct phase_info phase_table[PHASE_COUNT];
-SPHFSI_INLINE bool phase_runs(enum phase phase, unsigned effects)
+SPHFSI_INLINE bool phase_runs(enum phase phase, effect_set effects)
 {
-    return phase_table[phase].when == ~0u || phase_table[phase].when & effects;
+    return phase_table[phase].when == FX_ALWAYS || phase_table[phase].when & effects;
 }
 
 /* Field groups that the set needs for particles of one kind with the scene's integrator. */
-unsigned effects_groups(unsigned effects, enum kind kind, int integrator);
+unsigned effects_groups(effect_set effects, enum kind kind, int integrator);
 
 #endif

@@ -96,7 +96,7 @@ static void drag_force(const struct fluid *f, const struct neighbours *neighbour
  * depth, m, on which a pressure of 1 Pa on both sides of the pairs would press. */
 SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
                                const struct receiver *s, const real *own, const double *volume,
-                               const struct vector_constants *k, unsigned effects,
+                               const struct vector_constants *k, effect_set effects,
                                double *const force[2], double *const wet[2])
 {
     const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
@@ -181,7 +181,7 @@ SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *
 
 /* What fx_one_sided and fx_repulsion need of the dummies. */
 SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct particles *p,
-                                       const struct dummies *d, unsigned fx)
+                                       const struct dummies *d, effect_set fx)
 {
     double ax[CLUSTER], ay[CLUSTER];
     take(d, p->ax, ax);
@@ -204,7 +204,7 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct parti
 SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
                                   const struct dummies *d, const struct neighbours *neighbours,
                                   const struct cell_sides *sides, const struct vector_constants *k,
-                                  unsigned fx)
+                                  effect_set fx)
 {
     double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
            wet_y[CLUSTER] = {0};
@@ -302,7 +302,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
 SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
-                                   const struct cells *c, int32_t cell, unsigned fx)
+                                   const struct cells *c, int32_t cell, effect_set fx)
 {
     struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);

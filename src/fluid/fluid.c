@@ -35,7 +35,7 @@ static struct fluid_constants constants_of(const struct scene *s)
 }
 
 /* Fields that the set calls for in the lanes of a kind. */
-static int packed_count(enum kind kind, unsigned effects)
+static int packed_count(enum kind kind, effect_set effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
     if (kind != KIND_FLUID && effects & FX_REPULSION) return PACKED_REPULSION_FIELDS;
@@ -86,7 +86,7 @@ static enum err neighbour_scratch_create(struct fluid *f, struct arena *a, int64
     return ERR_OK;
 }
 
-enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
+enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, effect_set effects,
                       const struct particles kinds[KIND_COUNT], const struct cells *c,
                       struct diag *d)
 {

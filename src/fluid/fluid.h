@@ -72,7 +72,8 @@ struct fluid;
 /* The sweeps of one precision and set of effects. */
 struct fluid_sweeps {
     const char *name;
-    unsigned effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
+    effect_set
+        effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
     size_t packed_item_size; /* of an item */
     /* Pressure by the equation of state, and lanes of the fluid. */
     void (*packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
@@ -87,7 +88,7 @@ struct fluid_sweeps {
     /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
     void (*rates)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 };
-#define ANY_EFFECTS (~0u)
+#define ANY_EFFECTS (~(effect_set)0)
 
 /* Pair effects that kernels are stamped for. */
 #define PAIR_EFFECTS                                                                      \
@@ -115,7 +116,7 @@ SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m)
 
 /* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and of what shifting needs; and how many are taken. */
 enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_MIXING, SUM_GRAD_C_X, SUM_GRAD_C_Y, SUM_DIV_R, SUMS };
-SPHFSI_INLINE int pair_sums(unsigned effects)
+SPHFSI_INLINE int pair_sums(effect_set effects)
 {
     return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
 }
@@ -131,7 +132,7 @@ struct neighbour_scratch {
 
 struct fluid {
     struct fluid_constants k;
-    unsigned effects;
+    effect_set effects;
     bool idle_is_work;          /* numerics.idle = work: dry walls visited, resting ones placed */
     double *volume[KIND_COUNT]; /* [sections] of a dummy at rest over that of a fluid particle */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
@@ -149,7 +150,7 @@ struct fluid {
 };
 
 /* Chooses the kernel and makes room for lanes. */
-enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, unsigned effects,
+enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, effect_set effects,
                       const struct particles kinds[KIND_COUNT], const struct cells *c,
                       struct diag *d) SPHFSI_CHECKED;
 

@@ -97,7 +97,7 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vec
  * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
  * of both particles' gradients. */
 SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
-                                 const struct vector_constants *k, unsigned fx)
+                                 const struct vector_constants *k, effect_set fx)
 {
     vreal step = a->dens - q->dens;
     if (fx & FX_FOURTAKAS) step = step - vfma(k->gy, q->y, k->gx * q->x);

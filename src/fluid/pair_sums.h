@@ -23,7 +23,7 @@ SPHFSI_INLINE void add_concentration(struct cluster_sums *s, int row, int part,
 
 /* Adds what pairs bring their receivers. */
 SPHFSI_INLINE void add_exchange(struct cluster_sums *s, int row, int part, const struct exchange *e,
-                                unsigned fx)
+                                effect_set fx)
 {
     s->ax[row][part] = s->ax[row][part] + e->ax;
     s->ay[row][part] = s->ay[row][part] + e->ay;
@@ -43,7 +43,7 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
 
 /* What pairs of the receivers with candidates exchange; fx is a constant where the kernel is stamped. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, unsigned fx,
+                                            const struct vector_constants *k, effect_set fx,
                                             vreal *approach)
 {
     struct exchange e;
@@ -80,7 +80,7 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
 }
 
 /* Items that are left for a cluster; and where one of the sums lies, `at` the first. */
-SPHFSI_INLINE size_t deferred_stride(unsigned fx)
+SPHFSI_INLINE size_t deferred_stride(effect_set fx)
 {
     return (size_t)pair_sums(fx) * CLUSTER * CLUSTER;
 }
@@ -95,7 +95,7 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 SPHFSI_INLINE void defer_add(real *at, vreal more) { vstore(at, vload(at) + more); }
 
 /* Leaves what pairs bring their candidates. */
-SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, unsigned fx)
+SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, effect_set fx)
 {
     defer_add(DEFERRED(at, SUM_X), e->ax);
     defer_add(DEFERRED(at, SUM_Y), e->ay);
@@ -109,7 +109,7 @@ SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, unsigned fx)
 
 /* Sums over the fluid that is seen. What is not ahead leaves it at the first place, where nobody looks. */
 SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                             const struct vector_constants *k, unsigned fx,
+                             const struct vector_constants *k, effect_set fx,
                              const struct chunk *chunk, struct cluster_sums *sums)
 {
     EACH_SEEN(neighbours, m, part) {
@@ -128,7 +128,7 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
 
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
 SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, unsigned fx,
+                                            const struct vector_constants *k, effect_set fx,
                                             vreal *approach)
 {
     struct exchange e;
@@ -156,7 +156,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
 
 /* Sums over walls or structures that are seen, which have a sweep of their own for what it brings them. */
 SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                               const struct vector_constants *k, unsigned fx,
+                               const struct vector_constants *k, effect_set fx,
                                struct cluster_sums *sums)
 {
     EACH_SEEN(neighbours, m, part) {
@@ -164,7 +164,7 @@ SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct
         const real *const b = candidates(neighbours, code, part);
         for (int row = 0; row < ROWS; row++) {
             const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
-            add_exchange(sums, row, part, &e, fx & ~(unsigned)FX_DIFFUSION);
+            add_exchange(sums, row, part, &e, fx & ~(effect_set)FX_DIFFUSION);
         }
     }
 }

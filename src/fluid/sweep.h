@@ -75,8 +75,8 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 
 /* Writes the rates of `count` particles from i on, which `left` has sums of: the factors that they lack. */
 SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
-                               int count, const struct cluster_sums *s, real *deferred, unsigned fx,
-                               double acceleration2[CLUSTER])
+                               int count, const struct cluster_sums *s, real *deferred,
+                               effect_set fx, double acceleration2[CLUSTER])
 {
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
     const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
@@ -106,7 +106,7 @@ SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles
 
 /* Receivers of the fluid from their lanes on. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
-                                       const struct vector_constants *k, unsigned fx)
+                                       const struct vector_constants *k, effect_set fx)
 {
     struct receiver a = receiver_at(sides, own);
     a.u = vspread(own + PACKED_U * CLUSTER);
@@ -127,7 +127,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
                                     int count, int32_t cluster,
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
-                                    const struct vector_constants *k, unsigned fx,
+                                    const struct vector_constants *k, effect_set fx,
                                     const struct chunk *chunk, struct chunk_maxima *top)
 {
     const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster);
@@ -147,7 +147,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
-                                 int32_t cell, const struct vector_constants *k, unsigned fx,
+                                 int32_t cell, const struct vector_constants *k, effect_set fx,
                                  const struct chunk *chunk, struct chunk_maxima *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
@@ -176,7 +176,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
 /* A share of the active cells, first to end - 1. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, const struct cells *c,
                                   int32_t first, int32_t end, const struct vector_constants *k,
-                                  unsigned fx, struct fluid_extremes *top)
+                                  effect_set fx, struct fluid_extremes *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),

@@ -100,13 +100,13 @@ static void write_effects(struct json *j, const struct simulation *s)
 {
     json_open(j, "effects", '[');
     for (int k = 0; k < EFFECT_COUNT; k++)
-        if (s->effects & (1u << k)) json_text(j, NULL, effect_table[k].name);
+        if (s->effects & EFFECT_BIT(k)) json_text(j, NULL, effect_table[k].name);
     json_close(j, ']');
     json_open(j, "effects_called_by", '{');
     for (int k = 0; k < EFFECT_COUNT; k++) {
         struct effect_caller by;
         char text[EFFECT_CALLER_TEXT] = "decided at the start";
-        if (!(s->effects & (1u << k))) continue;
+        if (!(s->effects & EFFECT_BIT(k))) continue;
         if (effect_called(s->scene, (enum effect)k, &by)) effect_caller_text(s->scene, &by, text);
         json_text(j, effect_table[k].name, text);
     }

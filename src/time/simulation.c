@@ -119,7 +119,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
-    if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(unsigned)(FX_IMPEDANCE | FX_HELD_FORCE);
+    if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_HELD_FORCE);
     s->fluid.effects = s->effects;
     set_interface(s);
     return ERR_OK;

@@ -58,7 +58,7 @@ struct simulation {
     struct solid solid;             /* model of the solid; unused without one */
     struct contact contact;         /* of the solid; unused without it */
     struct loads loads;             /* of the solid; unused without loads and moving clamps */
-    unsigned effects;               /* bits of case/effects.h */
+    effect_set effects;             /* bits of case/effects.h */
     struct state state;
     double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
     double dt_solid;              /* stable step of the solid times its safety, s */

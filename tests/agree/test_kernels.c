@@ -17,7 +17,7 @@ static const char scene[] =
 /* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel. */
 static const struct {
     const char *name, *alpha, *delta, *set, *another;
-    unsigned effects;
+    effect_set effects;
 } sets[] = {
     {"bare", "0", "0", NULL, NULL, 0},
     {"viscous", "0.05", "0", NULL, NULL, FX_VISCOSITY},

@@ -17,7 +17,7 @@
 /* Each with the lines that call for it, and no other effect that this does not bring along. */
 static const struct {
     const char *text;
-    unsigned effects;
+    effect_set effects;
     enum effect effect;
     const char *caller;
 } scenes[] = {
@@ -85,15 +85,16 @@ void tearDown(void) { rig_close(&rig); }
 
 static void test_the_set_follows_from_the_case(void)
 {
-    unsigned tested = 1u << EFFECT_MULTIRATE; /* follows from the bounds: test_timestep.c */
+    effect_set tested = EFFECT_BIT(EFFECT_MULTIRATE); /* follows from the bounds: test_timestep.c */
     for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         rig_open(&rig, scenes[k].text, NULL);
         /* The default integrator is an effect of the fluid. */
         const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
         const unsigned integrator = by_default ? FX_LEAPFROG : 0;
-        tested |= 1u << scenes[k].effect;
+        tested |= EFFECT_BIT(scenes[k].effect);
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(scenes[k].effects | integrator,
-                                        rig.sim.effects & ~(unsigned)FX_MULTIRATE, scenes[k].text);
+                                        rig.sim.effects & ~(effect_set)FX_MULTIRATE,
+                                        scenes[k].text);
         struct effect_caller by;
         char text[EFFECT_CALLER_TEXT];
         TEST_ASSERT_TRUE(effect_called(&rig.scene, scenes[k].effect, &by));
@@ -101,7 +102,7 @@ static void test_the_set_follows_from_the_case(void)
         TEST_ASSERT_EQUAL_STRING(scenes[k].caller, text);
     }
     for (int k = 0; k < EFFECT_COUNT; k++)
-        TEST_ASSERT_TRUE_MESSAGE(tested & (1u << k), effect_table[k].name);
+        TEST_ASSERT_TRUE_MESSAGE(tested & EFFECT_BIT(k), effect_table[k].name);
 }
 
 static void test_a_set_is_named_as_the_caller(void)

@@ -71,7 +71,7 @@ static void test_substeps_cover_the_step(void)
     TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim, 1e-5));
     TEST_ASSERT_EQUAL_INT(2, timestep_substeps(&rig.sim, 1.0001e-5));
     TEST_ASSERT_EQUAL_INT(14, timestep_substeps(&rig.sim, 13.5e-5));
-    rig.sim.effects &= ~(unsigned)FX_MULTIRATE;
+    rig.sim.effects &= ~(effect_set)FX_MULTIRATE;
     TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim, 13.5e-5));
 }
 
