@@ -5,6 +5,7 @@
 #include "case/params.h"
 #include "time/timestep.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,7 +120,9 @@ static bool cache_find(uint64_t key, struct unit_costs *c)
     char path[RUN_DIR_PATH], *text;
     size_t size;
     bool found = false;
-    if (!cache_path(path, false) || file_read(path, &text, &size, NULL)) return false;
+    struct stat info;
+    if (!cache_path(path, false) || lstat(path, &info) != 0 || !S_ISREG(info.st_mode)) return false;
+    if (file_read(path, &text, &size, NULL)) return false;
     for (const char *line = text; line && *line; line = strchr(line, '\n'), line += line != NULL)
         found |= read_costs(line, key, c);
     free(text);
@@ -138,8 +141,15 @@ static void cache_keep(uint64_t key, const struct unit_costs *c)
     for (int k = 0; k < PHASE_COUNT; k++)
         n += snprintf(line + n, sizeof line - (size_t)n, " %.4g", c->phase_fraction[k]);
     line[n++] = '\n';
-    FILE *file = fopen(path, "a");
-    if (!file) return;
+    /* Neither through a link, which may lead anywhere, nor into a pipe, which would wait for a reader. */
+    const int fd =
+        open(path, O_WRONLY | O_APPEND | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
+    if (fd < 0) return;
+    FILE *file = fstat(fd, &info) == 0 && S_ISREG(info.st_mode) ? fdopen(fd, "a") : NULL;
+    if (!file) {
+        close(fd);
+        return;
+    }
     setvbuf(file, NULL, _IOFBF, sizeof line);
     fwrite(line, 1, (size_t)n, file);
     fclose(file);

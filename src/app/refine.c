@@ -5,6 +5,7 @@
 #include "output/json.h"
 #include "app/run.h"
 #include "app/session.h"
+#include "output/checkpoint.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -114,13 +115,22 @@ static bool has(const char *folder, const char *name)
     return path_join(path, folder, name, NULL) == ERR_OK && stat(path, &info) == 0;
 }
 
-/* What a run leaves that was killed before its first checkpoint is begun anew. */
+static bool has_checkpoint(const char *folder)
+{
+    struct image m = {0};
+    struct diag quiet = {.code = ERR_OK};
+    char path[RUN_DIR_PATH];
+    const bool found = checkpoint_newest(&m, folder, path, &quiet) == ERR_OK;
+    checkpoint_free(&m);
+    return found;
+}
+
+/* A run that was killed before its first checkpoint starts anew: its few files go. */
 static void remove_partial_run(const char *folder)
 {
     static const char *const names[] = {"probes.csv", "ledger.csv", "fields.vtkhdf",
                                         "fields.vtkhdf.spare", "case.cfg"};
     char path[RUN_DIR_PATH];
-    if (has(folder, "summary.json")) return;
     for (size_t k = 0; k < COUNT_OF(names); k++)
         if (path_join(path, folder, names[k], NULL) == ERR_OK) unlink(path);
 }
@@ -161,7 +171,7 @@ static enum err run_one(struct refinement *x, int k)
     TRY(prepare(&one, x, k));
     session_say(x->options, "run %d of %d: dp = %.6g m in %s", k + 1, x->runs, spacing(x, k),
                 one.out);
-    one.options.restart = has(one.out, "summary.json");
+    one.options.restart = has(one.out, "summary.json") || has_checkpoint(one.out);
     if (!one.options.restart) remove_partial_run(one.out);
     const enum err e = is_done(x, &one) ? ERR_OK : run_case(&one.options, x->diag);
     free(one.sets);

@@ -20,6 +20,15 @@ run "${case[@]}" 2>"$dir/error" || fail "resumed: $(cat "$dir/error")"
 [ "$(cat "$dir/r/refine.json")" = "$whole" ] || fail "other values after a resumption"
 [ "$(cat "$dir/r/dp-0.01/summary.json")" = "$before" ] || fail "a finished run was touched"
 
+# Killed between the first checkpoint and the first summary: it goes on and deletes nothing.
+mkdir "$dir/kept" && cp "$middle/case.cfg" "$middle"/*.ckpt "$dir/kept"
+rm "$middle/summary.json" "$dir/r/refine.json"
+run "${case[@]}" 2>"$dir/error" || fail "resumed without a summary: $(cat "$dir/error")"
+[ "$(cat "$dir/r/refine.json")" = "$whole" ] || fail "other values after going on without a summary"
+for file in "$dir"/kept/*.ckpt; do
+    cmp "$file" "$middle/$(basename "$file")" || fail "a checkpoint was deleted or written anew"
+done
+
 # Other physics in the same folder is refused.
 run "${case[@]}" --set plate.young=1MPa 2>"$dir/error"
 [ $? = 1 ] || fail "another case in the folder was accepted"

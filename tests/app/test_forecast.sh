@@ -17,6 +17,13 @@ explain | grep -q 'from a second of the first steps' || fail "a broken line is b
 rm -r "$work/cache"; : >"$work/cache" # a file where the folder should be
 explain | grep -q 'on this machine when idle' || fail "without a cache there is no forecast"
 [ -n "$first" ] || exit 1
+# A pipe in its place must not be waited for, a link not be followed.
+rm "$work/cache"; mkdir -p "$work/cache/sphfsi"; mkfifo "$work/cache/sphfsi/costs"
+timeout 60 "$SPHFSI" --explain "${still[@]}" 2>/dev/null | grep -q 'on this machine when idle' || fail "a pipe as cache"
+rm "$work/cache/sphfsi/costs"; echo precious >"$work/target"; ln -s "$work/target" "$work/cache/sphfsi/costs"
+explain | grep -q 'on this machine when idle' || fail "a link as cache"
+[ "$(cat "$work/target")" = precious ] || fail "the cache was written through a link"
+rm -r "$work/cache"
 
 # Steps: 10 % for a flow, exact but for a step a row for a lone solid.
 steps_of() { sed -n 's/^ *about \([0-9.e+]*\) steps of [0-9].*/\1/p' | awk '{printf "%.0f", $1}'; }

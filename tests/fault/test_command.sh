@@ -34,8 +34,8 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 "$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "effects that are on" out || fail "--explain"
 # A report that cannot be written is a failure.
 if [ -c /dev/full ]; then
-    for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" "--explain cantilever.cfg" \
-        "--effective cantilever.cfg"; do
+    for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" \
+        "--explain cantilever.cfg" "--effective cantilever.cfg"; do
         # shellcheck disable=SC2086
         "$sphfsi" $report >/dev/full 2>err
         [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] || fail "$report to a full device: $(cat err)"
