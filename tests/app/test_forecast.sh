@@ -19,7 +19,8 @@ explain | grep -q 'on this machine when idle' || fail "without a cache there is 
 [ -n "$first" ] || exit 1
 # A pipe in its place must not be waited for, a link not be followed.
 rm "$work/cache"; mkdir -p "$work/cache/sphfsi"; mkfifo "$work/cache/sphfsi/costs"
-timeout 60 "$SPHFSI" --explain "${still[@]}" 2>/dev/null | grep -q 'on this machine when idle' || fail "a pipe as cache"
+timeout 60 "$SPHFSI" --explain "${still[@]}" 2>/dev/null | grep -q 'on this machine when idle' ||
+    fail "a pipe as cache"
 rm "$work/cache/sphfsi/costs"; echo precious >"$work/target"; ln -s "$work/target" "$work/cache/sphfsi/costs"
 explain | grep -q 'on this machine when idle' || fail "a link as cache"
 [ "$(cat "$work/target")" = precious ] || fail "the cache was written through a link"
