@@ -99,6 +99,26 @@ def check_symbols(library):
             report(library, 0, f"exports {column[7]}; hide it or name it sphfsi_...")
 
 
+# Commits before this one had other habits.
+FIRST_CHECKED = "08a1f7c"
+# `Add`, `Pass`, `Need`; not `Added`, `Adding`, `Adds`, `Tests: ...`.
+IMPERATIVE = re.compile(r"(?!(?!Bring|Embed)\w+(?:[^e]ed|ing|[^s]s)\b)[A-Z][a-z]+(?:-[a-z]+)? \S")
+
+
+def check_commits():
+    """Subjects of new commits: the imperative, at most 72 columns, no full stop."""
+    log = subprocess.run(["git", "-C", ROOT, "log", "--no-merges", "--format=%h %s",
+                          f"{FIRST_CHECKED}..HEAD"], capture_output=True, text=True)
+    if log.returncode:
+        print("commit subjects not checked: no git history here")
+        return
+    for line in log.stdout.splitlines():
+        commit, subject = line.split(" ", 1)
+        if len(subject) > 72 or subject.endswith(".") or not IMPERATIVE.match(subject):
+            report(ROOT / "CONTRIBUTING.md", 0, f"commit {commit}: `{subject}` is not an imperative of at "
+                   "most 72 columns without a full stop")
+
+
 def check_format(paths):
     tool = shutil.which(f"clang-format-{CLANG_FORMAT}") or shutil.which("clang-format")
     version = subprocess.run([tool, "--version"], capture_output=True, text=True).stdout if tool else ""
@@ -128,6 +148,7 @@ def main():
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
     check_flags()
+    check_commits()
     check_format([path for path in code if path.suffix in (".c", ".h")])
     if args.archive:
         check_symbols(args.archive.resolve())
