@@ -495,6 +495,18 @@ static void say_close(const struct run *r)
     }
 }
 
+static void warn_of_losses(const struct run *r)
+{
+    const struct simulation *const s = r->s;
+    const int64_t lost = s->state.lost, left = s->kind[KIND_FLUID].n;
+    if (lost > 0)
+        diag_warn(r->diag,
+                  "%lld of %lld fluid particles have left the domain: their mass and pressure are "
+                  "missing; a "
+                  "[wall] that holds them or a larger [domain] keeps them",
+                  (long long)lost, (long long)(lost + left));
+}
+
 static enum err carry_out(struct run *r)
 {
     const enum err failed = advance(r);
@@ -509,6 +521,7 @@ static enum err carry_out(struct run *r)
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
     say_close(r);
+    warn_of_losses(r);
     if (r->session.scene.n_probe > 0)
         session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
     return ERR_OK;

@@ -51,4 +51,7 @@ enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECK
 /* Domain in effect; probes inside of what they probe; initial values finite. */
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
+/* Warns of scenes that can be simulated and are hardly meant (geometry/doubts.c). */
+enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
+
 #endif

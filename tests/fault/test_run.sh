@@ -119,6 +119,19 @@ awk -F, -v rows=$((tenths * 100 + 2)) '
     END { exit bad || NR != rows }' "$dir/killed/probes.csv" ||
     fail "killed and continued: a gap or a doubled row in probes.csv"
 
+# --- fluid that runs out is said at the end ---
+cat >"$dir/leak.cfg" <<'END'
+dp = 10 mm
+end_time = 0.3
+gravity = 0, -9.81
+[fluid water]
+shape = box 0, 0, 0.1, 0.05
+sound_speed = 10
+[wall left]
+shape = box -0.03, 0, 0, 0.1
+END
+expect 0 '50 of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/leak"
+
 # --- a guard: the last sound state and the state at the stop are left ---
 expect 2 'last sound state is in' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"
 compgen -G "$dir/guard/*.ckpt" >/dev/null || fail "guard: no checkpoint"

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes that can be simulated and are hardly meant: a tank without a floor, a body clamped all over. Each
+ * gets a warning that says what will happen and what to change. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+#include <math.h>
+
+static void warn(const struct scene *s, int line, struct diag *d, const char *text)
+{
+    char place[LOCATION_TEXT];
+    scene_location(s, line, place);
+    diag_warn(d, "%s: %s", place, text);
+}
+
+/* For each strip of width dp along gravity, the coordinate along gravity of the last particle of a wall or
+ * body in it. */
+struct floors {
+    double along[2], across[2]; /* unit vectors: of gravity, and to its left */
+    double low;                 /* coordinate across of the first strip, m */
+    int64_t n;
+    double *last; /* [n] */
+};
+
+static double dot(const double a[2], double x, double y) { return a[0] * x + a[1] * y; }
+
+static int64_t strip_of(const struct floors *f, double dp, double x, double y)
+{
+    return (int64_t)floor((dot(f->across, x, y) - f->low) / dp);
+}
+
+static enum err find_floors(struct floors *f, const struct sampler *g, struct arena *a)
+{
+    const struct scene *const s = g->scene;
+    const double dp = s->top.dp, size = hypot(s->top.gravity[0], s->top.gravity[1]);
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    f->along[0] = s->top.gravity[0] / size;
+    f->along[1] = s->top.gravity[1] / size;
+    f->across[0] = -f->along[1];
+    f->across[1] = f->along[0];
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t k = 0; k < s->points[kind].n; k++) {
+            const double at = dot(f->across, s->points[kind].x[k], s->points[kind].y[k]);
+            low = min2(low, at);
+            high = max2(high, at);
+        }
+    f->low = low - 1.5 * dp; /* a strip more on either side */
+    f->n = (int64_t)((high - f->low) / dp) + 3;
+    f->last = arena_alloc(a, (size_t)f->n, sizeof *f->last, "strips", g->diag);
+    if (!f->last) return ERR_MEMORY;
+    for (int64_t k = 0; k < f->n; k++) f->last[k] = -HUGE_VAL;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        for (int64_t k = 0; k < s->points[kind].n; k++) {
+            const double x = s->points[kind].x[k], y = s->points[kind].y[k];
+            double *const last = &f->last[strip_of(f, dp, x, y)];
+            *last = max2(*last, dot(f->along, x, y));
+        }
+    return ERR_OK;
+}
+
+/* Fluid with no wall and no body below it, down to the edge of the domain, falls out of the scene. */
+static enum err warn_of_missing_floor(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_FLUID];
+    if (p->n == 0 || (s->top.gravity[0] == 0 && s->top.gravity[1] == 0)) return ERR_OK;
+    if (s->domain.periodic != PERIODIC_NONE) return ERR_OK; /* it may come in again */
+    struct floors f;
+    TRY(find_floors(&f, g, &g->temp));
+    int64_t falling = 0, first = -1;
+    for (int64_t k = 0; k < p->n; k++) {
+        const int64_t strip = strip_of(&f, s->top.dp, p->x[k], p->y[k]);
+        const double at = dot(f.along, p->x[k], p->y[k]);
+        bool held = false;
+        for (int64_t m = strip - 1; m <= strip + 1; m++) held |= f.last[m] > at;
+        falling += !held;
+        if (!held && first < 0) first = k;
+    }
+    if (falling == 0) return ERR_OK;
+    char place[LOCATION_TEXT];
+    scene_location(s, s->fluid[p->body[first]].common.line, place);
+    diag_warn(g->diag,
+              "%s: %lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall and no "
+              "body below "
+              "them: they fall out of the domain and are lost; a [wall] below holds them",
+              place, (long long)falling, (long long)p->n, p->x[first], p->y[first]);
+    return ERR_OK;
+}
+
+/* The hydrostatic start of `surface` supposes gravity along -y and water up to there. */
+static void warn_of_surface(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_FLUID];
+    for (int f = 0; f < s->n_fluid; f++) {
+        const struct scene_fluid *const fluid = &s->fluid[f];
+        if (isnan(fluid->surface)) continue;
+        if (s->top.gravity[1] > 0)
+            warn(s, fluid->common.line, g->diag,
+                 "`surface` with gravity upwards: the pressure falls with depth at the start and "
+                 "the water is "
+                 "torn apart; gravity = 0, -9.81 points down");
+        int64_t above = 0;
+        double top = -HUGE_VAL;
+        for (int64_t k = 0; k < p->n; k++) {
+            if (p->body[k] != f) continue;
+            above += p->y[k] > fluid->surface;
+            top = max2(top, p->y[k] + 0.5 * s->top.dp);
+        }
+        if (above == 0) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, fluid->common.line, place);
+        diag_warn(g->diag,
+                  "%s: [fluid %s] reaches up to y = %.4g m, above its `surface = %.4g m`: %lld "
+                  "particles begin "
+                  "with a pressure below zero; `surface` is the height of the free surface",
+                  place, fluid->common.name, top, fluid->surface, (long long)above);
+    }
+}
+
+/* Units that were taken for others: water of 1 g/cm^3 is one of 1000 kg/m^3. */
+static void warn_of_density(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    enum { LIGHTEST_LIQUID = 100 }; /* kg/m^3; liquid hydrogen has 71, all others have more */
+    for (int f = 0; f < s->n_fluid; f++)
+        if (s->fluid[f].density < LIGHTEST_LIQUID) {
+            char place[LOCATION_TEXT];
+            scene_location(s, s->fluid[f].common.line, place);
+            diag_warn(g->diag,
+                      "%s: [fluid %s] has a density of %.4g kg/m^3, less than any liquid: forces "
+                      "will be as "
+                      "small; water has 1000 kg/m^3",
+                      place, s->fluid[f].common.name, s->fluid[f].density);
+        }
+}
+
+static void warn_of_full_clamps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_SOLID];
+    for (int body = 0; body < s->n_solid; body++) {
+        int64_t all = 0, clamped = 0;
+        for (int64_t k = 0; k < p->n; k++) {
+            all += p->body[k] == body;
+            clamped += p->body[k] == body && p->clamped[k];
+        }
+        if (all == 0 || clamped < all) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, s->solid[body].common.line, place);
+        diag_warn(g->diag,
+                  "%s: `clamp` covers all %lld particles of [solid %s]: it cannot deform; a [wall] "
+                  "costs less, "
+                  "a smaller clamp leaves it free",
+                  place, (long long)all, s->solid[body].common.name);
+    }
+}
+
+/* Whether a clamped particle of the body touches a particle of the wall. */
+static bool clamped_to(const struct scene *s, int body, int wall)
+{
+    const struct scene_points *const p = &s->points[KIND_SOLID], *const w = &s->points[KIND_WALL];
+    const double reach = square(1.5 * s->top.dp);
+    for (int64_t k = 0; k < p->n; k++) {
+        if (p->body[k] != body || !p->clamped[k]) continue;
+        for (int64_t m = 0; m < w->n; m++)
+            if (w->body[m] == wall && square(p->x[k] - w->x[m]) + square(p->y[k] - w->y[m]) < reach)
+                return true;
+    }
+    return false;
+}
+
+/* A tank that moves away from under a body whose clamp stays where it is. */
+static void warn_of_resting_clamps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    for (int body = 0; body < s->n_solid; body++) {
+        const struct scene_solid *const b = &s->solid[body];
+        for (int wall = 0; wall < s->n_wall && !b->clamp_motion[0]; wall++) {
+            if (!s->wall[wall].motion[0] || !clamped_to(s, body, wall)) continue;
+            char place[LOCATION_TEXT];
+            scene_location(s, b->common.line, place);
+            diag_warn(g->diag,
+                      "%s: the clamp of [solid %s] touches [wall %s], which moves, and stays at "
+                      "rest itself: the "
+                      "wall is driven through the body; `clamp_motion = %s` moves both",
+                      place, b->common.name, s->wall[wall].common.name, s->wall[wall].motion);
+        }
+    }
+}
+
+enum err geometry_warn_of_doubts(struct sampler *g)
+{
+    warn_of_surface(g);
+    warn_of_density(g);
+    warn_of_full_clamps(g);
+    warn_of_resting_clamps(g);
+    return warn_of_missing_floor(g);
+}

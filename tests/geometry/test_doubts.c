@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes that are hardly meant are warned of, and sound ones are not. */
+#include "case/scene.h"
+#include "particles/particles.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static struct scene scene;
+static char warnings[4096];
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    const size_t n = strlen(warnings);
+    snprintf(warnings + n, sizeof warnings - n, "%s\n", text);
+}
+
+static void read(const char *text)
+{
+    struct diag diag = {.warn = note};
+    scene_free(&scene);
+    warnings[0] = '\0';
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&scene, text, "doubts.cfg", 0, NULL, &diag),
+                                  diag.text);
+}
+
+void setUp(void) {}
+
+void tearDown(void) { scene_free(&scene); }
+
+#define HEAD "dp = 5 mm\nend_time = 1 s\ngravity = 0, -9.81\n"
+#define WATER "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\nsurface = 0.05\n"
+#define SIDES \
+    "[wall left]\nshape = box -0.02, 0, 0, 0.1\n[wall right]\nshape = box 0.1, 0, 0.12, 0.1\n"
+#define FLOOR "[wall floor]\nshape = box -0.02, -0.02, 0.12, 0\n"
+#define POST "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+
+static void test_a_sound_tank_gets_no_warning(void)
+{
+    read(HEAD WATER SIDES FLOOR);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_a_tank_without_a_floor(void)
+{
+    /* All but the nine of each outer column that stand above the foot of a side. */
+    read(HEAD WATER SIDES);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "182 of 200 fluid particles"), warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "doubts.cfg:4: "));
+    /* Gravity along x: the right side holds the water, nothing else is needed. */
+    read("dp = 5 mm\nend_time = 1 s\ngravity = 9.81, 0\n"
+         "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\n" SIDES);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* A hole in the floor: what stands above it, but for its two edges. */
+    read(HEAD WATER SIDES
+         "[wall floor]\nshape = box -0.02, -0.02, 0.03, 0\nshape = box 0.06, -0.02, 0.12, 0\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "40 of 200 fluid particles"), warnings);
+}
+
+static void test_surface_against_gravity_and_below_the_water(void)
+{
+    read("dp = 5 mm\nend_time = 1 s\ngravity = 0, 9.81\n" WATER SIDES FLOOR
+         "[wall lid]\nshape = box -0.02, 0.05, 0.12, 0.07\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "`surface` with gravity upwards"), warnings);
+    read(HEAD "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\nsurface = 0.03\n" SIDES
+             FLOOR);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "80 particles begin with a pressure below zero"),
+                                 warnings);
+}
+
+static void test_a_density_of_one(void)
+{
+    read(HEAD WATER "density = 1\n" SIDES FLOOR);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has a density of 1 kg/m^3"), warnings);
+}
+
+static void test_a_clamp_that_covers_the_body(void)
+{
+    static const char post[] = HEAD "[solid post]\nshape = box 0, 0, 0.02, 0.1\n" POST;
+    char text[1024];
+    snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.1\n", post);
+    read(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "covers all 80 particles of [solid post]"),
+                                 warnings);
+    snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.02\n", post);
+    read(text);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_a_clamp_that_stays_while_its_wall_moves(void)
+{
+    static const char scene_text[] =
+        HEAD "[wall floor]\nshape = box -0.05, -0.02, 0.07, 0\nmotion = shake\n"
+             "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+             "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n" POST;
+    char text[1024];
+    read(scene_text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "`clamp_motion = shake` moves both"), warnings);
+    snprintf(text, sizeof text, "%sclamp_motion = shake\n", scene_text);
+    read(text);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_a_sound_tank_gets_no_warning);
+    RUN_TEST(test_a_tank_without_a_floor);
+    RUN_TEST(test_surface_against_gravity_and_below_the_water);
+    RUN_TEST(test_a_density_of_one);
+    RUN_TEST(test_a_clamp_that_covers_the_body);
+    RUN_TEST(test_a_clamp_that_stays_while_its_wall_moves);
+    return UNITY_END();
+}
