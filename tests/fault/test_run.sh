@@ -127,10 +127,13 @@ gravity = 0, -9.81
 [fluid water]
 shape = box 0, 0, 0.1, 0.05
 sound_speed = 10
-[wall left]
+surface = 0.05
+artificial_viscosity = 0.02
+[wall corner]
 shape = box -0.03, 0, 0, 0.1
+shape = box -0.03, -0.03, 0.05, 0
 END
-expect 0 '50 of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/leak"
+expect 0 'of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/leak"
 
 # --- a guard: the last sound state and the state at the stop are left ---
 expect 2 'last sound state is in' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"
