@@ -58,7 +58,8 @@ def draw_accuracy():
             line, = axes.loglog(*zip(*rows), STYLE[against], marker="o", ms=4, label=label)
             # An error below that of a finer run has changed its sign on the way: a zero crossing.
             lucky = [row for k, row in enumerate(rows) if any(row[1] < 0.9 * e for _, e in rows[k + 1:])]
-            axes.loglog(*zip(*lucky or [([], [])]), "o", ms=4, color="white", markeredgecolor=line.get_color())
+            for cpu, off in lucky:
+                axes.plot(cpu, off, "o", ms=4, color="white", markeredgecolor=line.get_color())
     for against, style in STYLE.items():
         axes.plot([], [], style, color="0.3", label=f"error against: {against}")
     axes.set(xlabel="CPU time (s)", ylabel="error (%)")
