@@ -11,6 +11,7 @@
 #   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
 #   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
+#   make mutants         put small faults into the sources and count those that tests find: docs/mutants.md
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
@@ -65,10 +66,13 @@ OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
 OPT-debug    := -O0 -g
 OPT-memcheck := -O1 -g
+OPT-mutant   := -O1
+OPT-coverage := -O0 -g --coverage
 OPT-thread   := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
 OPT-sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
                 -fno-sanitize-recover=undefined
-$(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: release serial debug sanitize thread memcheck))
+CONFIGS := release serial debug sanitize thread memcheck mutant coverage
+$(if $(OPT-$(CONFIG)),,$(error CONFIG=$(CONFIG) is none of: $(CONFIGS)))
 ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
@@ -191,6 +195,10 @@ absence:
 
 fuzz:
 	@tools/fuzz.sh $(ARGS)
+
+.PHONY: mutants
+mutants:
+	@$(PROJECT_PYTHON) tools/mutants.py $(ARGS)
 
 stability: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
