@@ -242,7 +242,7 @@ static void print_per_particle(const struct bench *b, const struct sim *x, int t
  * out and is not counted. */
 static void bench_output(struct bench *b, struct sim *x, int threads)
 {
-    char folder[] = "bench-XXXXXX", kept[RUN_DIR_PATH] = "";
+    char folder[] = "bench-XXXXXX", kept[PATH_BYTES] = "";
     struct snapshots snapshots = {.folder = ""};
     struct image image = {NULL, 0, 0};
     if (!mkdtemp(folder)) {
@@ -278,7 +278,7 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
 /* Pairs of fluid particles that a sweep takes, over the particles. */
 static double pairs_of(const struct simulation *s)
 {
-    static struct surroundings around;
+    static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
     const struct cluster_boxes *const boxes = &s->fluid.packed[KIND_FLUID].boxes;
@@ -287,10 +287,10 @@ static double pairs_of(const struct simulation *s)
     for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
         const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
-            clusters_ahead_around(&around, boxes, &s->cells, KIND_FLUID, list->active[k],
-                                  s->fluid.k.h, clusters_of(list, first, end));
+            neighbour_clusters_collect_half(&around, boxes, &s->cells, KIND_FLUID, list->active[k],
+                                            s->fluid.k.h, clusters_of(list, first, end));
             for (int32_t own = 0; own < clusters_in(list, list->active[k]); own++) {
-                clusters_ahead_near(&near, &around, boxes);
+                cluster_list_build_half(&near, &around, boxes);
                 seen += near.n;
             }
         }

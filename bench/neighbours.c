@@ -242,9 +242,9 @@ static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t
     vfloat me[FIELDS], x[3], y[3], sum[3] = {{0}, {0}, {0}};
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
-        const uint32_t seen = near->seen[k];
-        const float *const b = lanes + neighbour_number(seen) * FIELDS * CLUSTER;
-        me[X] = x[neighbour_column(seen)], me[Y] = y[neighbour_row(seen)];
+        const uint32_t code = near->code[k];
+        const float *const b = lanes + neighbour_number(code) * FIELDS * CLUSTER;
+        me[X] = x[neighbour_column(code)], me[Y] = y[neighbour_row(code)];
         add_pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
                   vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
                   vfour_float(b + P * CLUSTER), vfour_float(b + VOLUME * CLUSTER), sum);
@@ -260,15 +260,15 @@ static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t
 /* In order: what a cell's last cluster writes beyond its particles, the next cell overwrites. */
 static void sweep_clusters(void)
 {
-    static struct surroundings around;
+    static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     looked_at = 0;
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
-        clusters_around(&around, &boxes, &grid, KIND_FLUID, cell, (double)H);
+        neighbour_clusters_collect(&around, &boxes, &grid, KIND_FLUID, cell, (double)H);
         for (int32_t m = 0; m < clusters_in(listed, cell); m++) {
-            clusters_near(&near, &around, &boxes, listed->cluster[cell] + m);
+            cluster_list_build(&near, &around, &boxes, listed->cluster[cell] + m);
             looked_at += near.n * CLUSTER * CLUSTER;
             for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT)
                 sweep_receivers(&near, listed->start[cell] + m * CLUSTER + r,
@@ -287,13 +287,13 @@ static void share_receivers(const struct cluster_list *near, size_t before, int3
     vfloat me[FIELDS], x[3], y[3], more[3];
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
-        const uint32_t seen = near->seen[k];
-        const float *const b = lanes + neighbour_number(seen) * FIELDS * CLUSTER;
-        me[X] = x[neighbour_column(seen)], me[Y] = y[neighbour_row(seen)];
+        const uint32_t code = near->code[k];
+        const float *const b = lanes + neighbour_number(code) * FIELDS * CLUSTER;
+        me[X] = x[neighbour_column(code)], me[Y] = y[neighbour_row(code)];
         pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
               vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
               vfour_float(b + P * CLUSTER), me[VOLUME] * vfour_float(b + VOLUME * CLUSTER), more);
-        const size_t place = (neighbour_number(seen) - before) * neighbour_is_ahead(seen);
+        const size_t place = (neighbour_number(code) - before) * neighbour_is_half(code);
         for (int m = 0; m < 3; m++) {
             float *const at = room[place][m][r];
             sum[m] = sum[m] + more[m];
@@ -326,7 +326,7 @@ static void share_cluster(const struct cluster_list *near, size_t before, int32_
 
 static void sweep_shares(void)
 {
-    static struct surroundings around;
+    static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     const int32_t n = listed->n_active;
@@ -337,9 +337,10 @@ static void sweep_shares(void)
         const struct cluster_range range = clusters_of(listed, begin, end);
         for (int32_t k = begin; k < end; k++) {
             const int32_t cell = listed->active[k];
-            clusters_ahead_around(&around, &boxes, &grid, KIND_FLUID, cell, (double)H, range);
+            neighbour_clusters_collect_half(&around, &boxes, &grid, KIND_FLUID, cell, (double)H,
+                                            range);
             for (int32_t m = clusters_in(listed, cell) - 1; m >= 0; m--) {
-                clusters_ahead_near(&near, &around, &boxes);
+                cluster_list_build_half(&near, &around, &boxes);
                 taken += near.n * CLUSTER * CLUSTER;
                 share_cluster(&near, (size_t)range.first - 1, cell, m);
             }

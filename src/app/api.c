@@ -2,7 +2,7 @@
  * The library's face: the public header in terms of the floors below. */
 #include "app/budget.h"
 #include "app/explain.h"
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "app/forecast.h"
 #include "app/inspect.h"
 #include "app/manual.h"
@@ -304,22 +304,22 @@ enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options 
     return result(&d, inspect_file(file, options, &d));
 }
 
-static void preview_path(const struct sphfsi_options *o, char path[RUN_DIR_PATH])
+static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
 {
     const char *name = o->case_path ? o->case_path : "case";
     if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
     const size_t length = strlen(name);
     const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
     if (o->out)
-        snprintf(path, RUN_DIR_PATH, "%s", o->out);
+        snprintf(path, PATH_BYTES, "%s", o->out);
     else
-        snprintf(path, RUN_DIR_PATH, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
+        snprintf(path, PATH_BYTES, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
 }
 
 enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
 {
     struct diag d = session_diag(options);
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     struct session *x = calloc(1, sizeof *x);
     if (!x)
         return result(&d, diag_fail(&d, ERR_MEMORY, "preview: no memory for %zu bytes", sizeof *x));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
 
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "case/params.h"
 #include "time/timestep.h"
 
@@ -79,10 +79,10 @@ static uint64_t cache_key(const struct simulation *s)
     return h;
 }
 
-static bool cache_path(char path[RUN_DIR_PATH], bool make)
+static bool cache_path(char path[PATH_BYTES], bool make)
 {
     const char *const root = getenv("XDG_CACHE_HOME"), *const home = getenv("HOME");
-    char folder[RUN_DIR_PATH];
+    char folder[PATH_BYTES];
     if (root && root[0] == '/')
         snprintf(folder, sizeof folder, "%.3000s", root);
     else if (home && home[0] == '/')
@@ -117,7 +117,7 @@ static bool read_costs(const char *line, uint64_t key, struct unit_costs *c)
 
 static bool cache_find(uint64_t key, struct unit_costs *c)
 {
-    char path[RUN_DIR_PATH], *text;
+    char path[PATH_BYTES], *text;
     size_t size;
     bool found = false;
     struct stat info;
@@ -132,7 +132,7 @@ static bool cache_find(uint64_t key, struct unit_costs *c)
 /* A line is one write; a file that has grown out of hand is begun anew. */
 static void cache_keep(uint64_t key, const struct unit_costs *c)
 {
-    char path[RUN_DIR_PATH], line[64 + 32 * (3 + PHASE_COUNT)];
+    char path[PATH_BYTES], line[64 + 32 * (3 + PHASE_COUNT)];
     struct stat info;
     if (!cache_path(path, true)) return;
     if (stat(path, &info) == 0 && info.st_size > CACHE_BYTES) unlink(path);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/refine.h"
 
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "output/json.h"
 #include "app/run.h"
 #include "app/session.h"
@@ -18,7 +18,7 @@ enum { MOST_RUNS = 6 };
 struct refinement {
     const struct sphfsi_options *options;
     struct diag *diag;
-    char folder[RUN_DIR_PATH];
+    char folder[PATH_BYTES];
     int runs;
     double ratio, dp; /* dp: of the finest */
     bool off_lattice; /* a body is not the same in all resolutions */
@@ -63,7 +63,7 @@ static double spacing(const struct refinement *x, int k)
 /* Options of one run: the dp set last, its own folder. */
 struct one_run {
     struct sphfsi_options options;
-    char dp[40], out[RUN_DIR_PATH];
+    char dp[40], out[PATH_BYTES];
     const char **sets;
 };
 
@@ -110,7 +110,7 @@ static enum err try_case(struct refinement *x, int k)
 
 static bool has(const char *folder, const char *name)
 {
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     struct stat info;
     return path_join(path, folder, name, NULL) == ERR_OK && stat(path, &info) == 0;
 }
@@ -119,7 +119,7 @@ static bool has_checkpoint(const char *folder)
 {
     struct image m = {0};
     struct diag quiet = {.code = ERR_OK};
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     const bool found = checkpoint_newest(&m, folder, path, &quiet) == ERR_OK;
     checkpoint_free(&m);
     return found;
@@ -130,7 +130,7 @@ static void remove_partial_run(const char *folder)
 {
     static const char *const names[] = {"probes.csv", "ledger.csv", "fields.vtkhdf",
                                         "fields.vtkhdf.spare", "case.cfg"};
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     for (size_t k = 0; k < COUNT_OF(names); k++)
         if (path_join(path, folder, names[k], NULL) == ERR_OK) unlink(path);
 }
@@ -138,7 +138,7 @@ static void remove_partial_run(const char *folder)
 /* Whether the folder holds this very run, finished. Another case is left to the restart to refuse. */
 static bool is_done(const struct refinement *x, const struct one_run *one)
 {
-    char summary[RUN_DIR_PATH], path[RUN_DIR_PATH], part[RUN_DIR_PATH];
+    char summary[PATH_BYTES], path[PATH_BYTES], part[PATH_BYTES];
     char *text = NULL, *there = NULL, *here = NULL;
     size_t size;
     struct diag quiet = {.code = ERR_OK};
@@ -181,10 +181,9 @@ static enum err run_one(struct refinement *x, int k)
 /* --- their values --- */
 
 /* A file of a run in the folder of its resolution; k = runs - 1: the finest. */
-static enum err path_of(const struct refinement *x, int k, const char *file,
-                        char path[RUN_DIR_PATH])
+static enum err path_of(const struct refinement *x, int k, const char *file, char path[PATH_BYTES])
 {
-    char name[40], folder[RUN_DIR_PATH];
+    char name[40], folder[PATH_BYTES];
     snprintf(name, sizeof name, "dp-%.6g", spacing(x, k));
     TRY(path_join(folder, x->folder, name, x->diag));
     return path_join(path, folder, file, x->diag);
@@ -194,7 +193,7 @@ static enum err path_of(const struct refinement *x, int k, const char *file,
 static enum err measure_run(const struct refinement *x, int k, const char *file, int columns,
                             double (*value)[MEASURES])
 {
-    char path[RUN_DIR_PATH], *csv;
+    char path[PATH_BYTES], *csv;
     size_t size;
     TRY(path_of(x, k, file, path));
     TRY(file_read(path, &csv, &size, x->diag));
@@ -263,7 +262,7 @@ static void say_columns(const struct refinement *x, struct json *j, const char *
 static enum err tell_file(const struct refinement *x, struct json *j, const char *file, bool ledger)
 {
     struct arena arena = {0};
-    char path[RUN_DIR_PATH], *header;
+    char path[PATH_BYTES], *header;
     size_t size;
     TRY(path_of(x, x->runs - 1, file, path));
     TRY(file_read(path, &header, &size, x->diag));

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/run.h"
 
+#include "base/run_dir.h"
+
 #include "output/checkpoint.h"
 #include "app/forecast.h"
 #include "output/probes.h"
@@ -34,7 +36,7 @@ struct run {
     bool snapshot_lost; /* one that was written has not got its place, and that ends the run */
     struct image image; /* state that was sound, for the guard */
     char *case_text;    /* effective case */
-    char restarted_from[RUN_DIR_PATH], checkpoint[RUN_DIR_PATH];
+    char restarted_from[PATH_BYTES], checkpoint[PATH_BYTES];
     struct due *probe_due; /* [probes.n_files] */
     struct due due[OUT_COUNT];
     struct record record;
@@ -320,17 +322,17 @@ static void save_last_state(struct run *r, enum err why)
 
 /* --- the beginning --- */
 
-enum err run_dir_of_case(const struct sphfsi_options *o, char path[RUN_DIR_PATH], struct diag *d)
+enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], struct diag *d)
 {
     if (o->out) {
-        if (o->out[0] && strlen(o->out) < RUN_DIR_PATH - 300) {
+        if (o->out[0] && strlen(o->out) < PATH_BYTES - 300) {
             memcpy(path, o->out, strlen(o->out) + 1);
             for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
             return ERR_OK;
         }
         return diag_fail(d, ERR_INPUT,
                          "out: the path has %zu characters, from 1 to %d are possible",
-                         strlen(o->out), RUN_DIR_PATH - 301);
+                         strlen(o->out), PATH_BYTES - 301);
     }
     const char *name = o->case_path ? o->case_path : "case";
     if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
@@ -343,12 +345,12 @@ enum err run_dir_of_case(const struct sphfsi_options *o, char path[RUN_DIR_PATH]
             "%s: the folder of the results takes its name from the case, and '%.*s' is "
             "none; choose one with --out",
             o->case_path, (int)length, name);
-    snprintf(path, RUN_DIR_PATH, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
+    snprintf(path, PATH_BYTES, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
     return ERR_OK;
 }
 
 /* Writes case.cfg beside the one that may be there; its text stays in r->case_text. */
-static enum err write_case(struct run *r, char part[RUN_DIR_PATH])
+static enum err write_case(struct run *r, char part[PATH_BYTES])
 {
     TRY(path_join(part, r->folder.path, "case.cfg.part", r->diag));
     unlink(part); /* of a run that was killed, or a link */
@@ -361,11 +363,11 @@ static enum err write_case(struct run *r, char part[RUN_DIR_PATH])
 
 static enum err put_case(struct run *r, const char *part)
 {
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     TRY(path_join(path, r->folder.path, "case.cfg", r->diag));
     if (rename(part, path) != 0)
         return diag_fail(r->diag, ERR_IO, "%s: cannot be put in place", path);
-    return run_dir_sync(r->folder.path, r->diag);
+    return directory_sync(r->folder.path, r->diag);
 }
 
 static enum err start_fresh(struct run *r)
@@ -453,7 +455,7 @@ static enum err load_checkpoint(struct run *r)
 /* A restart touches the files of the run only after its checkpoint has been found sound. */
 static enum err begin(struct run *r)
 {
-    char part[RUN_DIR_PATH];
+    char part[PATH_BYTES];
     TRY(write_case(r, part));
     const enum err e = r->options->restart || r->options->fork ? load_checkpoint(r) : ERR_OK;
     if (e) {
@@ -571,7 +573,7 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
 
 enum err run_case(const struct sphfsi_options *o, struct diag *d)
 {
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     const enum run_dir_use use = o->restart ? RUN_DIR_CONTINUE : RUN_DIR_FRESH;
     if (o->restart && o->fork)
         return diag_fail(d, ERR_INPUT,

@@ -3,14 +3,14 @@
 #ifndef SPHFSI_APP_RUN_H
 #define SPHFSI_APP_RUN_H
 
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "app/session.h"
 
 /* What the public sphfsi_run does. */
 enum err run_case(const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
 
 /* The folder of a run: as the options say, or named after the case. */
-enum err run_dir_of_case(const struct sphfsi_options *o, char path[RUN_DIR_PATH], struct diag *d)
+enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], struct diag *d)
     SPHFSI_CHECKED;
 
 #endif

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Where the threads of a parallel region meet every few microseconds: OpenMP's own barrier costs as much
- * as the share of a small body between two of them. */
+ * A spin barrier, for threads that synchronise every few microseconds: OpenMP's own barrier would cost as
+ * much as the work between two of them. */
 #ifndef SPHFSI_BASE_BARRIER_H
 #define SPHFSI_BASE_BARRIER_H
 
@@ -8,13 +8,13 @@
 
 #include "base/base.h"
 
-/* Zeroed memory is a valid one. Each word has a cache line of its own, since all threads spin on `turn`. */
+/* Zeroed memory is a valid barrier. Each word has its own cache line, since all threads spin on `turn`. */
 struct spin_barrier {
     _Alignas(64) uint32_t arrived;
     _Alignas(64) uint32_t turn;
 };
 
-/* Leaves the core to its other half for a moment. */
+/* Yields execution units to the core's other hardware thread. */
 SPHFSI_INLINE void spin_pause(void)
 {
 #if defined __x86_64__
@@ -24,8 +24,8 @@ SPHFSI_INLINE void spin_pause(void)
 #endif
 }
 
-/* Returns when the word, which counts up, has come to a value, with what was written before. A thread whose
- * partners do not run gives its core away instead of spinning on. */
+/* Returns when the counter `word` has reached `value`; writes that preceded the increment are then visible.
+ * After SPINS rounds it yields, since the other threads may be waiting for this core. */
 SPHFSI_INLINE void barrier_wait_for(const uint32_t *word, uint32_t value)
 {
     enum { SPINS = 4000 };
@@ -40,17 +40,19 @@ SPHFSI_INLINE void barrier_wait_for(const uint32_t *word, uint32_t value)
     }
 }
 
-/* Returns when all threads of the region have come, with what each has written before. */
-SPHFSI_INLINE void barrier_wait(struct spin_barrier *m)
+/* Returns when all threads of the region have called it; their earlier writes are then visible. */
+SPHFSI_INLINE void barrier_wait(struct spin_barrier *b)
 {
     const uint32_t threads = (uint32_t)thread_team();
     if (threads == 1) return;
-    const uint32_t turn = __atomic_load_n(&m->turn, __ATOMIC_RELAXED);
-    if (__atomic_add_fetch(&m->arrived, 1, __ATOMIC_ACQ_REL) == threads) {
-        __atomic_store_n(&m->arrived, 0, __ATOMIC_RELAXED);
-        __atomic_store_n(&m->turn, turn + 1, __ATOMIC_RELEASE);
+    const uint32_t turn = __atomic_load_n(&b->turn, __ATOMIC_RELAXED);
+    const uint32_t arrived = __atomic_add_fetch(&b->arrived, 1, __ATOMIC_ACQ_REL);
+    ASSERT(arrived <= threads);
+    if (arrived == threads) {
+        __atomic_store_n(&b->arrived, 0, __ATOMIC_RELAXED);
+        __atomic_store_n(&b->turn, turn + 1, __ATOMIC_RELEASE);
     } else {
-        barrier_wait_for(&m->turn, turn + 1);
+        barrier_wait_for(&b->turn, turn + 1);
     }
 }
 

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Lanes: compiler vector types for arithmetic (+ - * / are the language's), and the few verbs the
- * language has no word for. vfloat and vdouble fill the widest register there is: 512, 256 or 128 bits.
- * Sums over lanes follow one fixed tree and fma is explicit, so that bits are the same whatever the compiler
- * and the instruction set (build with -ffp-contract=off); -DSPHFSI_LANES=8 asks an AVX-512 machine for the 8
- * float lanes of an AVX2 one. */
+ * SIMD: compiler vector types (+ - * / are C operators on them) and the few operations that C lacks.
+ * vfloat and vdouble fill the widest register: 512, 256 or 128 bits. Sums over lanes follow one fixed tree
+ * and fma is explicit, so the bits do not depend on compiler or instruction set (-ffp-contract=off).
+ * -DSPHFSI_LANES=8 gives an AVX-512 machine the 8 float lanes of AVX2. */
 #ifndef SPHFSI_BASE_SIMD_H
 #define SPHFSI_BASE_SIMD_H
 
@@ -30,11 +29,11 @@
 
 typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
-typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* as many as doubles */
+typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* lanes of vdouble */
 
-/* Groups of four lanes: sweeps let each lane of a group stand for another candidate, and each group for
- * another receiver, so that sums over candidates are the same however wide a vector is. Vectors of two
- * doubles hold half a group. */
+/* Groups of four lanes. In a sweep each lane of a group is another neighbour j, and each group another
+ * particle i, so that sums over j do not depend on the width of a vector. A vector of two doubles is half a
+ * group. */
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
     LANES_DOUBLE = SIMD_BYTES / 8,
@@ -43,8 +42,8 @@ enum {
     GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
 
-/* Four doubles or floats, the particles of a group, and eight floats or words,
- * whatever the registers. */
+/* Four doubles or floats (the particles of a group) and eight floats or words, on any register width.
+ * Types that end in _at may be at any address and alias the arrays that they load from. */
 typedef double four_double __attribute__((vector_size(32)));
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
@@ -53,7 +52,6 @@ typedef float eight_float_at __attribute__((vector_size(32), aligned(4), may_ali
 typedef uint32_t eight_word __attribute__((vector_size(32)));
 typedef uint32_t eight_word_at __attribute__((vector_size(32), aligned(4), may_alias));
 
-/* The same vectors at any address, and free to alias the arrays they are loaded from. */
 typedef float vfloat_at __attribute__((vector_size(SIMD_BYTES), aligned(4), may_alias));
 typedef double vdouble_at __attribute__((vector_size(SIMD_BYTES), aligned(8), may_alias));
 
@@ -64,8 +62,8 @@ SPHFSI_INLINE void vstore_double(double *p, vdouble a) { *(vdouble_at *)p = (vdo
 SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 
-/* Keeps what was loaded in a register, where there are enough of them: gcc would rather load it again for
- * each use, and loads at odd addresses are what the solid's loops wait for. */
+/* Keeps a loaded vector in a register, on machines with 32 of them. gcc would repeat the load at each use,
+ * and unaligned loads limit the solid's loops. */
 #if defined SIMD_AVX512
 #define vhold(a) __asm__("" : "+v"(a))
 #elif defined SIMD_NEON
@@ -74,7 +72,7 @@ SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 #define vhold(a) ((void)0)
 #endif
 
-/* vput(p, a, n): writes the first n lanes. vwiden(p, a, n): as doubles. */
+/* vput(p, a, n): stores the first n lanes. vwiden(p, a, n): the same, converted to double. */
 SPHFSI_INLINE void vput_float(float *p, vfloat a, int n)
 {
     if (n == LANES_FLOAT)
@@ -229,7 +227,7 @@ SPHFSI_INLINE vdouble vsqrt_double(vdouble a)
 #undef SIMD_LANEWISE
 #endif
 
-/* Sum of the lanes by halving: lane k meets lane k + n/2, until one is left. And the largest of them. */
+/* Sum of the lanes by halving: lane k + lane k + n/2, until one remains. vtop: the largest lane. */
 SPHFSI_INLINE double vsum_double(vdouble a)
 {
 #ifdef SIMD_AVX2
@@ -260,8 +258,8 @@ SPHFSI_INLINE double vtop_double(vdouble a)
     return top;
 }
 
-/* vfour(p): the four items at p, or as many as there are lanes, in every group. vspread(p): item g at p in
- * all lanes of group g. vsum_four(a, out): out[g] = the sum of group g by halving. */
+/* vfour(p): p[0..3] (or as many as there are lanes) in every group. vspread(p): p[g] in all lanes of group
+ * g. vsum_four(a, out): out[g] = sum of group g by halving. */
 #ifdef SIMD_AVX512
 SPHFSI_INLINE vfloat vfour_float(const float *p)
 {
@@ -325,8 +323,8 @@ SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
 }
 #endif
 
-/* Appends to `out` the items whose lane of a is below the limit, in order; returns how many. Writes
- * LANES_FLOAT items whatever there are. */
+/* Stores to `out`, in order, the items whose lane of a is below the limit; returns their number. Always
+ * writes LANES_FLOAT items. */
 SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, float limit)
 {
 #ifdef SIMD_AVX512
@@ -334,7 +332,7 @@ SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, flo
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(below, _mm512_loadu_si512(item)));
     return __builtin_popcount(below);
 #elif defined SIMD_AVX2 && defined __BMI2__
-    /* The numbers of the lanes that stay, a byte each, by the mask. */
+    /* Indices of the selected lanes, one byte each. */
     const unsigned below =
         (unsigned)_mm256_movemask_ps(_mm256_cmp_ps((__m256)a, _mm256_set1_ps(limit), _CMP_LT_OQ));
     const uint64_t bytes = _pdep_u64(below, 0x0101010101010101) * 0xff;
@@ -345,7 +343,7 @@ SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, flo
     return __builtin_popcount(below);
 #else
     int n = 0;
-    for (int l = 0; l < LANES_FLOAT; l++) { /* without branches, which would be guessed wrong */
+    for (int l = 0; l < LANES_FLOAT; l++) { /* branch-free: the condition is unpredictable */
         out[n] = item[l];
         n += a[l] < limit;
     }

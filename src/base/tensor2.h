@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * 2x2 tensors, hand-inlined, over any arithmetic type T: the struct and its routines are stamped for double
- * and for lanes of `real`, which is double where the file has not taken base/real_float.h. */
+ * 2x2 tensors over an arithmetic type T, inlined by hand. The macro defines the struct and its routines for
+ * double and for vectors of `real`, which is double unless the file includes base/real_float.h. */
 #ifndef SPHFSI_BASE_TENSOR2_H
 #define SPHFSI_BASE_TENSOR2_H
 

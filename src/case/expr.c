@@ -266,7 +266,7 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
 
 static bool parse_constant(struct compiler *c, const char *name, struct dim *dim)
 {
-    if (strcmp(name, "pi") == 0) return push(c, OP_NUMBER, 3.14159265358979323846);
+    if (strcmp(name, "pi") == 0) return push(c, OP_NUMBER, PI);
     if (strcmp(name, "t") == 0 && c->names->scope == EXPR_IN_TIME) {
         dim->kind = DIM_ANY;
         return push(c, OP_X, 0); /* evaluated at x = t */

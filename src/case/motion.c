@@ -214,7 +214,7 @@ static struct motion_state table_at(const struct motion_table *table, double t)
 static void sine_at(const struct scene_motion *motion, double t, double *d, double *v, double *a)
 {
     const double phase = motion->phase;
-    const double w = motion->period > 0 ? 2 * 3.14159265358979323846 / motion->period : 0;
+    const double w = motion->period > 0 ? 2 * PI / motion->period : 0;
     *d = sin(w * t + phase) - sin(phase);
     *v = w * cos(w * t + phase);
     *a = -w * w * sin(w * t + phase);

@@ -170,8 +170,8 @@ SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *
     const double inv_h = 1 / f->k.h;
     for (int r = 0; r < d->count; r++) {
         const int32_t i = d->at[r];
-        const double x = cells_short_way(c, 0, p->x[i] - cell_centre_x(c, cell));
-        const double y = cells_short_way(c, 1, p->y[i] - cell_centre_y(c, cell));
+        const double x = cells_minimum_image(c, 0, p->x[i] - cell_centre_x(c, cell));
+        const double y = cells_minimum_image(c, 1, p->y[i] - cell_centre_y(c, cell));
         d->packed[PACKED_X * CLUSTER + r] = (real)(x * inv_h);
         d->packed[PACKED_Y * CLUSTER + r] = (real)(y * inv_h);
     }

@@ -123,7 +123,7 @@ SPHFSI_INLINE int pair_sums(effect_set effects)
 
 /* What the particles of a cell, and of a cluster, may see: of a thread. */
 struct neighbour_scratch {
-    struct surroundings around[KIND_COUNT];
+    struct neighbour_clusters around[KIND_COUNT];
     struct cluster_list near[KIND_COUNT];
     /* [1 + clusters of a share][sums][receiver][candidate]: what receivers before them have left for the
      * clusters as candidates; zeros between evaluations, but for the first, which is what nobody asks for. */

@@ -43,8 +43,8 @@ SPHFSI_INLINE void gather_around_cell(struct neighbour_scratch *neighbour_scratc
                                       const struct fluid *f, const struct cells *c, enum kind kind,
                                       int32_t cell)
 {
-    clusters_around(&neighbour_scratch->around[kind], &f->packed[kind].boxes, c, kind, cell,
-                    f->k.h);
+    neighbour_clusters_collect(&neighbour_scratch->around[kind], &f->packed[kind].boxes, c, kind,
+                               cell, f->k.h);
 }
 
 SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed,
@@ -60,7 +60,7 @@ SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighb
                                                 enum kind own, int32_t cluster)
 {
     struct cluster_list *const near = &neighbour_scratch->near[kind];
-    clusters_near(near, &neighbour_scratch->around[kind], &f->packed[own].boxes, cluster);
+    cluster_list_build(near, &neighbour_scratch->around[kind], &f->packed[own].boxes, cluster);
     return neighbours_of(&f->packed[kind], near);
 }
 
@@ -69,7 +69,8 @@ SPHFSI_INLINE struct neighbours gather_clusters_ahead(struct neighbour_scratch *
                                                       const struct fluid *f)
 {
     struct cluster_list *const near = &neighbour_scratch->near[KIND_FLUID];
-    clusters_ahead_near(near, &neighbour_scratch->around[KIND_FLUID], &f->packed[KIND_FLUID].boxes);
+    cluster_list_build_half(near, &neighbour_scratch->around[KIND_FLUID],
+                            &f->packed[KIND_FLUID].boxes);
     return neighbours_of(&f->packed[KIND_FLUID], near);
 }
 

@@ -115,8 +115,7 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
     EACH_SEEN(neighbours, m, part) {
         const uint32_t code = neighbours->code[m];
         const real *const b = candidates(neighbours, code, part);
-        const size_t place =
-            deferred_slot(chunk, neighbour_number(code)) * neighbour_is_ahead(code);
+        const size_t place = deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
         real *const at = chunk->deferred + place * deferred_stride(fx) + part * LANES;
         for (int row = 0; row < ROWS; row++) {
             const struct exchange e = pair_of_fluid(&a[row], code, b, k, fx, &sums->approach);

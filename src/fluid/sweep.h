@@ -154,8 +154,9 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);
     bool around[KIND_COUNT] = {false};
-    clusters_ahead_around(&neighbour_scratch->around[KIND_FLUID], &f->packed[KIND_FLUID].boxes, c,
-                          KIND_FLUID, cell, f->k.h, chunk->range);
+    neighbour_clusters_collect_half(&neighbour_scratch->around[KIND_FLUID],
+                                    &f->packed[KIND_FLUID].boxes, c, KIND_FLUID, cell, f->k.h,
+                                    chunk->range);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         around[kind] = f->near_dummies[cell] && f->n_near_fluid[kind];
         if (around[kind]) gather_around_cell(neighbour_scratch, f, c, (enum kind)kind, cell);

@@ -16,18 +16,10 @@ static const double same_place = 0.7;
 /* Points by cell of side dp, in a hash table: sparse scenes cost no more than dense ones. */
 struct near_table {
     double side;
-    uint64_t mask;
+    uint32_t mask;
     int32_t *head, *next; /* index + 1; 0: none */
     const double *x, *y;
 };
-
-static uint64_t slot_of(const struct near_table *t, int64_t i, int64_t j)
-{
-    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
-    key ^= key >> 29;
-    key *= 0xBF58476D1CE4E5B9u;
-    return (key >> 32) & t->mask;
-}
 
 static int64_t cell_of(const struct near_table *t, double x) { return (int64_t)floor(x / t->side); }
 
@@ -35,7 +27,10 @@ static enum err table_create(struct near_table *t, struct sampler *g, const stru
 {
     uint64_t size = 64;
     while (size < (uint64_t)p->n) size *= 2;
-    *t = (struct near_table){.side = g->scene->top.dp, .mask = size - 1, .x = p->x, .y = p->y};
+    *t = (struct near_table){.side = g->scene->top.dp,
+                             .mask = (uint32_t)(size - 1),
+                             .x = p->x,
+                             .y = p->y};
     t->head = arena_alloc(&g->temp, size, sizeof *t->head, "overlaps", g->diag);
     t->next = arena_alloc(&g->temp, (size_t)p->n, sizeof *t->next, "overlaps", g->diag);
     return t->head && t->next ? ERR_OK : ERR_MEMORY;
@@ -43,7 +38,7 @@ static enum err table_create(struct near_table *t, struct sampler *g, const stru
 
 static void table_insert(struct near_table *t, int64_t k)
 {
-    const uint64_t slot = slot_of(t, cell_of(t, t->x[k]), cell_of(t, t->y[k]));
+    const uint32_t slot = hash_cell(cell_of(t, t->x[k]), cell_of(t, t->y[k]), t->mask);
     t->next[k] = t->head[slot];
     t->head[slot] = (int32_t)(k + 1);
 }
@@ -62,7 +57,7 @@ static int64_t table_find(const struct near_table *t, const struct region *regio
     const int64_t ci = cell_of(t, x), cj = cell_of(t, y);
     for (int64_t j = cj - 1; j <= cj + 1; j++)
         for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = t->head[slot_of(t, i, j)]; n; n = t->next[n - 1])
+            for (int32_t n = t->head[hash_cell(i, j, t->mask)]; n; n = t->next[n - 1])
                 if (p->region[n - 1] != p->region[k] &&
                     square(t->x[n - 1] - x) + square(t->y[n - 1] - y) <
                         square(same_place * spacing(regions, p, k, n - 1)))

@@ -58,7 +58,7 @@ static void choose_lattice(struct sampler *g, struct region *region)
 
 static double piece_area(const struct outline *o)
 {
-    if (!o->n) return 3.14159265358979 * square(o->radius);
+    if (!o->n) return PI * square(o->radius);
     double twice = 0;
     for (int k = 0; k < o->n; k++) {
         const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n], *base = o->pt[0];

@@ -249,7 +249,7 @@ static enum err next_newest(const char *folder, int64_t *steps, struct diag *d)
 
 static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag *d)
 {
-    char name[NAME_TEXT], path[RUN_DIR_PATH];
+    char name[NAME_TEXT], path[PATH_BYTES];
     name_of(name, steps);
     TRY(path_join(path, folder, name, d));
     if (unlink(path) != 0)
@@ -274,7 +274,7 @@ static void keep_last(const char *folder, int64_t newest, struct diag *d)
     if (remove_older(folder, newest, &why)) diag_warn(d, "%s", why.text);
 }
 
-enum err checkpoint_store(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d)
 {
     struct atomic_file out;
@@ -289,7 +289,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[RUN_DIR
         return diag_fail(d, ERR_IO, "%s: cannot be written", out.path);
     }
     TRY(atomic_file_commit(&out, d));
-    memcpy(path, out.path, RUN_DIR_PATH);
+    memcpy(path, out.path, PATH_BYTES);
     keep_last(folder, info.steps, d);
     return ERR_OK;
 }
@@ -406,7 +406,7 @@ enum err checkpoint_read(struct image *m, const char *path, struct diag *d)
     return checkpoint_check(m, path, d);
 }
 
-enum err checkpoint_newest(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_BYTES],
                            struct diag *d)
 {
     char name[NAME_TEXT];
@@ -560,7 +560,7 @@ static enum err check_cells(const struct simulation *s, enum kind kind, struct d
                              "(outside) to %" PRId64,
                              kind_names[kind], i, cell, cells - 1);
         if (cell < 0) continue;
-        if (!cells_near(&s->cells, cell, p->x[i], p->y[i]))
+        if (!cells_is_near(&s->cells, cell, p->x[i], p->y[i]))
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64
                              " at (%.6g, %.6g) m is nowhere near cell %d, where it should be",

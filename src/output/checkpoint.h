@@ -4,7 +4,7 @@
 #ifndef SPHFSI_OUTPUT_CHECKPOINT_H
 #define SPHFSI_OUTPUT_CHECKPOINT_H
 
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "time/simulation.h"
 
 /* A checkpoint in memory. A zeroed struct is an empty one. */
@@ -29,7 +29,7 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
 
 /* Writes it to the folder under a name made of its steps, and removes all but the last two. `path`
  * receives where. */
-enum err checkpoint_store(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d) SPHFSI_CHECKED;
 
 /* Fills in the sums of an image; checkpoint_store does so itself. */
@@ -43,7 +43,7 @@ enum err checkpoint_check(const struct image *m, const char *name, struct diag *
 enum err checkpoint_read(struct image *m, const char *path, struct diag *d) SPHFSI_CHECKED;
 
 /* Reads the newest valid one of a folder; a warning for each damaged one it passes over. */
-enum err checkpoint_newest(struct image *m, const char *folder, char path[RUN_DIR_PATH],
+enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_BYTES],
                            struct diag *d) SPHFSI_CHECKED;
 
 struct image_info checkpoint_info(const struct image *m);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "base/run_dir.h"
+#include "base/files.h"
 
 static bool sync_file(const char *path)
 {
@@ -20,8 +20,8 @@ static bool sync_file(const char *path)
 
 static bool swap(const struct publishing *p)
 {
-    char old[RUN_DIR_PATH];
-    if (snprintf(old, sizeof old, "%s.old", p->spare) >= RUN_DIR_PATH) return false;
+    char old[PATH_BYTES];
+    if (snprintf(old, sizeof old, "%s.old", p->spare) >= PATH_BYTES) return false;
     unlink(old);
     const bool linked = link(p->path, old) == 0;
     if (rename(p->spare, p->path) != 0) return false;
@@ -34,7 +34,7 @@ static enum err place(struct publishing *p)
     if (!sync_file(p->spare) || !swap(p))
         return diag_fail(&p->diag, ERR_IO, "%s: cannot be put in place: %s", p->path,
                          strerror(errno));
-    return run_dir_sync(p->folder, &p->diag);
+    return directory_sync(p->folder, &p->diag);
 }
 
 static void *publish_thread(void *publishing)

@@ -2,7 +2,7 @@
 #include "output/reference.h"
 
 #include "case/case.h"
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "case/params.h"
 
 #include <ctype.h>

@@ -2,7 +2,7 @@
 #include "output/report.h"
 
 #include "case/expr.h"
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "output/json.h"
 #include "case/params.h"
 

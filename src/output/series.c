@@ -52,9 +52,9 @@ enum err series_create(struct series *s, const char *folder, const char *name, c
                        struct diag *d)
 {
     TRY(begin(s, folder, name, header, d));
-    s->fd = run_dir_open_file(s->path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
+    s->fd = file_open_no_follow(s->path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND);
     if (s->fd < 0)
-        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, run_dir_why(errno));
+        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, file_error_text(errno));
     TRY(append(s, header, strlen(header), d));
     return append(s, "\n", 1, d);
 }
@@ -97,9 +97,9 @@ static enum err cut(struct series *s, const char *bytes, const char *header, dou
     *last = -1;
     const size_t keep = length + 1 + rows_until(bytes + length + 1, time, &row, last);
     if (first) TRY(read_first(s, row, first, d));
-    s->fd = run_dir_open_file(s->path, O_WRONLY | O_APPEND);
+    s->fd = file_open_no_follow(s->path, O_WRONLY | O_APPEND);
     if (s->fd < 0 || ftruncate(s->fd, (off_t)keep) != 0)
-        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, run_dir_why(errno));
+        return diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path, file_error_text(errno));
     return ERR_OK;
 }
 

@@ -3,10 +3,10 @@
 #ifndef SPHFSI_OUTPUT_SERIES_H
 #define SPHFSI_OUTPUT_SERIES_H
 
-#include "base/run_dir.h"
+#include "base/files.h"
 
 struct series {
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     int fd; /* -1: not open */
     int columns;
 };

@@ -189,7 +189,7 @@ static bool claim_space(const struct snapshots *w, int64_t points)
 #if _POSIX_ADVISORY_INFO > 0
     const int64_t have = file_bytes(w->spare), named = file_bytes(w->path);
     const int64_t want = (have > named ? have : named) + snapshot_file_bytes(&w->layout, points);
-    const int fd = run_dir_open_file(w->spare, O_WRONLY | O_CREAT);
+    const int fd = file_open_no_follow(w->spare, O_WRONLY | O_CREAT);
     const int why = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)want);
     if (fd >= 0) close(fd);
     errno = why;

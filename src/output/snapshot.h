@@ -3,7 +3,7 @@
 #ifndef SPHFSI_OUTPUT_SNAPSHOT_H
 #define SPHFSI_OUTPUT_SNAPSHOT_H
 
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "time/simulation.h"
 #include "output/snapshot_file.h"
 #include "output/publish.h"
@@ -11,7 +11,7 @@
 /* A snapshot is appended to a spare copy, which then takes the name; so the file with the name is
  * whole at any moment, and the other one lags a snapshot behind and is caught up first. */
 struct snapshots {
-    char folder[RUN_DIR_PATH], path[RUN_DIR_PATH], spare[RUN_DIR_PATH];
+    char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;
     struct snapshot_layout layout;
     const char *version; /* of the program */

@@ -6,13 +6,13 @@
 
 #include "particles/morton.h"
 
-/* A particle outside the grid sorts behind every cell. */
+/* A particle outside the grid is sorted after all cells. */
 enum { OUTSIDE = -1 };
 #define OUTSIDE_KEY UINT32_MAX
 
 enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS };
 
-/* All or one: teams must not shrink (solid/solid.c). */
+/* All threads or one: libgomp would end and restart threads if teams changed in size. */
 static int sort_threads(void) { return thread_count() <= CELLS_SORT_THREADS ? thread_count() : 1; }
 
 static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
@@ -28,8 +28,8 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
-/* Sides of cells over the reach: with wider ones particles meet more boxes of clusters, with narrower ones
- * clusters are less often full. And the least, for the three cells that joined sides take. */
+/* Side of a cell over the reach. In wider cells each cluster tests more boxes; in narrower ones more clusters
+ * are only partly filled. LEAST_SIDE applies to domains of up to three cells. */
 #define SIDE 1.6
 #define LEAST_SIDE 1.05
 
@@ -40,11 +40,11 @@ static double cells_across(double width, double reach)
 }
 
 enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
-                      const double upper[2], double reach, double stray,
+                      const double upper[2], double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d)
 {
     memset(c, 0, sizeof *c);
-    c->stray = stray;
+    c->skin = skin;
     double n[2];
     for (int k = 0; k < 2; k++) {
         c->lower[k] = lower[k];
@@ -52,17 +52,19 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
         if (!(n[k] <= MORTON_CELLS))
             return diag_fail(
                 d, ERR_INPUT,
-                "the domain is %.6g m in %c, more than %d cells of %.3g m: make [domain] "
+                "the domain is %.6g m in %c, more than %d cells of %.3g m; make [domain] "
                 "smaller or dp larger",
                 upper[k] - lower[k], k ? 'y' : 'x', MORTON_CELLS, SIDE * reach);
         c->side[k] = (upper[k] - lower[k]) / n[k];
-        c->stray = min2(c->stray, max2(0, 0.5 * (c->side[k] - reach)));
+        c->skin = min2(c->skin, max2(0, 0.5 * (c->side[k] - reach)));
     }
     c->nx = (int)n[0];
     c->ny = (int)n[1];
     if (n[0] * n[1] > INT32_MAX)
-        return diag_fail(d, ERR_INPUT, "the domain has %d x %d cells, too many to number", c->nx,
-                         c->ny);
+        return diag_fail(d, ERR_INPUT,
+                         "the domain has %d x %d cells, more than %d; make [domain] smaller or dp "
+                         "larger",
+                         c->nx, c->ny, INT32_MAX);
 
     int64_t most = 0;
     for (int k = 0; k < KIND_COUNT; k++) {
@@ -81,42 +83,44 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                                                                                   : ERR_MEMORY;
 }
 
-enum err cells_join(struct cells *c, int axis, double reach, struct diag *d)
+enum err cells_make_periodic(struct cells *c, int axis, double reach, struct diag *d)
 {
     const int n = axis ? c->ny : c->nx;
     if (n < 3)
-        return diag_fail(d, ERR_INPUT,
-                         "[domain] is periodic in %c and %.6g m wide there: at least %.6g m is "
-                         "needed, lest a particle meets another twice",
-                         "xy"[axis], n * c -> side[axis], 3 * LEAST_SIDE * reach);
-    c->joined[axis] = true;
+        return diag_fail(
+            d, ERR_INPUT,
+            "[domain] is periodic in %c and only %.6g m wide there; at least %.6g m is "
+            "needed, so that no particle interacts twice with another",
+            "xy"[axis], n * c -> side[axis], 3 * LEAST_SIDE * reach);
+    c->periodic[axis] = true;
     return ERR_OK;
 }
 
-/* Place along an axis in cells, brought between joined sides. */
+/* Coordinate along an axis in units of cells, wrapped if the axis is periodic. */
 static double cells_along(const struct cells *c, int axis, double x)
 {
-    double place = (x - c->lower[axis]) / c->side[axis];
-    if (!c->joined[axis]) return place;
+    double at = (x - c->lower[axis]) / c->side[axis];
+    if (!c->periodic[axis]) return at;
     const double n = axis ? c->ny : c->nx;
-    place -= n * floor(place / n);
-    return place < n ? place : 0; /* a hair below the lower side rounds to the upper one */
+    at -= n * floor(at / n);
+    return at < n ? at : 0; /* just below the lower side rounding gives n */
 }
 
-/* Fluid beyond joined sides comes in again opposite. */
-static int64_t carry_over(const struct cells *c, int axis, double *x, int64_t n)
+/* Wraps coordinates into the periodic domain; returns the number of crossings of the upper side, less those
+ * of the lower. */
+static int64_t wrap_positions(const struct cells *c, int axis, double *x, int64_t n)
 {
     const double lower = c->lower[axis], period = c->side[axis] * (axis ? c->ny : c->nx);
-    int64_t laps = 0;
-#pragma omp parallel for schedule(static) reduction(+ : laps)
+    int64_t crossings = 0;
+#pragma omp parallel for schedule(static) reduction(+ : crossings)
     for (int64_t k = 0; k < n; k++) {
-        const double lap = floor((x[k] - lower) / period);
-        if (lap == 0 || !isfinite(lap)) continue;
-        x[k] = max2(lower, x[k] - lap * period);
+        const double periods = floor((x[k] - lower) / period);
+        if (periods == 0 || !isfinite(periods)) continue;
+        x[k] = max2(lower, x[k] - periods * period);
         if (!(x[k] < lower + period)) x[k] = lower;
-        laps += (int64_t)lap;
+        crossings += (int64_t)periods;
     }
-    return laps;
+    return crossings;
 }
 
 static int32_t cell_of(const struct cells *c, double x, double y)
@@ -132,7 +136,7 @@ static uint32_t key_of(const struct cells *c, int32_t cell)
     return morton_key((uint32_t)cell_x(c, cell), (uint32_t)cell_y(c, cell));
 }
 
-/* Bits that tell the keys in use apart, with one more so that OUTSIDE_KEY stays last. */
+/* Significant bits of the keys in use, and one more so that OUTSIDE_KEY stays last. */
 static int key_bits(const struct cells *c)
 {
     int bits = 1;
@@ -140,20 +144,7 @@ static int key_bits(const struct cells *c)
     return 2 * bits + 1;
 }
 
-/* Where each digit of each thread's share begins in the sorted order. */
-static void digit_starts(int64_t (*histogram)[DIGITS], int threads)
-{
-    int64_t sum = 0;
-    for (int digit = 0; digit < DIGITS; digit++) {
-        for (int t = 0; t < threads; t++) {
-            const int64_t count = histogram[t][digit];
-            histogram[t][digit] = sum;
-            sum += count;
-        }
-    }
-}
-
-/* One stable counting pass over a digit of the keys, which lie in the upper half of each word. */
+/* One stable counting sort by a digit of the keys, which are the upper halves of the words. */
 static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
                        int64_t (*histogram)[DIGITS], int threads)
 {
@@ -163,15 +154,23 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
         for (int64_t k = n * t / threads; k < n * (t + 1) / threads; k++)
             histogram[t][(from[k] >> shift) & (DIGITS - 1)]++;
     }
-    digit_starts(histogram, threads);
+    /* Counts become the starts of each digit and thread in the output. */
+    int64_t sum = 0;
+    for (int digit = 0; digit < DIGITS; digit++)
+        for (int t = 0; t < threads; t++) {
+            const int64_t count = histogram[t][digit];
+            histogram[t][digit] = sum;
+            sum += count;
+        }
+    ASSERT(sum == n);
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)
         for (int64_t k = n * t / threads; k < n * (t + 1) / threads; k++)
             to[histogram[t][(from[k] >> shift) & (DIGITS - 1)]++] = from[k];
 }
 
-/* Sorts c->pair_a by key and then into clusters; returns where the result lies. Bits do not depend on
- * threads. */
+/* Sorts c->pair_a by key and then into clusters; returns the sorted array, c->pair_a or c->pair_b. The result
+ * does not depend on the number of threads. */
 static const uint64_t *sort_pairs(struct cells *c, int64_t n, const struct particles *p)
 {
     const int threads = c->sort_threads < sort_threads() ? c->sort_threads : sort_threads();
@@ -186,60 +185,52 @@ static const uint64_t *sort_pairs(struct cells *c, int64_t n, const struct parti
     return from;
 }
 
-static void list_clear(struct cell_list *list)
-{
-#pragma omp parallel for schedule(static)
-    for (int32_t k = 0; k < list->n_active; k++) list->count[list->active[k]] = 0;
-    list->n_active = 0;
-}
-
-/* The cell of the particle at place k of n in cell order; none behind the last. */
-static int32_t cell_at_place(const struct cell_list *list, const int32_t *cell, int64_t n,
-                             int64_t k)
+/* The cell of the k-th of n particles in cell order; OUTSIDE if k is not in 0 ... n - 1. */
+static int32_t kth_cell(const struct cell_list *list, const int32_t *cell, int64_t n, int64_t k)
 {
     if (k < 0 || k >= n) return OUTSIDE;
     return cell[list->order ? list->order[k] : k];
 }
 
-/* A number of cells and of the clusters in them. */
+/* Number of cells, and of the clusters in them. */
 struct tally {
     int32_t cells, clusters;
 };
 
-/* Enters the cells that begin in a share of the places, from `at` on among the active ones and their
- * clusters; returns what they come to. Without `enter` they are only counted. */
-static struct tally cells_of_chunk(struct cell_list *list, const int32_t *cell, int64_t n,
-                                   int64_t first, int64_t end, struct tally at, bool enter)
+/* Counts the cells whose first particle is among the first-th to the (end - 1)-th in cell order. With `fill`
+ * it also writes them to the list; `before`: the cells and clusters of earlier chunks. */
+static struct tally list_chunk(struct cell_list *list, const int32_t *cell, int64_t n,
+                               int64_t first, int64_t end, struct tally before, bool fill)
 {
     struct tally found = {0, 0};
     for (int64_t k = first; k < end; k++) {
-        const int32_t c = cell_at_place(list, cell, n, k);
+        const int32_t c = kth_cell(list, cell, n, k);
         if (c == OUTSIDE) break;
-        if (cell_at_place(list, cell, n, k - 1) == c) continue;
-        int64_t behind = k + 1;
-        while (cell_at_place(list, cell, n, behind) == c) behind++;
-        if (enter) {
+        if (kth_cell(list, cell, n, k - 1) == c) continue;
+        int64_t next = k + 1;
+        while (kth_cell(list, cell, n, next) == c) next++;
+        if (fill) {
             list->start[c] = (int32_t)k;
-            list->count[c] = (int32_t)(behind - k);
-            list->cluster[c] = at.clusters + found.clusters;
-            list->active[at.cells + found.cells] = c;
+            list->count[c] = (int32_t)(next - k);
+            list->cluster[c] = before.clusters + found.clusters;
+            list->active[before.cells + found.cells] = c;
         }
         found.cells++;
-        found.clusters += (int32_t)((behind - k + CLUSTER - 1) / CLUSTER);
+        found.clusters += (int32_t)((next - k + CLUSTER - 1) / CLUSTER);
     }
     return found;
 }
 
-/* Ranges, clusters and active cells from the cells of the particles in cell order. */
+/* Start, count and first cluster of each cell, and the active cells, from the cells of the particles. */
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
     const int threads = sort_threads();
     struct tally found[CELLS_SORT_THREADS], sum = {0, 0};
-    list_clear(list);
+#pragma omp parallel for schedule(static)
+    for (int32_t k = 0; k < list->n_active; k++) list->count[list->active[k]] = 0;
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)
-        found[t] =
-            cells_of_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, sum, false);
+        found[t] = list_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, sum, false);
     for (int t = 0; t < threads; t++) {
         const struct tally own = found[t];
         found[t] = sum;
@@ -248,8 +239,26 @@ static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
     }
 #pragma omp parallel for schedule(static) num_threads(threads)
     for (int t = 0; t < threads; t++)
-        cells_of_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
+        list_chunk(list, cell, n, n * t / threads, n * (t + 1) / threads, found[t], true);
     list->n_active = sum.cells;
+}
+
+/* Whether the list holds each particle inside the grid once, by cells in Morton order. */
+__attribute__((unused)) static bool
+list_is_sound(const struct cells *c, const struct cell_list *list, const struct particles *p)
+{
+    int64_t k = 0;
+    int32_t cluster = 0;
+    for (int32_t m = 0; m < list->n_active; m++) {
+        const int32_t cell = list->active[m];
+        if (m > 0 && key_of(c, list->active[m - 1]) >= key_of(c, cell)) return false;
+        if (list->count[cell] < 1 || list->start[cell] != k || list->cluster[cell] != cluster)
+            return false;
+        for (const int64_t end = k + list->count[cell]; k < end; k++)
+            if (kth_cell(list, p->cell, p->n, k) != cell) return false;
+        cluster += clusters_in(list, cell);
+    }
+    return kth_cell(list, p->cell, p->n, k) == OUTSIDE;
 }
 
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
@@ -258,7 +267,7 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     const int64_t n = p->n;
     if (n == 0) return 0;
     for (int axis = 0; axis < 2 && kind == KIND_FLUID; axis++)
-        c->crossed[axis] = c->joined[axis] ? carry_over(c, axis, axis ? p->y : p->x, n) : 0;
+        c->crossings[axis] = c->periodic[axis] ? wrap_positions(c, axis, axis ? p->y : p->x, n) : 0;
     int64_t outside = 0;
 #pragma omp parallel for schedule(static) reduction(+ : outside)
     for (int64_t k = 0; k < n; k++) {
@@ -272,11 +281,12 @@ int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p)
     for (int64_t k = 0; k < n; k++) order[k] = (int32_t)(uint32_t)sorted[k];
     if (!list->order) particles_permute(p, order, n, c->scratch);
     list_fill(list, p->cell, n);
-    cells_measure(c, kind, p);
+    ASSERT(list_is_sound(c, list, p));
+    cells_measure_overhang(c, kind, p);
     return outside;
 }
 
-void cells_resume(struct cells *c, enum kind kind, struct particles *p)
+void cells_rebuild(struct cells *c, enum kind kind, struct particles *p)
 {
     struct cell_list *list = &c->kind[kind];
     if (list->order) {
@@ -286,5 +296,5 @@ void cells_resume(struct cells *c, enum kind kind, struct particles *p)
         for (int64_t k = 0; k < p->n; k++) list->order[k] = (int32_t)(uint32_t)sorted[k];
     }
     list_fill(list, p->cell, p->n);
-    cells_measure(c, kind, p);
+    cells_measure_overhang(c, kind, p);
 }

@@ -1,64 +1,64 @@
 /* SPDX-License-Identifier: MIT
- * The order of the particles within a cell: clusters of four that lie close together, the leaves of a k-d
- * tree (Bentley 1975) that halves along the longer axis. It follows from positions and ids alone: those of
- * the fluid as it is sorted, of bodies in their reference configuration, which a restart knows as well. */
+ * The order of the particles within a cell: clusters of four close particles, the leaves of a k-d tree
+ * (Bentley 1975) that halves along the longer axis. The order follows from positions and ids alone, so that a
+ * restart reproduces it: positions at the sort for fluid, in the reference configuration for bodies. */
 #include <math.h>
 #include <string.h>
 
 #include "particles/cells.h"
 #include "base/simd.h"
 
-/* What decides the places of the particles of a cell. */
-struct spots {
+/* Positions and ids of the particles of a cell. */
+struct points {
     double at[2][CELL_CAPACITY];
-    int64_t key[2][CELL_CAPACITY]; /* `at` as whole numbers, which always have an order */
+    int64_t key[2][CELL_CAPACITY]; /* `at` as integers with the same order; NaN has one too */
     int64_t id[CELL_CAPACITY];
 };
 
-_Static_assert(CELL_CAPACITY % LANES_DOUBLE == 0, "a cell's spots fill whole vectors");
+_Static_assert(CELL_CAPACITY % LANES_DOUBLE == 0, "the points of a cell fill whole vectors");
 
-/* Orders as the numbers do; what is not a number comes before or after all of them. */
+/* An integer with the order of x; a NaN comes before or after all numbers. */
 static int64_t key_of(double x)
 {
     int64_t key;
-    x += 0.0; /* one zero instead of two */
+    x += 0.0; /* -0 becomes 0 */
     memcpy(&key, &x, sizeof key);
     return key < 0 ? key ^ INT64_MAX : key;
 }
 
-/* Along an axis, then the other one, then by id: a spot's new place is the number of those that come before,
- * which takes no branches. */
-static void sort_spots(const struct spots *s, uint16_t *spot, int n, int axis)
+/* Sorts points by one coordinate, then the other, then by id. A point's rank is the number of points before
+ * it: n^2 comparisons, but no branches. */
+static void sort_points(const struct points *s, uint16_t *point, int n, int axis)
 {
     _Alignas(64) int64_t first[CELL_CAPACITY], second[CELL_CAPACITY], id[CELL_CAPACITY];
     uint16_t sorted[CELL_CAPACITY];
-    memcpy(sorted, spot, (size_t)n * sizeof *spot); /* ids of damaged files may not be unique */
+    memcpy(sorted, point, (size_t)n * sizeof *point); /* ids of a damaged file may not be unique */
     for (int k = 0; k < n; k++) {
-        first[k] = s->key[axis][spot[k]];
-        second[k] = s->key[1 - axis][spot[k]];
-        id[k] = s->id[spot[k]];
+        first[k] = s->key[axis][point[k]];
+        second[k] = s->key[1 - axis][point[k]];
+        id[k] = s->id[point[k]];
     }
     for (int from = 0; from < n; from += LANES_DOUBLE) {
         const vlong a = *(const vlong *)(const void *)&first[from];
         const vlong b = *(const vlong *)(const void *)&second[from];
         const vlong c = *(const vlong *)(const void *)&id[from];
-        vlong before = {0}; /* of those beyond the last nobody asks */
+        vlong before = {0}; /* lanes from n on are not used */
         for (int j = 0; j < n; j++) {
             const vlong by_id = (second[j] == b) & (id[j] < c);
             before -= (first[j] < a) | ((first[j] == a) & ((second[j] < b) | by_id));
         }
         for (int k = from; k < from + LANES_DOUBLE && k < n; k++)
-            sorted[before[k - from]] = spot[k];
+            sorted[before[k - from]] = point[k];
     }
-    memcpy(spot, sorted, (size_t)n * sizeof *spot);
+    memcpy(point, sorted, (size_t)n * sizeof *point);
 }
 
 /* The axis along which the particles extend further. */
-static int longer_axis(const struct spots *s, const uint16_t *spot, int n)
+static int longer_axis(const struct points *s, const uint16_t *point, int n)
 {
     double left = INFINITY, right = -INFINITY, down = INFINITY, up = -INFINITY;
     for (int k = 0; k < n; k++) {
-        const double x = s->at[0][spot[k]], y = s->at[1][spot[k]];
+        const double x = s->at[0][point[k]], y = s->at[1][point[k]];
         left = min2(left, x);
         right = max2(right, x);
         down = min2(down, y);
@@ -67,37 +67,39 @@ static int longer_axis(const struct spots *s, const uint16_t *spot, int n)
     return up - down > right - left;
 }
 
-/* Halves the particles along the longer axis, whole clusters each, until they are clusters. */
-static void split(const struct spots *s, uint16_t *spot, int n)
+/* Halves the points along the longer axis, into whole clusters, until each part is one cluster. */
+static void split(const struct points *s, uint16_t *point, int n)
 {
     if (n <= CLUSTER) return;
-    sort_spots(s, spot, n, longer_axis(s, spot, n));
+    sort_points(s, point, n, longer_axis(s, point, n));
     const int half = (n + CLUSTER - 1) / CLUSTER / 2 * CLUSTER;
-    split(s, spot, half);
-    split(s, spot + half, n - half);
+    split(s, point, half);
+    split(s, point + half, n - half);
 }
 
-/* One cell's range of pairs. */
+/* Orders the n particles of one cell. */
 static void order_cell(uint64_t *pair, int n, const struct particles *p)
 {
-    struct spots s;
-    uint16_t spot[CELL_CAPACITY];
+    struct points s;
+    uint16_t point[CELL_CAPACITY];
     uint32_t particle[CELL_CAPACITY];
     const double *const x = p->X ? p->X : p->x, *const y = p->Y ? p->Y : p->y;
+    ASSERT(n <= CELL_CAPACITY);
     if (n <= CLUSTER) return;
     for (int k = 0; k < n; k++) {
         const uint32_t i = (uint32_t)pair[k];
+        ASSERT(i < p->n);
         s.key[0][k] = key_of(s.at[0][k] = x[i]);
         s.key[1][k] = key_of(s.at[1][k] = y[i]);
         s.id[k] = p->id[i];
         particle[k] = i;
-        spot[k] = (uint16_t)k;
+        point[k] = (uint16_t)k;
     }
-    split(&s, spot, n);
-    for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | particle[spot[k]];
+    split(&s, point, n);
+    for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | particle[point[k]];
 }
 
-/* Those outside of the grid, and those of a cell with more than there is room for, which ends the run. */
+/* For particles outside the grid, and for a cell above its capacity, at which a guard stops the run. */
 static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
 {
     for (int64_t k = 1; k < n; k++) {
@@ -116,7 +118,7 @@ static int64_t end_of_cell(const uint64_t *pair, int64_t n, int64_t k)
     return end;
 }
 
-/* Shares of the places begin where cells do: found before any of them is put in order. */
+/* Each thread orders whole cells. Where its range starts is found first, since ordering changes `pair`. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads)
 {
     int64_t first[CELLS_SORT_THREADS + 1] = {0};

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * How long a sorting stays good. Pairs in cells that do not touch are never looked at; they can only have
- * come within reach of each other if both, together, hang over their cells' edges by more than what cells are
- * wider than the reach. How fast things move only says when to measure again. */
+ * How long a cell list stays valid. Sweeps visit pairs in neighbouring cells only. Two particles of other
+ * cells can be within reach only if their overhangs add up to more than the cells' side exceeds the reach. */
 #include <math.h>
 
 #include "particles/cells.h"
 
-enum { DEFERRED, RIGHT, DOWN, UP };
+enum { LEFT, RIGHT, DOWN, UP };
 
 static struct overhang overhang_of(const struct cells *c, const struct cell_list *list,
                                    const struct particles *p, int32_t cell)
@@ -25,17 +24,17 @@ static struct overhang overhang_of(const struct cells *c, const struct cell_list
                               high[1] - bottom - c->side[1]}};
 }
 
-void cells_measure(struct cells *c, enum kind kind, const struct particles *p)
+void cells_measure_overhang(struct cells *c, enum kind kind, const struct particles *p)
 {
     struct cell_list *const list = &c->kind[kind];
     double left = -INFINITY, right = left, down = left, up = left;
 #pragma omp parallel for schedule(static) reduction(max : left, right, down, up)
     for (int32_t k = 0; k < list->n_active; k++) {
         const struct overhang o = overhang_of(c, list, p, list->active[k]);
-        left = max2(left, o.by[DEFERRED]);
-        right = max2(right, o.by[RIGHT]);
-        down = max2(down, o.by[DOWN]);
-        up = max2(up, o.by[UP]);
+        left = max2(left, o.side[LEFT]);
+        right = max2(right, o.side[RIGHT]);
+        down = max2(down, o.side[DOWN]);
+        up = max2(up, o.side[UP]);
     }
     list->most = (struct overhang){{left, right, down, up}};
 }
@@ -43,15 +42,15 @@ void cells_measure(struct cells *c, enum kind kind, const struct particles *p)
 double cells_skin_left(const struct cells *c, double reach)
 {
     const struct overhang *const fluid = &c->kind[KIND_FLUID].most;
-    double room = INFINITY;
+    double left = INFINITY;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         if (!c->kind[kind].n_active) continue;
         const struct overhang *const other = &c->kind[kind].most;
-        for (int to = DEFERRED; to <= UP; to++) {
-            const double wider = c->side[to / 2] - reach;
-            room = min2(room, c->stray - other->by[to]);
-            room = min2(room, wider - (fluid->by[to] + other->by[to ^ 1]));
+        for (int to = LEFT; to <= UP; to++) { /* to ^ 1: the opposite side */
+            const double excess = c->side[to / 2] - reach;
+            left = min2(left, c->skin - other->side[to]);
+            left = min2(left, excess - (fluid->side[to] + other->side[to ^ 1]));
         }
     }
-    return room;
+    return left;
 }

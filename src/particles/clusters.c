@@ -3,7 +3,7 @@
 
 #include "particles/kernel.h"
 
-/* A margin for the rounding of boxes and of what lies in them. */
+/* Covers the rounding of boxes and positions in single precision. */
 #define REACH_MARGIN 1.001
 
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
@@ -17,21 +17,21 @@ enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t 
 
 #define FAR_AWAY 1e18f
 
-/* A cell and where it lies from another one, whose own column and row are 1. */
+/* One of 3 x 3 cells; the middle one is in column 1, row 1. */
 struct cell_code {
     int32_t cell;
     int column, row;
 };
 
-/* The cells around one that have particles, itself among them. */
+/* The cells of the 3 x 3 around `cell` that hold particles. */
 SPHFSI_INLINE int cells_around(struct cell_code code[9], const struct cells *c,
                                const struct cell_list *list, int32_t cell)
 {
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);
     int columns[3], n = 0;
-    for (int column = 0; column < 3; column++) columns[column] = cells_place(c, 0, cx + column - 1);
+    for (int column = 0; column < 3; column++) columns[column] = cells_wrap(c, 0, cx + column - 1);
     for (int row = 0; row < 3; row++) {
-        const int y = cells_place(c, 1, cy + row - 1);
+        const int y = cells_wrap(c, 1, cy + row - 1);
         for (int column = 0; column < 3 && y >= 0; column++) {
             const int32_t other = y * c->nx + columns[column];
             if (columns[column] < 0 || list->count[other] == 0) continue;
@@ -51,17 +51,18 @@ SPHFSI_INLINE struct sides sides_of(const struct cells *c, double h)
     return (struct sides){(float)(c->side[0] / h), (float)(c->side[1] / h)};
 }
 
-/* Appends the clusters of a cell; `ahead` is SEEN_AHEAD or 0. By eights, since a cell has four or five: what
- * wider vectors store beyond is a loss. */
-SPHFSI_INLINE void append(struct surroundings *s, const struct cluster_boxes *boxes,
+/* Appends the clusters of a cell; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a cell has four
+ * or five, so wider vectors would only store more padding. */
+SPHFSI_INLINE void append(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
                           const struct cell_list *list, struct sides sides, struct cell_code code,
-                          uint32_t ahead)
+                          uint32_t half)
 {
     const float dx = (float)(code.column - 1) * sides.x, dy = (float)(code.row - 1) * sides.y;
     const int32_t first = list->cluster[code.cell], count = clusters_in(list, code.cell);
     const eight_word ramp = {0, 1, 2, 3, 4, 5, 6, 7};
     const eight_word word =
-        ramp * neighbour_code(1, 0, 0) + (neighbour_code(first, code.column, code.row) | ahead);
+        ramp * neighbour_code(1, 0, 0) + (neighbour_code(first, code.column, code.row) | half);
+    ASSERT(s->n + count <= CLUSTERS_AROUND);
     for (int m = 0; m < count; m += 8) {
         const int to = s->n + m;
         for (int k = 0; k < BOX_SIDES; k++)
@@ -72,14 +73,14 @@ SPHFSI_INLINE void append(struct surroundings *s, const struct cluster_boxes *bo
     s->n += count;
 }
 
-/* Boxes that nothing is near to, for a vector that reaches beyond the last. */
-SPHFSI_INLINE void close_boxes(struct surroundings *s)
+/* Fills the rest of the last vector with boxes out of everything's reach. */
+SPHFSI_INLINE void pad_boxes(struct neighbour_clusters *s)
 {
     for (int k = 0; k < BOX_SIDES; k++) vstore_float(&s->side[k][s->n], vset_float(FAR_AWAY));
 }
 
-void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
-                     const struct cells *c, enum kind kind, int32_t cell, double h)
+void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
+                                const struct cells *c, enum kind kind, int32_t cell, double h)
 {
     const struct cell_list *const list = &c->kind[kind];
     const struct sides sides = sides_of(c, h);
@@ -87,12 +88,13 @@ void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
     const int n = cells_around(code, c, list, cell);
     s->n = 0;
     for (int k = 0; k < n; k++) append(s, boxes, list, sides, code[k], 0);
-    close_boxes(s);
+    pad_boxes(s);
 }
 
-void clusters_ahead_around(struct surroundings *s, const struct cluster_boxes *boxes,
-                           const struct cells *c, enum kind kind, int32_t cell, double h,
-                           struct cluster_range range)
+void neighbour_clusters_collect_half(struct neighbour_clusters *s,
+                                     const struct cluster_boxes *boxes, const struct cells *c,
+                                     enum kind kind, int32_t cell, double h,
+                                     struct cluster_range range)
 {
     const struct cell_list *const list = &c->kind[kind];
     const struct sides sides = sides_of(c, h);
@@ -103,16 +105,16 @@ void clusters_ahead_around(struct surroundings *s, const struct cluster_boxes *b
         const int32_t first = list->cluster[code[k].cell];
         const bool inside = first >= range.first && first < range.end;
         if (inside && first <= list->cluster[cell]) continue;
-        append(s, boxes, list, sides, code[k], inside ? SEEN_AHEAD : 0);
+        append(s, boxes, list, sides, code[k], inside ? NEIGHBOUR_HALF : 0);
     }
-    append(s, boxes, list, sides, (struct cell_code){cell, 1, 1}, SEEN_AHEAD);
+    append(s, boxes, list, sides, (struct cell_code){cell, 1, 1}, NEIGHBOUR_HALF);
     s->n--;
-    close_boxes(s);
+    pad_boxes(s);
 }
 
-/* Appends those clusters around that lie within reach of a box. */
-SPHFSI_INLINE void list_near(struct cluster_list *near, const struct surroundings *s,
-                             const struct cluster_boxes *boxes, size_t cluster)
+/* Appends the collected clusters whose box is within reach of the box of `cluster`. */
+SPHFSI_INLINE void append_near(struct cluster_list *near, const struct neighbour_clusters *s,
+                               const struct cluster_boxes *boxes, size_t cluster)
 {
     const vfloat none = vset_float(0), left = vset_float(boxes->side[BOX_LEFT][cluster]),
                  right = vset_float(boxes->side[BOX_RIGHT][cluster]),
@@ -130,20 +132,21 @@ SPHFSI_INLINE void list_near(struct cluster_list *near, const struct surrounding
     near->n = n;
 }
 
-void clusters_near(struct cluster_list *near, const struct surroundings *s,
-                   const struct cluster_boxes *boxes, int32_t cluster)
+void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
+                        const struct cluster_boxes *boxes, int32_t cluster)
 {
     near->n = 0;
-    list_near(near, s, boxes, (size_t)cluster);
+    append_near(near, s, boxes, (size_t)cluster);
 }
 
-void clusters_ahead_near(struct cluster_list *near, struct surroundings *s,
-                         const struct cluster_boxes *boxes)
+void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,
+                             const struct cluster_boxes *boxes)
 {
     const uint32_t own = s->code[s->n];
-    near->code[0] = own & ~(uint32_t)SEEN_AHEAD;
+    near->code[0] = own & ~(uint32_t)NEIGHBOUR_HALF;
     near->n = 1;
-    list_near(near, s, boxes, neighbour_number(own));
-    /* Now rather than in the next call, which loads what this stores as a part of vectors. */
+    append_near(near, s, boxes, neighbour_number(own));
+    /* Removes the next own cluster from the collection. Here and not at the next call: a vector load right
+     * after this scalar store would stall. */
     if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Which clusters of particles lie within reach of each other, by the boxes around them. Boxes are those of
- * where the particles are now: that they were put together when they were last sorted decides how tight the
- * boxes are, and never who is seen. */
+ * Cluster pair lists, as in Pall and Hess (2013): which clusters of four particles are within reach of each
+ * other, by their bounding boxes. Boxes follow the present positions; an older sort makes them larger, but
+ * never misses a pair. */
 #ifndef SPHFSI_PARTICLES_CLUSTERS_H
 #define SPHFSI_PARTICLES_CLUSTERS_H
 
@@ -17,29 +17,32 @@ enum {
     CLUSTERS_AROUND = 9 * CELL_CAPACITY / CLUSTER
 };
 
-/* Smallest and largest coordinates in each cluster, from its cell's centre in units of h. */
+/* Bounding box of each cluster, relative to its cell's centre, in units of h. */
 struct cluster_boxes {
     float *side[BOX_SIDES]; /* [clusters] */
 };
 
-/* A cluster seen from another cell, in one word: its number, the column and row of its cell, 1 being the
- * seeing cell's own, and whether it is ahead (clusters_ahead_around). */
+/* A neighbour cluster in one word: its number, and the column and row of its cell among 3 x 3, where (1, 1)
+ * is the cell of the receiving cluster. A flag says that the pair is in the half list
+ * (neighbour_clusters_collect_half). */
+enum { CLUSTERS_MOST = 1 << 27, NEIGHBOUR_HALF = 1 << 4 };
 SPHFSI_INLINE uint32_t neighbour_code(int32_t cluster, int column, int row)
 {
+    ASSERT(cluster >= 0 && cluster < CLUSTERS_MOST && column >= 0 && column < 3 && row >= 0 &&
+           row < 3);
     return (uint32_t)cluster << 5 | (uint32_t)row << 2 | (uint32_t)column;
 }
 SPHFSI_INLINE size_t neighbour_number(uint32_t code) { return code >> 5; }
 SPHFSI_INLINE unsigned neighbour_column(uint32_t code) { return code & 3; }
 SPHFSI_INLINE unsigned neighbour_row(uint32_t code) { return code >> 2 & 3; }
-SPHFSI_INLINE bool neighbour_is_ahead(uint32_t code) { return code >> 4 & 1; }
-enum { CLUSTERS_MOST = 1 << 27, SEEN_AHEAD = 1 << 4 };
+SPHFSI_INLINE bool neighbour_is_half(uint32_t code) { return code >> 4 & 1; }
 
 /* Clusters of one kind, first to end - 1. */
 struct cluster_range {
     int32_t first, end;
 };
 
-/* The clusters of active cells first to end - 1, of which there is one at least. */
+/* The clusters of the active cells first to end - 1; first < end. */
 SPHFSI_INLINE struct cluster_range clusters_of(const struct cell_list *list, int32_t first,
                                                int32_t end)
 {
@@ -48,38 +51,40 @@ SPHFSI_INLINE struct cluster_range clusters_of(const struct cell_list *list, int
                                   list->cluster[last] + clusters_in(list, last)};
 }
 
-/* The clusters of one kind in the nine cells around one: their boxes, from that cell's centre. */
-struct surroundings {
+/* The clusters of one kind in 3 x 3 cells; boxes relative to the middle cell's centre. */
+struct neighbour_clusters {
     _Alignas(64) float side[BOX_SIDES][CLUSTERS_AROUND + LANES_FLOAT];
     _Alignas(64) uint32_t code[CLUSTERS_AROUND + LANES_FLOAT];
     int n;
 };
 
-/* Those of them that a cluster has to look at. */
+/* The neighbour clusters of one cluster. */
 struct cluster_list {
     _Alignas(64) uint32_t code[1 + CLUSTERS_AROUND + LANES_FLOAT];
     int n;
 };
 
-/* Room for the boxes of n clusters. */
+/* Allocates the boxes of n clusters. */
 enum err cluster_boxes_create(struct cluster_boxes *b, struct arena *a, int64_t n, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Looks around a cell. */
-void clusters_around(struct surroundings *s, const struct cluster_boxes *boxes,
-                     const struct cells *c, enum kind kind, int32_t cell, double h);
+/* Collects the clusters of the 3 x 3 cells around `cell`. */
+void neighbour_clusters_collect(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
+                                const struct cells *c, enum kind kind, int32_t cell, double h);
 
-/* Lists the clusters around that lie within reach (2h) of a box. */
-void clusters_near(struct cluster_list *near, const struct surroundings *s,
-                   const struct cluster_boxes *boxes, int32_t cluster);
+/* Lists the collected clusters within reach (2h) of the box of `cluster`. */
+void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
+                        const struct cluster_boxes *boxes, int32_t cluster);
 
-/* The same with each pair of clusters in a range of whole cells seen once: a cell sees those in later cells
- * of the range (ahead), and all that are outside of it. Its own clusters come in turn, the last one first:
- * each call lists what the next one sees, itself, which is not ahead, and of its cell those still to come. */
-void clusters_ahead_around(struct surroundings *s, const struct cluster_boxes *boxes,
-                           const struct cells *c, enum kind kind, int32_t cell, double h,
-                           struct cluster_range range);
-void clusters_ahead_near(struct cluster_list *near, struct surroundings *s,
-                         const struct cluster_boxes *boxes);
+/* Half lists: each pair of clusters within `range` (whole cells) is listed once, flagged NEIGHBOUR_HALF, and
+ * serves both clusters. Clusters outside the range are listed as before, without the flag. After collecting,
+ * each call of cluster_list_build_half serves the next cluster of the cell, the last one first: first itself
+ * (no flag), then its neighbours. */
+void neighbour_clusters_collect_half(struct neighbour_clusters *s,
+                                     const struct cluster_boxes *boxes, const struct cells *c,
+                                     enum kind kind, int32_t cell, double h,
+                                     struct cluster_range range);
+void cluster_list_build_half(struct cluster_list *near, struct neighbour_clusters *s,
+                             const struct cluster_boxes *boxes);
 
 #endif

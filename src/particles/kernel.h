@@ -8,10 +8,6 @@
 
 #include "base/base.h"
 
-#include <math.h>
-
-#define PI 3.14159265358979323846
-
 /* Reach of the kernel in units of h. */
 #define KERNEL_REACH 2.0
 /* alpha_D h^2, and the factor of the gradient: grad W = -KERNEL_SLOPE/h^4 (1 - q/2)^3 x. */

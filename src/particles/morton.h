@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Morton (Z-order) keys: cells near each other in the plane lie near each other in memory. */
+ * Morton (Z-order) keys: cells close to each other in the plane have close keys. */
 #ifndef SPHFSI_PARTICLES_MORTON_H
 #define SPHFSI_PARTICLES_MORTON_H
 

@@ -20,12 +20,10 @@ const struct field_info field_table[] = {
 };
 const int field_count = COUNT_OF(field_table);
 
-static void *const *slot(const struct particles *p, const struct field_info *f)
+void *field_array(const struct particles *p, const struct field_info *f)
 {
-    return (void *const *)(const void *)((const unsigned char *)p + f->offset);
+    return *(void *const *)(const void *)((const unsigned char *)p + f->offset);
 }
-
-void *field_array(const struct particles *p, const struct field_info *f) { return *slot(p, f); }
 
 enum err particles_create(struct particles *p, struct arena *a, int64_t capacity, unsigned groups,
                           const char *what, struct diag *d)
@@ -38,6 +36,7 @@ enum err particles_create(struct particles *p, struct arena *a, int64_t capacity
         if (!(f->group & groups)) continue;
         void *memory = arena_alloc(a, (size_t)capacity, f->size, what, d);
         if (!memory) return ERR_MEMORY;
+        ASSERT((uintptr_t)memory % ARENA_ALIGN == 0);
         memcpy((unsigned char *)p + f->offset, &memory, sizeof memory);
     }
     return ERR_OK;
@@ -65,6 +64,8 @@ static void permute_4(bits32 *values, const int32_t *order, int64_t n, bits32 *s
 
 void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch)
 {
+    ASSERT(n <= p->n && p->n <= p->capacity);
+    for (int64_t k = 0; k < n; k++) ASSERT(order[k] >= 0 && order[k] < n);
     for (int k = 0; k < field_count; k++) {
         void *values = field_array(p, &field_table[k]);
         if (!values || field_table[k].keep != KEEP_STATE) continue;
@@ -77,13 +78,11 @@ void particles_permute(struct particles *p, const int32_t *order, int64_t n, voi
 
 uint64_t particles_hash(const struct particles *p, uint64_t seed)
 {
-    const uint64_t fnv_prime = 0x100000001b3u;
     uint64_t h = seed;
     for (int k = 0; k < field_count; k++) {
-        const unsigned char *bytes = field_array(p, &field_table[k]);
-        if (!bytes || field_table[k].keep != KEEP_STATE) continue;
-        const size_t count = (size_t)p->n * field_table[k].size;
-        for (size_t i = 0; i < count; i++) h = (h ^ bytes[i]) * fnv_prime;
+        const void *values = field_array(p, &field_table[k]);
+        if (values && field_table[k].keep == KEEP_STATE)
+            h = hash_bytes(h, values, (size_t)p->n * field_table[k].size);
     }
     return h;
 }

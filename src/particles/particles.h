@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What a particle is: flat arrays declared from particles/fields.def, one set of them for each kind. */
+ * Particles as flat arrays (SoA), declared from particles/fields.def; one set of arrays for each kind. */
 #ifndef SPHFSI_PARTICLES_PARTICLES_H
 #define SPHFSI_PARTICLES_PARTICLES_H
 
@@ -25,10 +25,10 @@ enum keep { KEEP_STATE, KEEP_DERIVED };
 enum kind { KIND_FLUID, KIND_WALL, KIND_SOLID, KIND_COUNT };
 extern const char *const kind_names[KIND_COUNT];
 
-/* The particles of one kind. A pointer is NULL while its group is off. Memory: the arena's. */
+/* The particles of one kind. A pointer is NULL while its group is off. The arena owns the memory. */
 struct particles {
     int64_t n;        /* particles now */
-    int64_t capacity; /* room in each array; vector loads may run past it (ARENA_MARGIN) */
+    int64_t capacity; /* items of each array; vector loads may cross its end (ARENA_MARGIN) */
     unsigned groups;
 #define FIELD(type, name, group, keep, unit, meaning) type *name;
 #include "particles/fields.def"
@@ -56,10 +56,10 @@ enum err particles_create(struct particles *p, struct arena *a, int64_t capacity
 /* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
 void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch);
 
-/* FNV-1a hash of every STATE field, in array order, continuing from `seed`. */
+/* Hash of every STATE field, in array order, continued from `seed` (base/hash.h). */
 uint64_t particles_hash(const struct particles *p, uint64_t seed);
 
-/* Bytes the groups of p take in all. */
+/* Bytes of all arrays of p. */
 size_t particles_bytes(const struct particles *p);
 
 #endif

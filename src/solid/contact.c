@@ -96,14 +96,6 @@ static int64_t cell_of(const struct contact_grid *g, double x)
     return (int64_t)floor(x / g->side);
 }
 
-static uint32_t slot_of(const struct contact_grid *g, int64_t i, int64_t j)
-{
-    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
-    key ^= key >> 29;
-    key *= 0xBF58476D1CE4E5B9u;
-    return (uint32_t)(key >> 32) & g->mask;
-}
-
 static enum err grid_create(struct contact_grid *g, struct arena *a, int64_t n, struct diag *d)
 {
     uint32_t size = 64;
@@ -118,7 +110,7 @@ static void grid_fill(struct contact_grid *g, int64_t n)
 {
     memset(g->head, 0xff, ((size_t)g->mask + 1) * sizeof *g->head);
     for (int64_t k = n - 1; k >= 0; k--) {
-        const uint32_t slot = slot_of(g, cell_of(g, g->x[k]), cell_of(g, g->y[k]));
+        const uint32_t slot = hash_cell(cell_of(g, g->x[k]), cell_of(g, g->y[k]), g->mask);
         g->next[k] = g->head[slot];
         g->head[slot] = (int32_t)k;
     }
@@ -133,7 +125,7 @@ static int grid_find(const struct contact_grid *g, double x, double y, double re
     int n = 0;
     for (int64_t j = cj - 1; j <= cj + 1; j++) {
         for (int64_t i = ci - 1; i <= ci + 1; i++) {
-            for (int32_t k = g->head[slot_of(g, i, j)]; k >= 0; k = g->next[k]) {
+            for (int32_t k = g->head[hash_cell(i, j, g->mask)]; k >= 0; k = g->next[k]) {
                 /* Cells may share a slot. */
                 if (cell_of(g, g->x[k]) != i || cell_of(g, g->y[k]) != j) continue;
                 if (square(g->x[k] - x) + square(g->y[k] - y) >= reach * reach) continue;

@@ -320,16 +320,9 @@ struct slot_sets {
     struct slots all;
 };
 
-static uint64_t hash_bytes(uint64_t h, const void *data, size_t n)
-{
-    const unsigned char *const bytes = data;
-    for (size_t k = 0; k < n; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
-    return h;
-}
-
 static uint64_t slots_hash(const struct solid *s, const struct slots *t, int n)
 {
-    const uint64_t h = hash_bytes(0xcbf29ce484222325u, t->offset, (size_t)n * sizeof *t->offset);
+    const uint64_t h = hash_bytes(HASH_START, t->offset, (size_t)n * sizeof *t->offset);
     return hash_bytes(h, t->weight, (size_t)n * slot_bytes(s));
 }
 

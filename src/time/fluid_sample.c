@@ -20,7 +20,7 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
     const struct cell_list *const list = &c->kind[kind];
     const struct particles *const p = &s->kind[kind];
     /* Cells that may hold particles within reach: they may have strayed since they were sorted. */
-    const double reach = KERNEL_REACH * s->fluid.k.h + c->stray;
+    const double reach = KERNEL_REACH * s->fluid.k.h + c->skin;
     int first[2], n[2];
     for (int axis = 0; axis < 2; axis++) {
         const int cells = axis ? c->ny : c->nx;
@@ -28,15 +28,15 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
                      part = reach / c->side[axis];
         first[axis] = (int)max2(-1, min2(cells, floor(at - part)));
         n[axis] = (int)max2(-1, min2(cells, floor(at + part))) - first[axis] + 1;
-        if (c->joined[axis] && n[axis] > cells) n[axis] = cells;
+        if (c->periodic[axis] && n[axis] > cells) n[axis] = cells;
     }
     for (int place = 0; place < n[0] * n[1]; place++) {
         const int32_t cell = cell_at(c, first[0] + place % n[0], first[1] + place / n[0]);
         if (cell < 0) continue;
         for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
             const int64_t i = list->order ? list->order[k] : k;
-            const double dx = cells_short_way(c, 0, p->x[i] - x);
-            const double dy = cells_short_way(c, 1, p->y[i] - y);
+            const double dx = cells_minimum_image(c, 0, p->x[i] - x);
+            const double dy = cells_minimum_image(c, 1, p->y[i] - y);
             visit(s, kind, i, hypot(dx, dy), sums);
         }
     }
@@ -166,8 +166,8 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
     const double dp = s->scene->top.dp, reach = 3 * dp;
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) {
-        const double x = cells_short_way(&s->cells, 0, p->x[i] - a[0]);
-        const double y = cells_short_way(&s->cells, 1, p->y[i] - a[1]);
+        const double x = cells_minimum_image(&s->cells, 0, p->x[i] - a[0]);
+        const double y = cells_minimum_image(&s->cells, 1, p->y[i] - a[1]);
         const double along = x * tx + y * ty, across = x * ty - y * tx;
         if (along < 0 || along > length || fabs(across) >= reach) continue;
         const double bell = 0.5 / reach * (1 + cos(PI * across / reach));

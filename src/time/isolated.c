@@ -12,7 +12,7 @@
 static int most_of_drop(const struct simulation *s)
 {
     const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;
-    return (int)(M_PI / 3 * reach * reach);
+    return (int)(PI / 3 * reach * reach);
 }
 
 void limit_isolated_tension(struct simulation *s)

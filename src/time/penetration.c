@@ -9,7 +9,7 @@
 static double nearest(const struct cells *c, int axis, double d)
 {
     const double width = c->side[axis] * (axis ? c->ny : c->nx);
-    return c->joined[axis] ? d - width * rint(d / width) : d;
+    return c->periodic[axis] ? d - width * rint(d / width) : d;
 }
 
 /* Spacings from a particle of a body within which a fluid particle stands inside. Fluid at rest is one
@@ -33,7 +33,7 @@ static bool takes(const struct simulation *s, enum kind kind, int64_t i, double 
 static bool wall_near(const struct simulation *s, int32_t cell, double x, double y)
 {
     const struct cells *const c = &s->cells;
-    const double reach = TAKEN * s->scene->top.dp + (s->effects & FX_MOTION ? c->stray : 0);
+    const double reach = TAKEN * s->scene->top.dp + (s->effects & FX_MOTION ? c->skin : 0);
     return fabs(nearest(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
            fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
 }

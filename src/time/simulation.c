@@ -164,7 +164,7 @@ static void book_crossings(struct simulation *s)
 {
     for (int axis = 0; axis < 2; axis++)
         s->state.periodic_energy += s->fluid.k.mass * s->fluid.k.gravity[axis] *
-                                    (double)s->cells.crossed[axis] *
+                                    (double)s->cells.crossings[axis] *
                                     (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
 }
 
@@ -260,7 +260,7 @@ static bool sorting_due(struct simulation *s)
     if (bounded && s->skin_left > hair) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (s->cells.kind[kind].n_active && (kind != KIND_WALL || s->wall_motion.moved))
-            cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
+            cells_measure_overhang(&s->cells, (enum kind)kind, &s->kind[kind]);
     find_skin_left(s);
     return !(s->skin_left > 0);
 }
@@ -272,7 +272,7 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     TRY(cells_create(&s->cells, &s->arena, scene->domain_lower, scene->domain_upper, reach, stray,
                      s->kind, d));
     for (int axis = 0; axis < 2; axis++)
-        if (scene_periodic(scene, axis)) TRY(cells_join(&s->cells, axis, reach, d));
+        if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&s->cells, axis, reach, d));
     TRY(fluid_create(&s->fluid, &s->arena, scene, s->effects, s->kind, &s->cells, d));
     start_fluid(s);
     return ERR_OK;
@@ -446,7 +446,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     if (s->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
             if (s->kind[kind].capacity && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
-                cells_resume(&s->cells, (enum kind)kind, &s->kind[kind]);
+                cells_rebuild(&s->cells, (enum kind)kind, &s->kind[kind]);
         fluid_find_near(&s->fluid, &s->cells);
         find_skin_left(s);
         if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
@@ -484,9 +484,7 @@ void simulation_refresh(struct simulation *s)
 uint64_t simulation_hash(struct simulation *s)
 {
     simulation_refresh(s);
-    uint64_t h = 0xcbf29ce484222325u;
+    uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&s->kind[kind], h);
-    const unsigned char *const bytes = (const unsigned char *)&s->state;
-    for (size_t k = 0; k < sizeof s->state; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
-    return h;
+    return hash_bytes(h, &s->state, sizeof s->state);
 }

@@ -3,7 +3,7 @@
  * the rows and the snapshots of the run that was not stopped: between two sortings, within a cycle of
  * Verlet, with sub-steps, right at an output that has not been written yet, after the last step. Every
  * other time the run goes on behind the checkpoint, so that rows and snapshots have to be dropped. */
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "case/params.h"
 #include "output/snapshot_file.h"
 #include "sphfsi.h"
@@ -56,7 +56,7 @@ static enum sphfsi_status run(const struct form *f, const char *out, int threads
                                      .progress = watch,
                                      .progress_interval = 1e-12};
     const enum sphfsi_status status = sphfsi_run(&o);
-    char message[RUN_DIR_PATH];
+    char message[PATH_BYTES];
     snprintf(message, sizeof message, "%s: %s", f->name, sphfsi_error());
     const enum sphfsi_status wanted = requests.stop ? SPHFSI_INTERRUPT : SPHFSI_OK;
     TEST_ASSERT_EQUAL_INT_MESSAGE(wanted, status, message);
@@ -68,7 +68,7 @@ static enum sphfsi_status run(const struct form *f, const char *out, int threads
 static char *read_all(const char *folder, const char *name, size_t *size)
 {
     static char *bytes;
-    char path[RUN_DIR_PATH + 300];
+    char path[PATH_BYTES + 300];
     struct diag d = {.code = ERR_OK};
     snprintf(path, sizeof path, "%s/%s", folder, name);
     if (file_read(path, &bytes, size, &d)) TEST_FAIL_MESSAGE(d.text);
@@ -101,7 +101,7 @@ static void same_snapshots(const char *a, const char *b, const char *what)
     const char *const folder[2] = {a, b};
     int64_t rows[2][D_COUNT];
     for (int k = 0; k < 2; k++) {
-        char path[RUN_DIR_PATH + 300];
+        char path[PATH_BYTES + 300];
         snprintf(path, sizeof path, "%s/fields.vtkhdf", folder[k]);
         file[k] = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
         const int64_t n = snapshot_file_steps(file[k]);
@@ -142,7 +142,7 @@ static void same(const char *a, const char *b, const char *what)
 /* --- stopping --- */
 
 /* The first checkpoint of the folder by its name. */
-static void oldest(const char *folder, char path[RUN_DIR_PATH + 300])
+static void oldest(const char *folder, char path[PATH_BYTES + 300])
 {
     DIR *dir = opendir(folder);
     TEST_ASSERT_NOT_NULL(dir);
@@ -151,12 +151,12 @@ static void oldest(const char *folder, char path[RUN_DIR_PATH + 300])
         if (strncmp(e->d_name, "step-", 5) == 0 && strcmp(e->d_name, first) < 0)
             snprintf(first, sizeof first, "%s", e->d_name);
     closedir(dir);
-    snprintf(path, RUN_DIR_PATH + 300, "%s/%s", folder, first);
+    snprintf(path, PATH_BYTES + 300, "%s/%s", folder, first);
 }
 
 static void stop_and_go_on(const struct form *f, const char *whole, int64_t at)
 {
-    char name[64], what[160], cut[RUN_DIR_PATH], checkpoint[RUN_DIR_PATH + 300];
+    char name[64], what[160], cut[PATH_BYTES], checkpoint[PATH_BYTES + 300];
     snprintf(name, sizeof name, "stop%d", stops++);
     snprintf(cut, sizeof cut, "%s", tiny_path(name));
     snprintf(what, sizeof what, "%s, stopped after step %ld", f->name, (long)at);
@@ -174,7 +174,7 @@ static void stop_and_go_on(const struct form *f, const char *whole, int64_t at)
 
 static void sweep(const struct form *f)
 {
-    char whole[RUN_DIR_PATH];
+    char whole[PATH_BYTES];
     snprintf(whole, sizeof whole, "%s", tiny_path(f->name));
     stop_after = INT64_MAX;
     save_after = -1;

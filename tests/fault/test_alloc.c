@@ -4,7 +4,7 @@
  * what was good stays good. malloc, calloc, realloc, aligned_alloc, fopen, fdopen and opendir of this
  * program are put in between by the linker (--wrap). Those within HDF5, a shared library, are not: it
  * says itself that it does not survive all of them; a snapshot that fails is rehearsed by full disks. */
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "sphfsi.h"
 #include "tiny.h"
 #include "unity.h"
@@ -88,7 +88,7 @@ void setUp(void) { countdown = -1; }
 
 void tearDown(void) { countdown = -1; }
 
-static char folder[RUN_DIR_PATH], begun[RUN_DIR_PATH], path[RUN_DIR_PATH + 300];
+static char folder[PATH_BYTES], begun[PATH_BYTES], path[PATH_BYTES + 300];
 static const char *const sets[] = {"output.snapshot_interval=0.2 ms",
                                    "output.checkpoint_interval=0.2 ms"};
 static const char *const stiffer[] = {"gate.young=2e6"};
@@ -152,7 +152,7 @@ static void copy_begun(void)
 {
     static const char *const names[] = {"case.cfg", "ledger.csv", "probes.csv", "fields.vtkhdf",
                                         "summary.json"};
-    char from[RUN_DIR_PATH + 300], to[RUN_DIR_PATH + 300];
+    char from[PATH_BYTES + 300], to[PATH_BYTES + 300];
     TEST_ASSERT_EQUAL_INT(0, mkdir(folder, 0777));
     for (size_t k = 0; k <= COUNT_OF(names); k++) {
         const char *name = k < COUNT_OF(names) ? names[k] : strrchr(path, '/') + 1;
@@ -181,7 +181,7 @@ static int count_checkpoints(void)
 
 static void judge(enum sphfsi_status status, long n, const char *what)
 {
-    char message[1024], lock[RUN_DIR_PATH + 300];
+    char message[1024], lock[PATH_BYTES + 300];
     snprintf(message, sizeof message, "%s, allocation %ld: %s", what, n, sphfsi_error());
     TEST_ASSERT_EQUAL_INT_MESSAGE(0, live, message);
     snprintf(lock, sizeof lock, "%s/.lock", folder);

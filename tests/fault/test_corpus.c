@@ -2,7 +2,7 @@
  * Replays the inputs that the fuzzers have kept (tests/fuzz/corpus/<target>/), each of which once
  * reached code that no other did, and what once failed. In any build, under any sanitizer.
  * With an argument: writes fresh seeds of the checkpoint fuzzer to that folder. */
-#include "base/run_dir.h"
+#include "base/files.h"
 #include "fuzz.h"
 #include "tiny.h"
 #include "unity.h"
@@ -30,7 +30,7 @@ static void replay_file(const char *path, int (*target)(const uint8_t *, size_t)
 
 static void replay(const char *name, int (*target)(const uint8_t *, size_t))
 {
-    char folder[256], path[RUN_DIR_PATH];
+    char folder[256], path[PATH_BYTES];
     snprintf(folder, sizeof folder, "tests/fuzz/corpus/%s", name);
     DIR *dir = opendir(folder);
     TEST_ASSERT_NOT_NULL_MESSAGE(dir, folder);
@@ -54,7 +54,7 @@ static void checkpoints(void) { replay("checkpoint", fuzz_checkpoint); }
 /* Of the format as it is now, which the kept ones may no longer be. */
 static void a_fresh_checkpoint(void)
 {
-    char path[RUN_DIR_PATH];
+    char path[PATH_BYTES];
     snprintf(path, sizeof path, "%s", tiny_path("fresh.ckpt"));
     TEST_ASSERT_EQUAL_INT(0, fuzz_write_checkpoint(path, 3));
     replay_file(path, fuzz_checkpoint);
@@ -63,7 +63,7 @@ static void a_fresh_checkpoint(void)
 static int write_seeds(const char *folder)
 {
     for (int steps = 0; steps <= 3; steps += 3) {
-        char name[32], path[RUN_DIR_PATH];
+        char name[32], path[PATH_BYTES];
         snprintf(name, sizeof name, "steps-%d", steps);
         if (path_join(path, folder, name, NULL) || fuzz_write_checkpoint(path, steps)) return 1;
     }

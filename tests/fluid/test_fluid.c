@@ -318,8 +318,9 @@ static double closest_after(const char *control)
     double closest = 1;
     for (int64_t i = 0; i < p->n; i++)
         for (int64_t j = 0; j < i; j++)
-            closest = fmin(closest, hypot(cells_short_way(&rig.sim.cells, 0, p->x[i] - p->x[j]),
-                                          cells_short_way(&rig.sim.cells, 1, p->y[i] - p->y[j])));
+            closest =
+                fmin(closest, hypot(cells_minimum_image(&rig.sim.cells, 0, p->x[i] - p->x[j]),
+                                    cells_minimum_image(&rig.sim.cells, 1, p->y[i] - p->y[j])));
     return closest / 0.1;
 }
 

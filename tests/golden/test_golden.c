@@ -26,16 +26,14 @@ void tearDown(void) { rig_close(&rig); }
 
 static uint64_t add(uint64_t h, const double *field, int64_t n)
 {
-    const unsigned char *const bytes = (const unsigned char *)field;
-    for (size_t k = 0; k < (size_t)n * sizeof *field; k++) h = (h ^ bytes[k]) * 0x100000001b3u;
-    return h;
+    return hash_bytes(h, field, (size_t)n * sizeof *field);
 }
 
 static uint64_t hash_after(const char *integrator, const char *precision)
 {
     rig_open(&rig, gate, integrator, precision, NULL);
     rig_steps(&rig, 60, 1);
-    uint64_t h = 0xcbf29ce484222325u;
+    uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind += 2) {
         const struct particles *const p = &rig.sim.kind[kind];
         h = add(h, p->x, p->n);

@@ -14,7 +14,7 @@ static struct diag diag;
 static struct scene scene;
 static struct simulation first, second;
 static struct image image, other;
-static char path[RUN_DIR_PATH];
+static char path[PATH_BYTES];
 
 static void open_with(int n, const char *const *sets)
 {
@@ -136,7 +136,7 @@ static void store_two(const char *folder)
  * one before it is used. */
 static void the_one_before_is_used(const char *folder, size_t n, size_t at)
 {
-    char message[64], newer[RUN_DIR_PATH];
+    char message[64], newer[PATH_BYTES];
     snprintf(message, sizeof message, "%zu bytes, damaged at %zu", n, at);
     snprintf(newer, sizeof newer, "%s/step-000000003.ckpt", folder);
     FILE *file = fopen(newer, "wb");
@@ -199,7 +199,7 @@ static int kept(const char *folder, const int *steps, int n)
 {
     int found = 0;
     for (int k = 0; k < n; k++) {
-        char name[RUN_DIR_PATH];
+        char name[PATH_BYTES];
         snprintf(name, sizeof name, "%s/step-%09d.ckpt", folder, steps[k]);
         found |= (access(name, F_OK) == 0) << k;
     }

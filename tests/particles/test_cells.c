@@ -82,14 +82,14 @@ static void test_cells_are_no_smaller_than_the_reach(void)
     }
     assert_near(1e-12, upper[0] - lower[0], cells.nx * cells.side[0], "width");
     assert_near(1e-12, upper[1] - lower[1], cells.ny * cells.side[1], "height");
-    assert_near(0, stray, cells.stray, "stray");
+    assert_near(0, stray, cells.skin, "stray");
     const double near[2] = {lower[0] + 3.3 * reach, lower[1] + 2.9 * reach};
     struct cells narrow;
     TEST_ASSERT_EQUAL_INT(ERR_OK,
                           cells_create(&narrow, &arena, lower, near, reach, stray, kinds, &diag));
     TEST_ASSERT_EQUAL_INT(3, narrow.nx);
     TEST_ASSERT_EQUAL_INT(2, narrow.ny);
-    assert_near(1e-12, 0.5 * (narrow.side[0] - reach), narrow.stray, "stray");
+    assert_near(1e-12, 0.5 * (narrow.side[0] - reach), narrow.skin, "stray");
 }
 
 /* Every pair closer than the reach lies in cells that touch, within a kind and across kinds. */
@@ -334,7 +334,7 @@ static void test_resume_rebuilds_the_same_list(void)
         struct cells fresh;
         TEST_ASSERT_EQUAL_INT(ERR_OK, cells_create(&fresh, &arena, lower, upper, reach, stray,
                                                    kinds, &diag));
-        cells_resume(&fresh, (enum kind)kind, &kinds[kind]);
+        cells_rebuild(&fresh, (enum kind)kind, &kinds[kind]);
         const struct cell_list *const a = &cells.kind[kind], *const b = &fresh.kind[kind];
         TEST_ASSERT_EQUAL_INT32(a->n_active, b->n_active);
         TEST_ASSERT_EQUAL_INT32_ARRAY(a->active, b->active, a->n_active);

@@ -21,7 +21,7 @@ void tearDown(void) { rig_close(&rig); }
 static bool outgrown(void)
 {
     for (int kind = 0; kind < KIND_COUNT; kind++)
-        cells_measure(&rig.sim.cells, (enum kind)kind, &rig.sim.kind[kind]);
+        cells_measure_overhang(&rig.sim.cells, (enum kind)kind, &rig.sim.kind[kind]);
     return !(cells_skin_left(&rig.sim.cells, KERNEL_REACH * rig.sim.fluid.k.h) > 0);
 }
 
@@ -79,7 +79,7 @@ static void test_common_motion_is_free(void)
              "dp = 1 cm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
              "[fluid w]\nshape = box -0.3, -0.3, 0.3, 0.3\nsound_speed = 20\n",
              NULL);
-    const double stray = rig.sim.cells.stray;
+    const double stray = rig.sim.cells.skin;
     assert_near(1e-12, rig.sim.scene->numerics.skin * rig.sim.fluid.k.h, stray, "stray");
     struct particles *const p = &rig.sim.kind[KIND_FLUID];
     double way = 0;
@@ -130,7 +130,7 @@ static void check_room(const char *scene, const char *integrator, const char *mo
             if (measured) continue;
             const double room = s->skin_left;
             for (int kind = 0; kind < KIND_COUNT; kind++)
-                cells_measure(&s->cells, (enum kind)kind, &s->kind[kind]);
+                cells_measure_overhang(&s->cells, (enum kind)kind, &s->kind[kind]);
             const double found = cells_skin_left(&s->cells, KERNEL_REACH * s->fluid.k.h);
             assert_at_most(found + 1e-12, room, "room");
             const bool looks = step % 20 == 0;

@@ -38,25 +38,25 @@ static int within_reach(enum kind kind, int64_t i)
     const struct cells *const c = &rig.sim.cells;
     int n = 0;
     for (int64_t j = 0; j < b->n; j++)
-        n += hypot(cells_short_way(c, 0, a->x[i] - b->x[j]),
-                   cells_short_way(c, 1, a->y[i] - b->y[j])) < KERNEL_REACH * rig.sim.fluid.k.h;
+        n += hypot(cells_minimum_image(c, 0, a->x[i] - b->x[j]),
+                   cells_minimum_image(c, 1, a->y[i] - b->y[j])) < KERNEL_REACH * rig.sim.fluid.k.h;
     return n;
 }
 
 static void compare(enum kind kind, int *in_list, int *in_reach)
 {
-    static struct surroundings around;
+    static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct fluid *const f = &rig.sim.fluid;
     const struct cells *const c = &rig.sim.cells;
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     for (int32_t k = 0; k < list->n_active; k++) {
         const int32_t cell = list->active[k];
-        clusters_around(&around, &f->packed[kind].boxes, c, kind, cell, f->k.h);
+        neighbour_clusters_collect(&around, &f->packed[kind].boxes, c, kind, cell, f->k.h);
         for (int32_t m = 0; m < list->count[cell]; m++) {
             const uint32_t own = neighbour_code(list->cluster[cell] + m / CLUSTER, 1, 1);
-            clusters_near(&near, &around, &f->packed[KIND_FLUID].boxes,
-                          (int32_t)neighbour_number(own));
+            cluster_list_build(&near, &around, &f->packed[KIND_FLUID].boxes,
+                               (int32_t)neighbour_number(own));
             double at[2], other[2];
             place_seen(KIND_FLUID, own, m % CLUSTER, at);
             int found = 0;
@@ -78,7 +78,7 @@ static void compare(enum kind kind, int *in_list, int *in_reach)
  * cells. Pairs in a share must not be looked at from both sides: that would count them twice. */
 static void count_shares(int32_t cells, int *met)
 {
-    static struct surroundings around;
+    static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct fluid *const f = &rig.sim.fluid;
     const struct cell_list *const list = &rig.sim.cells.kind[KIND_FLUID];
@@ -94,15 +94,15 @@ static void count_shares(int32_t cells, int *met)
         const struct cluster_range range = clusters_of(list, first, end);
         for (int32_t k = first; k < end; k++) {
             const int32_t cell = list->active[k];
-            clusters_ahead_around(&around, &f->packed[KIND_FLUID].boxes, &rig.sim.cells, KIND_FLUID,
-                                  cell, f->k.h, range);
+            neighbour_clusters_collect_half(&around, &f->packed[KIND_FLUID].boxes, &rig.sim.cells,
+                                            KIND_FLUID, cell, f->k.h, range);
             for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) {
-                clusters_ahead_near(&near, &around, &f->packed[KIND_FLUID].boxes);
+                cluster_list_build_half(&near, &around, &f->packed[KIND_FLUID].boxes);
                 TEST_ASSERT_EQUAL_INT(list->cluster[cell] + m, neighbour_number(near.code[0]));
                 for (int n = 0; n < near.n; n++) {
                     const int32_t number = (int32_t)neighbour_number(near.code[n]);
                     const bool inside = number >= range.first && number < range.end;
-                    TEST_ASSERT_EQUAL(inside && n > 0, neighbour_is_ahead(near.code[n]));
+                    TEST_ASSERT_EQUAL(inside && n > 0, neighbour_is_half(near.code[n]));
                     for (int pair = 0; pair < CLUSTER * CLUSTER; pair++) {
                         const int r = pair / CLUSTER, b = pair % CLUSTER;
                         double at[2], other[2];
@@ -112,7 +112,7 @@ static void count_shares(int32_t cells, int *met)
                         if (hypot(at[0] - other[0], at[1] - other[1]) >= KERNEL_REACH * f->k.h)
                             continue;
                         met[particle[(list->cluster[cell] + m) * CLUSTER + r]]++;
-                        if (neighbour_is_ahead(near.code[n])) met[particle[number * CLUSTER + b]]++;
+                        if (neighbour_is_half(near.code[n])) met[particle[number * CLUSTER + b]]++;
                     }
                 }
             }

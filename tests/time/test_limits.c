@@ -50,14 +50,14 @@ static uint64_t hash_of(const char *scene, const char *set, const char *another)
 {
     rig_open(&rig, scene, set, *another ? another : "title=limit", NULL);
     rig_steps(&rig, 12, 1);
-    uint64_t h = 0xcbf29ce484222325u;
+    uint64_t h = HASH_START;
     const struct particles *const p = &rig.sim.kind[scene == fluid ? KIND_FLUID : KIND_SOLID];
     const double *const fields[] = {p->x, p->y, p->vx, p->vy};
     for (size_t f = 0; f < COUNT_OF(fields); f++)
         for (int64_t i = 0; i < p->n; i++) {
             uint64_t bits;
             memcpy(&bits, &fields[f][i], sizeof bits);
-            h = (h ^ bits) * 0x100000001b3u;
+            h = (h ^ bits) * HASH_PRIME;
         }
     return h;
 }

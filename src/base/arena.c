@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/arena.h"
+
+#include "base/threads.h"
+
+#include <stdlib.h>
+#include <string.h>
+#ifdef __linux__
+#include <sys/mman.h>
+#endif
+
+struct arena_block {
+    struct arena_block *next;
+};
+
+/* The header fills one aligned unit, so that the array after the margin stays aligned. */
+enum { BLOCK_HEADER = ARENA_ALIGN };
+_Static_assert(sizeof(struct arena_block) <= BLOCK_HEADER && ARENA_MARGIN % ARENA_ALIGN == 0,
+               "arrays are aligned");
+
+/* malloc starts large arrays at the same offset in a page. Loops over many arrays would then use the same
+ * sets of the first-level cache and evict each other. Each array starts STAGGER_STEP bytes later instead. */
+enum { STAGGER_STEP = 3 * ARENA_ALIGN, STAGGER_RANGE = 4096 };
+
+enum { LARGE_PAGE = 1 << 21 };
+
+/* Asks for large pages where the array fills them. Loops over a million particles read some twenty arrays
+ * at once: with 4 kB pages that exceeds the TLB. The remainder stays in small pages, so that no memory is
+ * wasted. Without support by the system nothing happens. */
+static void request_large_pages(unsigned char *raw, size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+    const size_t lead = -(uintptr_t)raw & (LARGE_PAGE - 1);
+    if (bytes > lead + LARGE_PAGE)
+        madvise(raw + lead, (bytes - lead) & ~(size_t)(LARGE_PAGE - 1), MADV_HUGEPAGE);
+#else
+    (void)raw;
+    (void)bytes;
+#endif
+}
+
+static long fail_countdown = -1;
+
+void arena_fail_after(long n) { fail_countdown = n; }
+
+static bool failure_injected(void) { return fail_countdown >= 0 && fail_countdown-- == 0; }
+
+/* Zeroes the memory in parallel, split among the threads as in a static loop: on NUMA machines the system
+ * places a page near the core that first touches it. */
+static void first_touch(unsigned char *raw, size_t bytes)
+{
+    enum { PARALLEL_FROM = 1 << 20 };
+    const int threads = bytes < PARALLEL_FROM ? 1 : thread_count();
+    const size_t part = bytes / (size_t)threads + 1;
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (int t = 0; t < threads; t++) {
+        const size_t from = (size_t)t * part < bytes ? (size_t)t * part : bytes;
+        memset(raw + from, 0, part < bytes - from ? part : bytes - from);
+    }
+}
+
+void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
+{
+    const size_t overhead = BLOCK_HEADER + 2 * (size_t)ARENA_MARGIN;
+    if (size && count > (SIZE_MAX - overhead - ARENA_ALIGN) / size) {
+        diag_fail(d, ERR_MEMORY, "%s: %zu items of %zu bytes exceed the address space", what, count,
+                  size);
+        return NULL;
+    }
+    const size_t want = (count * size + ARENA_ALIGN - 1) / ARENA_ALIGN * ARENA_ALIGN;
+    if (a->limit && (want > a->limit || a->bytes > a->limit - want)) {
+        diag_fail(d, ERR_MEMORY,
+                  "%s: %.3g GB would raise the run to %.3g GB, more than the %.3g GB it may use",
+                  what, 1e-9 * (double)want, 1e-9 * (double)(a->bytes + want),
+                  1e-9 * (double)a->limit);
+        return NULL;
+    }
+    const size_t stagger = a->pieces++ * STAGGER_STEP % STAGGER_RANGE;
+    const size_t total = want + overhead + stagger;
+    const size_t align = total >= 2 * (size_t)LARGE_PAGE ? LARGE_PAGE : ARENA_ALIGN;
+    unsigned char *const raw =
+        failure_injected() ? NULL : aligned_alloc(align, (total + align - 1) / align * align);
+    if (!raw) {
+        diag_fail(d, ERR_MEMORY, "%s: no memory for %zu bytes (%zu in use)", what, want, a->bytes);
+        return NULL;
+    }
+    request_large_pages(raw, total);
+    first_touch(raw, total);
+    struct arena_block *block = (struct arena_block *)(void *)raw;
+    block->next = a->blocks;
+    a->blocks = block;
+    a->bytes += want;
+    unsigned char *const array = raw + BLOCK_HEADER + ARENA_MARGIN + stagger;
+    ASSERT((uintptr_t)array % ARENA_ALIGN == 0 && array + want + ARENA_MARGIN <= raw + total);
+    return array;
+}
+
+void arena_free(struct arena *a)
+{
+    while (a->blocks) {
+        struct arena_block *next = a->blocks->next;
+        free(a->blocks);
+        a->blocks = next;
+    }
+    a->bytes = a->pieces = 0;
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ * Errors: a code for the program, one sentence for the user. */
+#ifndef SPHFSI_BASE_ERROR_H
+#define SPHFSI_BASE_ERROR_H
+
+#include "base/macros.h"
+
+enum err {
+#define ERROR(name, status, meaning) ERR_##name,
+#include "base/errors.def"
+#undef ERROR
+};
+
+/* Exit status and one-line meaning of an error, from base/errors.def. */
+int err_status(enum err e);
+const char *err_meaning(enum err e);
+
+/* The first failure, and the receiver of warnings. */
+struct diag {
+    enum err code;
+    char text[1024]; /* one sentence: what, where, which value, what to do */
+    /* Receives warnings, one sentence each; NULL: warnings are dropped. */
+    void (*warn)(void *context, const char *text);
+    void *warn_context;
+};
+
+/* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO, ...)`. */
+enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
+void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
+
+/* Returns from the caller if the call fails. */
+#define TRY(call)                     \
+    do {                              \
+        const enum err err_ = (call); \
+        if (err_) return err_;        \
+    } while (0)
+
+#endif

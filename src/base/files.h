@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * Files: paths, whole-file reads, and atomic replacement (a reader sees the old file or the new one). */
+#ifndef SPHFSI_BASE_FILES_H
+#define SPHFSI_BASE_FILES_H
+
+#include "base/error.h"
+
+#include <stdio.h>
+
+enum { PATH_BYTES = 4096 };
+
+/* Writes "folder/name" to `path`. ERR_INPUT if that exceeds PATH_BYTES. */
+enum err path_join(char path[PATH_BYTES], const char *folder, const char *name, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Opens a file for writing, as open() does, but fails with ELOOP on a symbolic link: a link in the folder of
+ * a run must not redirect output to another place. */
+int file_open_no_follow(const char *path, int flags);
+
+/* strerror(), except that ELOOP is explained as file_open_no_follow means it. */
+const char *file_error_text(int error);
+
+/* Makes renames and removals in a folder survive a power failure. */
+enum err directory_sync(const char *path, struct diag *d) SPHFSI_CHECKED;
+
+/* Reads a whole file; `bytes` is malloc'd and followed by a 0 that `size` does not count. */
+enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d) SPHFSI_CHECKED;
+
+/* A file that is written as PATH.part and renamed to PATH when complete. */
+struct atomic_file {
+    char path[PATH_BYTES], part[PATH_BYTES];
+    FILE *file; /* open for writing; NULL: closed */
+};
+
+enum err atomic_file_open(struct atomic_file *out, const char *folder, const char *name,
+                          struct diag *d) SPHFSI_CHECKED;
+/* Flushes, syncs, closes and renames. On failure it removes the part and keeps the old file. */
+enum err atomic_file_commit(struct atomic_file *out, struct diag *d) SPHFSI_CHECKED;
+void atomic_file_abandon(struct atomic_file *out);
+
+#endif
