@@ -82,7 +82,7 @@ static void say_output(const struct simulation *s, const struct sphfsi_options *
     const struct snapshot_layout layout = snapshot_file_layout(s->scene);
     const double end = s->scene->top.end_time, every = s->scene->output.snapshot_interval;
     const double snapshots = floor(end / every * (1 + 1e-12)) + 1,
-                 point = (double)snapshot_file_point(&layout);
+                 point = (double)snapshot_file_point_bytes(&layout);
     double points = 0;
     for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
     session_say(o, "output");

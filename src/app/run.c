@@ -157,7 +157,7 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
 static enum err settle_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);
-    const enum err e = snapshots_settle(&r->snapshots, &why);
+    const enum err e = snapshots_wait(&r->snapshots, &why);
     const enum err judged = judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
     r->snapshot_lost |= judged != ERR_OK;
     return judged;
@@ -306,7 +306,7 @@ static void save_last_state(struct run *r, enum err why)
         diag_warn(&second, "the last sound state could not be kept: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD &&
-        (snapshots_write(&r->snapshots, r->s, &second) || snapshots_settle(&r->snapshots, &second)))
+        (snapshots_write(&r->snapshots, r->s, &second) || snapshots_wait(&r->snapshots, &second)))
         diag_warn(&second, "the state at the stop could not be kept: %s", second.text);
     second.code = ERR_OK;
     const char *reason = why == ERR_GUARD       ? "guard"
@@ -391,7 +391,7 @@ static enum err start_again(struct run *r)
     const struct scene_output *const out = &r->session.scene.output;
     double row[SERIES_MAX_COLUMNS];
     /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
-    TRY(checkpoint_forget_later(r->folder.path, r->s->state.steps, r->diag));
+    TRY(checkpoint_remove_later(r->folder.path, r->s->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
                          due_kept_until(out->snapshot_interval, time),
                          &r->due[OUT_SNAPSHOT].written, r->diag));

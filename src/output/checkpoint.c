@@ -12,7 +12,7 @@ _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are littl
 
 enum { FORMAT = 3, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
 
-/* What a block belongs to: the kinds of particles, then these. */
+/* Owners of blocks: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
 
 enum item { ITEM_DOUBLE, ITEM_INT64, ITEM_INT32, ITEM_BYTE, ITEM_COUNT };
@@ -29,7 +29,7 @@ struct file_header {
     int64_t steps;
     int64_t count[KIND_COUNT];
     char version[CHECKPOINT_VERSION_TEXT];
-    uint64_t sum; /* of the bytes before it */
+    uint64_t sum; /* checksum (base/hash.h) of the bytes before it */
 };
 
 struct block_header {
@@ -49,19 +49,12 @@ _Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) 
                    sizeof(struct file_footer) == 16,
                "docs/formats.md gives these sizes");
 
-/* What only walls that move have. */
+/* Fields of moving walls only. */
 enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
 
 static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
 
-/* FNV-1a, 64 bits: every step is invertible, so a changed byte always changes the sum. */
-static uint64_t fnv(const void *bytes, size_t n)
-{
-    const unsigned char *b = bytes;
-    uint64_t h = 0xcbf29ce484222325u;
-    for (size_t k = 0; k < n; k++) h = (h ^ b[k]) * 0x100000001b3u;
-    return h;
-}
+static uint64_t checksum(const void *bytes, size_t n) { return hash_bytes(HASH_START, bytes, n); }
 
 static size_t padded(size_t n) { return (n + 7) / 8 * 8; }
 
@@ -83,7 +76,7 @@ static enum item item_of(const char *type)
     return strcmp(type, "int64_t") == 0 ? ITEM_INT64 : ITEM_INT32;
 }
 
-/* Appends a block; room has been reserved. The sums are filled in when it is stored. */
+/* Appends a block to reserved memory; checkpoint_seal fills in the checksums. */
 static void put_block(struct image *m, const char *name, unsigned owner, enum item item,
                       const void *data, size_t count)
 {
@@ -140,14 +133,14 @@ static uint32_t put_particles(struct image *m, const struct simulation *s)
 enum err checkpoint_capture(struct image *m, const struct simulation *s, const char *case_text,
                             const char *version, struct diag *d)
 {
-    const size_t case_length = strlen(case_text) + 1; /* with its end */
+    const size_t case_length = strlen(case_text) + 1; /* with its 0 */
     TRY(reserve(m, image_bytes(s, case_length), d));
     struct file_header head = {
         .format = FORMAT,
         .byte_order = BYTE_ORDER_MARK,
         .header_size = sizeof(struct file_header),
         .block_header_size = sizeof(struct block_header),
-        .case_hash = fnv(case_text, case_length),
+        .case_hash = checksum(case_text, case_length),
         .time = s->state.time,
         .steps = s->state.steps,
     };
@@ -160,19 +153,20 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
+    ASSERT(m->size <= m->capacity && m->size % 8 == 0);
     head.file_size = m->size;
     memcpy(m->bytes, &head, sizeof head);
     return ERR_OK;
 }
 
-/* --- walking the blocks --- */
+/* --- blocks --- */
 
 struct block {
     struct block_header head;
     size_t at, payload; /* offsets in the image */
 };
 
-/* Whether a whole block lies at `at`. */
+/* Reads the header of the block at offset `at`; false if no whole block begins there. */
 static bool block_at(const struct image *m, size_t at, struct block *b)
 {
     const size_t end = m->size - sizeof(struct file_footer);
@@ -180,9 +174,9 @@ static bool block_at(const struct image *m, size_t at, struct block *b)
     memcpy(&b->head, m->bytes + at, sizeof b->head);
     b->at = at;
     b->payload = at + sizeof b->head;
-    const size_t room = end - b->payload;
-    if (b->head.item >= ITEM_COUNT || b->head.count > room / item_size[b->head.item]) return false;
-    return padded(b->head.count * item_size[b->head.item]) <= room;
+    const size_t rest = end - b->payload;
+    if (b->head.item >= ITEM_COUNT || b->head.count > rest / item_size[b->head.item]) return false;
+    return padded(b->head.count * item_size[b->head.item]) <= rest;
 }
 
 static size_t block_end(const struct block *b)
@@ -201,15 +195,15 @@ void checkpoint_seal(struct image *m)
 {
     struct block b;
     for (size_t at = sizeof(struct file_header); block_at(m, at, &b); at = block_end(&b)) {
-        b.head.payload_sum = fnv(m->bytes + b.payload, payload_bytes(&b));
-        b.head.sum = fnv(&b.head, offsetof(struct block_header, sum));
+        b.head.payload_sum = checksum(m->bytes + b.payload, payload_bytes(&b));
+        b.head.sum = checksum(&b.head, offsetof(struct block_header, sum));
         memcpy(m->bytes + b.at, &b.head, sizeof b.head);
     }
     struct file_header head;
     memcpy(&head, m->bytes, sizeof head);
-    head.sum = fnv(&head, offsetof(struct file_header, sum));
+    head.sum = checksum(&head, offsetof(struct file_header, sum));
     memcpy(m->bytes, &head, sizeof head);
-    struct file_footer foot = {.sum = fnv(m->bytes, m->size - sizeof foot)};
+    struct file_footer foot = {.sum = checksum(m->bytes, m->size - sizeof foot)};
     memcpy(foot.magic, footer_magic, sizeof foot.magic);
     memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
 }
@@ -219,8 +213,7 @@ static void name_of(char name[NAME_TEXT], int64_t steps)
     snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
 }
 
-/* Steps in the name of a checkpoint of ours, or -1: another spelling of the number is not ours, nor
- * is what is no file. */
+/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the number. */
 static int64_t steps_of(const struct dirent *entry)
 {
     char name[NAME_TEXT];
@@ -232,7 +225,7 @@ static int64_t steps_of(const struct dirent *entry)
     return strcmp(entry->d_name, name) == 0 ? steps : -1;
 }
 
-/* The largest number of steps below *steps among the folder's checkpoints, or -1, takes its place. */
+/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1. */
 static enum err next_newest(const char *folder, int64_t *steps, struct diag *d)
 {
     const int64_t limit = *steps;
@@ -267,13 +260,6 @@ static enum err remove_older(const char *folder, int64_t newest, struct diag *d)
     }
 }
 
-/* One too many is no reason to end a run. */
-static void keep_last(const char *folder, int64_t newest, struct diag *d)
-{
-    struct diag why = {.code = ERR_OK};
-    if (remove_older(folder, newest, &why)) diag_warn(d, "%s", why.text);
-}
-
 enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d)
 {
@@ -283,18 +269,19 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
     checkpoint_seal(m);
     name_of(name, info.steps);
     TRY(atomic_file_open(&out, folder, name, d));
-    /* A short write shows in ferror, which atomic_file_commit looks at. */
+    /* atomic_file_commit reports a short write, by ferror. */
     if (fwrite(m->bytes, 1, m->size, out.file) != m->size && !ferror(out.file)) {
         atomic_file_abandon(&out);
         return diag_fail(d, ERR_IO, "%s: cannot be written", out.path);
     }
     TRY(atomic_file_commit(&out, d));
     memcpy(path, out.path, PATH_BYTES);
-    keep_last(folder, info.steps, d);
+    struct diag why = {.code = ERR_OK}; /* a failure to remove does not stop the run */
+    if (remove_older(folder, info.steps, &why)) diag_warn(d, "%s", why.text);
     return ERR_OK;
 }
 
-/* What runs that were killed have left unfinished. */
+/* Removes unfinished checkpoints of killed runs. */
 static void remove_parts(const char *folder)
 {
     static const char end[] = ".ckpt.part";
@@ -309,7 +296,7 @@ static void remove_parts(const char *folder)
     closedir(dir);
 }
 
-enum err checkpoint_forget_later(const char *folder, int64_t steps, struct diag *d)
+enum err checkpoint_remove_later(const char *folder, int64_t steps, struct diag *d)
 {
     for (;;) {
         int64_t later = INT64_MAX;
@@ -335,21 +322,21 @@ static enum err check_header(const struct image *m, const char *path, struct dia
         return damaged(d, path, "it is shorter than a header and a footer");
     memcpy(&head, m->bytes, sizeof head);
     if (memcmp(head.magic, magic, sizeof magic) != 0)
-        return damaged(d, path, "it does not begin as one");
-    /* Before any sum: another machine or another version may sum, and lie out, otherwise. */
+        return damaged(d, path, "its first 8 bytes are wrong");
+    /* Before any checksum, since another byte order or format has other checksums. */
     if (head.byte_order == __builtin_bswap32(BYTE_ORDER_MARK))
         return diag_fail(d, ERR_IO,
-                         "%s: was written in big-endian byte order, this program reads "
-                         "little-endian: go on with it on a machine of its own kind",
+                         "%s: has big-endian byte order, but this program reads little-endian; "
+                         "continue the run on a big-endian machine",
                          path);
-    if (head.byte_order != BYTE_ORDER_MARK) return damaged(d, path, "its byte-order mark is none");
+    if (head.byte_order != BYTE_ORDER_MARK) return damaged(d, path, "its byte-order mark is wrong");
     if (head.format != FORMAT)
         return diag_fail(d, ERR_IO,
-                         "%s: has format %u, this program reads format %d: go on with it by the "
-                         "version that wrote it (bytes 88 to 135 name it)",
+                         "%s: has format %u, but this program reads format %d; continue the run "
+                         "with the version that bytes 88 to 135 of the file name",
                          path, head.format, FORMAT);
     if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header) ||
-        head.sum != fnv(&head, offsetof(struct file_header, sum)))
+        head.sum != checksum(&head, offsetof(struct file_header, sum)))
         return damaged(d, path, "its header is damaged");
     if (head.file_size != m->size) return damaged(d, path, "its length is wrong; it was cut short");
     return ERR_OK;
@@ -361,12 +348,12 @@ static enum err check_footer(const struct image *m, const char *path, struct dia
     memcpy(&foot, m->bytes + m->size - sizeof foot, sizeof foot);
     if (memcmp(foot.magic, footer_magic, sizeof foot.magic) != 0)
         return damaged(d, path, "its footer is damaged");
-    if (foot.sum != fnv(m->bytes, m->size - sizeof foot))
-        return damaged(d, path, "its sum is wrong");
+    if (foot.sum != checksum(m->bytes, m->size - sizeof foot))
+        return damaged(d, path, "its checksum is wrong");
     return ERR_OK;
 }
 
-/* Every block whole, its own sums right, its name ended, and no byte left over. */
+/* Every block is complete, has correct checksums and a terminated name; no bytes follow the last block. */
 static enum err check_blocks(const struct image *m, const char *path, struct diag *d)
 {
     struct file_header head;
@@ -374,17 +361,17 @@ static enum err check_blocks(const struct image *m, const char *path, struct dia
     size_t at = sizeof head;
     for (uint32_t k = 0; k < head.blocks; k++) {
         struct block b;
-        if (!block_at(m, at, &b)) return damaged(d, path, "a block runs over its end");
-        if (b.head.sum != fnv(&b.head, offsetof(struct block_header, sum)) ||
+        if (!block_at(m, at, &b)) return damaged(d, path, "a block extends beyond its end");
+        if (b.head.sum != checksum(&b.head, offsetof(struct block_header, sum)) ||
             !memchr(b.head.name, '\0', sizeof b.head.name))
             return damaged(d, path, "the header of a block is damaged");
-        if (b.head.payload_sum != fnv(m->bytes + b.payload, payload_bytes(&b)))
+        if (b.head.payload_sum != checksum(m->bytes + b.payload, payload_bytes(&b)))
             return diag_fail(d, ERR_IO, "%s: is not a sound checkpoint: block %s is damaged", path,
                              b.head.name);
         at = block_end(&b);
     }
     if (at != m->size - sizeof(struct file_footer))
-        return damaged(d, path, "bytes are left over behind its blocks");
+        return damaged(d, path, "bytes follow its last block");
     return ERR_OK;
 }
 
@@ -410,8 +397,8 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
                            struct diag *d)
 {
     char name[NAME_TEXT];
-    int seen = 0;
-    for (int64_t steps = INT64_MAX;; seen++) {
+    int damaged_ones = 0;
+    for (int64_t steps = INT64_MAX;; damaged_ones++) {
         struct diag why = {.code = ERR_OK};
         TRY(next_newest(folder, &steps, d));
         if (steps < 0) break;
@@ -419,12 +406,12 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         TRY(path_join(path, folder, name, d));
         const enum err e = checkpoint_read(m, path, &why);
         if (e == ERR_OK) return ERR_OK;
-        /* It may be as sound as any; the one before it would cost it, as a later one. */
+        /* Without memory nothing is known about this checkpoint. A restart from an older one would remove it. */
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; the one before it is tried", why.text);
     }
     return diag_fail(d, ERR_IO, "%s: holds no %scheckpoint (step-*.ckpt) to restart from", folder,
-                     seen ? "sound " : "");
+                     damaged_ones ? "sound " : "");
 }
 
 static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)
@@ -472,8 +459,8 @@ bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info
 
 /* --- apply --- */
 
-static enum err take(const struct image *m, const char *name, unsigned owner, enum item item,
-                     size_t count, void *to, struct diag *d)
+static enum err load_block(const struct image *m, const char *name, unsigned owner, enum item item,
+                           size_t count, void *to, struct diag *d)
 {
     struct block b;
     if (!find_block(m, name, owner, &b))
@@ -482,59 +469,47 @@ static enum err take(const struct image *m, const char *name, unsigned owner, en
     if (b.head.item != item || b.head.count != count)
         return diag_fail(d, ERR_INPUT,
                          "checkpoint: block %s holds %" PRIu64
-                         " items of type %u, wanted are %zu of "
-                         "type %u",
+                         " items of type %u, but this case needs %zu of type %u",
                          name, b.head.count, b.head.item, count, item);
     if (count) memcpy(to, m->bytes + b.payload, count * item_size[item]);
     return ERR_OK;
 }
 
-/* A wall that the run of the checkpoint left at rest, and a fork moves: its blocks are not there. */
-static bool take_rest(const struct image *m, struct particles *p, const struct field_info *info)
+/* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the present
+ * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces. */
+static void set_missing_field(struct particles *p, const struct field_info *info)
 {
-    struct block b;
-    if (find_block(m, info->name, KIND_WALL, &b)) return false;
     void *const data = field_array(p, info);
-    const void *place = data == p->X ? p->x : data == p->Y ? p->y : NULL;
-    if (place)
-        memcpy(data, place, (size_t)p->n * info->size);
+    const void *position = data == p->X ? p->x : data == p->Y ? p->y : NULL;
+    if (position)
+        memcpy(data, position, (size_t)p->n * info->size);
     else
         memset(data, 0, (size_t)p->n * info->size);
-    return true;
 }
 
-/* A structure whose run held the fluid's force over its sub-steps owes the fluid nothing; one whose run did
- * not has no mean of that force. */
-static bool is_interface_impulse(const struct image *m, const struct field_info *info, void *data,
-                                 int64_t n)
-{
-    struct block b;
-    if (find_block(m, info->name, KIND_SOLID, &b)) return false;
-    memset(data, 0, (size_t)n * info->size);
-    return true;
-}
-
-static enum err take_particles(const struct image *m, struct particles *p, enum kind kind,
+static enum err load_particles(const struct image *m, struct particles *p, enum kind kind,
                                int64_t n, bool fork, struct diag *d)
 {
     if (n < 0 || n > p->capacity)
         return diag_fail(d, ERR_INPUT,
-                         "checkpoint: it has %" PRId64 " %s particles, the case has %" PRId64, n,
-                         kind_names[kind], p->capacity);
+                         "checkpoint: it has %" PRId64 " %s particles, but the case has %" PRId64,
+                         n, kind_names[kind], p->capacity);
     p->n = n;
     for (int f = 0; f < field_count; f++) {
         const struct field_info *info = &field_table[f];
         void *data = field_array(p, info);
         if (!data || info->keep != KEEP_STATE) continue;
-        if (fork && kind == KIND_WALL && (info->group & MOVING) && take_rest(m, p, info)) continue;
-        if (fork && (info->group & (G_WETTED | G_HELD)) && is_interface_impulse(m, info, data, n))
-            continue;
-        TRY(take(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
+        struct block b;
+        const unsigned optional = kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_HELD);
+        if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
+            set_missing_field(p, info);
+        else
+            TRY(load_block(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
     return ERR_OK;
 }
 
-/* Numbers that others use as an index. The sums vouch for the bytes, not for who wrote them. */
+/* Numbers that serve as an index. Checksums do not protect from a file that was made wrong. */
 static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
 {
     const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
@@ -542,8 +517,8 @@ static enum err check_bodies(const struct simulation *s, enum kind kind, struct 
     for (int64_t i = 0; i < p->n; i++)
         if (p->body[i] < 0 || p->body[i] >= bodies[kind])
             return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64 " belongs to section %d, the case "
-                             "has 0 to %d",
+                             "checkpoint: %s particle %" PRId64 " belongs to section %d, but the "
+                             "case has 0 to %d",
                              kind_names[kind], i, p->body[i], bodies[kind] - 1);
     return ERR_OK;
 }
@@ -556,14 +531,14 @@ static enum err check_cells(const struct simulation *s, enum kind kind, struct d
         const int32_t cell = p->cell[i];
         if (cell < -1 || cell >= cells)
             return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64 " is in cell %d, the case has -1 "
-                             "(outside) to %" PRId64,
+                             "checkpoint: %s particle %" PRId64 " is in cell %d, but the case has "
+                             "-1 (outside) to %" PRId64,
                              kind_names[kind], i, cell, cells - 1);
         if (cell < 0) continue;
         if (!cells_is_near(&s->cells, cell, p->x[i], p->y[i]))
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64
-                             " at (%.6g, %.6g) m is nowhere near cell %d, where it should be",
+                             " at (%.6g, %.6g) m is too far from its cell, %d",
                              kind_names[kind], i, p->x[i], p->y[i], cell);
     }
     return ERR_OK;
@@ -573,15 +548,15 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
 {
     const struct image_info info = checkpoint_info(m);
     for (int k = 0; k < KIND_COUNT; k++) {
-        TRY(take_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
+        TRY(load_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
         TRY(check_bodies(s, (enum kind)k, d));
     }
     struct state *const st = &s->state;
 #define STATE(type, name, unit, meaning) \
-    TRY(take(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
+    TRY(load_block(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
 #include "time/state.def"
 #undef STATE
-    return take(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
+    return load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
 }
 
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)

@@ -1,25 +1,25 @@
 /* SPDX-License-Identifier: MIT
- * A checkpoint under other physics: what a restart may rely on and a fork may not. */
+ * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
 #include "output/checkpoint.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-/* A motion must go on where the wall stands: a jump would tear through the fluid. */
-static enum err check_motion(const struct simulation *s, double place[2], int wall, struct diag *d)
+/* A motion must continue from the displacement of the wall: a jump would move it through the fluid. */
+static enum err check_motion(const struct simulation *s, double at[2], int wall, struct diag *d)
 {
     const struct scene_wall *w = &s->scene->wall[wall];
     const int motion = scene_find_motion(s->scene, w->motion);
     if (!w->motion[0] || motion < 0) return ERR_OK;
     const struct motion_state to = motion_at(s->scene, motion, s->state.time);
-    if (hypot(place[0] - to.d[0], place[1] - to.d[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
+    if (hypot(at[0] - to.d[0], at[1] - to.d[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
     return diag_fail(
         d, ERR_INPUT,
-        "fork: [wall %s] stands at a displacement of (%.6g, %.6g) m in the checkpoint, "
-        "at %.6g s; [motion %s] has (%.6g, %.6g) m there, and would make it jump: a "
-        "motion goes on where the one before it ended",
-        w->common.name, place[0], place[1], s->state.time, w->motion, to.d[0], to.d[1]);
+        "fork: [wall %s] would jump at %.6g s from its displacement in the checkpoint, "
+        "(%.6g, %.6g) m, to that of [motion %s], (%.6g, %.6g) m; let the motion begin "
+        "at the displacement in the checkpoint",
+        w->common.name, s->state.time, at[0], at[1], w->motion, to.d[0], to.d[1]);
 }
 
 static enum err fork_walls(struct simulation *s, struct diag *d)
@@ -39,8 +39,8 @@ static enum err fork_walls(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Clamps are those of this case. One without a motion holds its particles where they are; one with a motion
- * has to go on from there. `free` is what this case has. */
+/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they are; the
+ * motion of a clamp must continue from their present displacement. */
 static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
@@ -57,18 +57,17 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
     for (int64_t i = 0; i < p->n; i++) {
         if (hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
         const struct scene_solid *const b = &s->scene->solid[p->body[i]];
-        return diag_fail(
-            d, ERR_INPUT,
-            "fork: the clamp of [solid %s] stands at a displacement of (%.6g, %.6g) m in the "
-            "checkpoint, at %.6g s; [motion %s] has (%.6g, %.6g) m there, and would make it jump: "
-            "a "
-            "motion goes on where the one before it ended",
-            b->common.name, ux[i], uy[i], s->state.time, b->clamp_motion, p->ux[i], p->uy[i]);
+        return diag_fail(d, ERR_INPUT,
+                         "fork: the clamp of [solid %s] would jump at %.6g s from its displacement "
+                         "in the checkpoint, (%.6g, %.6g) m, to that of [motion %s], (%.6g, %.6g) "
+                         "m; let the motion begin at the displacement in the checkpoint",
+                         b->common.name, s->state.time, ux[i], uy[i], b->clamp_motion, p->ux[i],
+                         p->uy[i]);
     }
     return ERR_OK;
 }
 
-/* What is owed to the fluid is let go where the structure does not answer it any more: nobody returns it. */
+/* Drops the interface impulse if the new case has no impedance interface, which would return it. */
 static void clear_interface_impulse(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
@@ -77,15 +76,15 @@ static void clear_interface_impulse(struct simulation *s)
     memset(p->interface_impulse_y, 0, (size_t)p->n * sizeof *p->interface_impulse_y);
 }
 
-static enum err sort_anew(struct simulation *s, struct diag *d)
+static enum err sort_again(struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
         if (k == KIND_SOLID && !(s->effects & FX_COUPLING)) continue;
         const int64_t out = cells_sort(&s->cells, (enum kind)k, &s->kind[k]);
         if (k == KIND_FLUID && out)
             return diag_fail(d, ERR_INPUT,
-                             "fork: %" PRId64 " fluid particles of the checkpoint are outside of "
-                             "this case's domain: a larger [domain] is needed",
+                             "fork: %" PRId64 " fluid particles of the checkpoint are outside the "
+                             "domain of this case; enlarge [domain]",
                              out);
     }
     s->state.sorts++;
@@ -102,7 +101,7 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     clear_interface_impulse(s);
     if (s->effects & FX_FLUID) {
         TRY(fork_walls(s, d));
-        TRY(sort_anew(s, d));
+        TRY(sort_again(s, d));
     }
     TRY(simulation_resume(s, d));
     s->state.energy_start -= simulation_ledger(s).dissipated;

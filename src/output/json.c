@@ -19,8 +19,8 @@ static void quote(struct json *j, const char *text)
     fputc('"', j->file);
 }
 
-/* Comma, line break, indent and name before a value. */
-static void lead(struct json *j, const char *name)
+/* Writes comma, line break, indent and name before a value. */
+static void begin_value(struct json *j, const char *name)
 {
     const int bit = 1 << j->depth;
     if (j->filled & bit) fputc(',', j->file);
@@ -33,7 +33,7 @@ static void lead(struct json *j, const char *name)
 
 void json_open(struct json *j, const char *name, char bracket)
 {
-    lead(j, name);
+    begin_value(j, name);
     fputc(bracket, j->file);
     j->depth++;
     j->filled &= ~(1 << j->depth);
@@ -57,25 +57,25 @@ static void number(struct json *j, double value)
 
 void json_number(struct json *j, const char *name, double value)
 {
-    lead(j, name);
+    begin_value(j, name);
     number(j, value);
 }
 
 void json_integer(struct json *j, const char *name, int64_t value)
 {
-    lead(j, name);
+    begin_value(j, name);
     fprintf(j->file, "%lld", (long long)value);
 }
 
 void json_text(struct json *j, const char *name, const char *value)
 {
-    lead(j, name);
+    begin_value(j, name);
     quote(j, value);
 }
 
 void json_numbers(struct json *j, const char *name, const double *values, int n)
 {
-    lead(j, name);
+    begin_value(j, name);
     fputc('[', j->file);
     for (int k = 0; k < n; k++) {
         if (k > 0) fputs(", ", j->file);

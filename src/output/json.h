@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Writes JSON, indented. A number that JSON cannot say becomes null. */
+ * Writes indented JSON. A number that is not finite becomes null. */
 #ifndef SPHFSI_OUTPUT_JSON_H
 #define SPHFSI_OUTPUT_JSON_H
 
@@ -9,10 +9,10 @@
 struct json {
     FILE *file;
     int depth;
-    int filled; /* bit by depth: something stands there already */
+    int filled; /* bit k: the open object or array of depth k has an item */
 };
 
-/* A name of NULL: an item of an array. */
+/* Names are NULL for the items of an array. `bracket`: '{' or '['. */
 void json_open(struct json *j, const char *name, char bracket);
 void json_close(struct json *j, char bracket);
 void json_number(struct json *j, const char *name, double value);

@@ -11,14 +11,14 @@ static const char *const endings[PROBE_QUANTITIES] = {
 #undef QUANTITY
 };
 
-/* Weights of a particle in the local frame of a probe. */
+/* Moments of the weights about a probe. */
 struct moment {
     double m00, m10, m01, m20, m11, m02;
 };
 
-/* Weight over the squared distance in units of the reach; 0 at the reach. Any positive weight
- * reproduces linear fields; this one is smooth. */
-static double nearness(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
+/* Weight at a squared distance in units of the reach. Any positive weight reproduces linear fields; this one
+ * is smooth and vanishes at the reach. */
+static double weight_at(double q2) { return q2 < 1 ? square(square(1 - q2)) : 0; }
 
 /* Particles of the body within `reach` of the probe; `particle` may be NULL to count only. */
 static int find_near(const struct particles *p, int body, const double at[2], double reach,
@@ -49,16 +49,15 @@ static struct moment moments(const struct probe *pr, const struct particles *p, 
     for (int k = 0; k < pr->n; k++) {
         const double x = (p->X[pr->particle[k]] - pr->point[0]) / reach;
         const double y = (p->Y[pr->particle[k]] - pr->point[1]) / reach;
-        const double w = nearness(x * x + y * y);
+        const double w = weight_at(x * x + y * y);
         m.m00 += w, m.m10 += w * x, m.m01 += w * y;
         m.m20 += w * x * x, m.m11 += w * x * y, m.m02 += w * y * y;
     }
     return m;
 }
 
-/* Linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of the plane
- * fitted through the particles, sum w (a + b x + c y). A row of particles carries no plane: then the
- * weighted mean. */
+/* Weights of linear moving least squares (Lancaster and Salkauskas 1981): the value at the probe of the plane
+ * fitted to the particles. Particles on one line determine no plane: then the weighted mean. */
 static void weigh(struct probe *pr, const struct particles *p, double reach)
 {
     const struct moment m = moments(pr, p, reach);
@@ -66,16 +65,16 @@ static void weigh(struct probe *pr, const struct particles *p, double reach)
     const double c10 = m.m11 * m.m01 - m.m10 * m.m02;
     const double c01 = m.m10 * m.m11 - m.m20 * m.m01;
     const double det = m.m00 * c00 + m.m10 * c10 + m.m01 * c01;
-    const bool flat = !(det > 1e-9 * m.m00 * m.m00 * m.m00);
+    const bool collinear = !(det > 1e-9 * m.m00 * m.m00 * m.m00);
     for (int k = 0; k < pr->n; k++) {
         const double x = (p->X[pr->particle[k]] - pr->point[0]) / reach;
         const double y = (p->Y[pr->particle[k]] - pr->point[1]) / reach;
-        const double w = nearness(x * x + y * y);
-        pr->weight[k] = flat ? w / m.m00 : w * (c00 + c10 * x + c01 * y) / det;
+        const double w = weight_at(x * x + y * y);
+        pr->weight[k] = collinear ? w / m.m00 : w * (c00 + c10 * x + c01 * y) / det;
     }
 }
 
-/* A corner of a body lies 0.71 dp off its last particle; a point further off than h is a mistake. */
+/* A corner of a body is 0.71 dp from its nearest particle; a point further than h is a mistake. */
 static enum err attach(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
                        struct arena *a, struct diag *d)
 {
@@ -86,8 +85,8 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     if (!(distance < h))
         return diag_fail(
             d, ERR_INPUT,
-            "line %d: probe %s: point = %g, %g lies %.3g m off the nearest particle of "
-            "solid '%s'; at most h = %.3g m is possible",
+            "line %d: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
+            "[solid %s]; at most h = %.3g m is possible",
             sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance, sp->body, h);
     pr->n = find_near(p, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
@@ -105,7 +104,7 @@ static int quantity_columns(int quantity)
     return n;
 }
 
-/* Whether a quantity is made of fields that are brought up to date for the looking only. */
+/* Whether a quantity depends on fields that only simulation_refresh updates. */
 static bool needs_refresh(int quantity)
 {
     return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY;
@@ -142,8 +141,7 @@ static size_t name_columns(char *header, size_t room, size_t at, const char *nam
     return at;
 }
 
-/* The file of the probes that are sampled together: all without an interval of their own, or the one
- * numbered `only`. */
+/* Defines a file: of all probes without an interval of their own (only = -1), or of probe `only`. */
 static enum err create_file(struct probes *p, const struct scene *scene, int only, struct arena *a,
                             struct diag *d)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Probes: what case/quantities.def lists, at a point, of a body, of the fluid. */
+ * Probes: the quantities of case/quantities.def, at a point, of a body, or of the fluid. */
 #ifndef SPHFSI_OUTPUT_PROBES_H
 #define SPHFSI_OUTPUT_PROBES_H
 
@@ -14,12 +14,12 @@ struct probe {
     int body;          /* index of its section; -1: none */
     double point[2];   /* m, in the initial configuration */
     double to[2];      /* m */
-    int n;             /* particles that carry a material point */
+    int n;             /* particles of the interpolation at a material point */
     int32_t *particle; /* of the solid */
     double *weight;    /* sum 1; reproduce linear fields */
 };
 
-/* Probes that are sampled at the same times stand in one file. */
+/* Probes that are sampled at the same times share one file. */
 struct probe_file {
     char name[SCENE_NAME + 16]; /* probes.csv, or probes_NAME.csv of one with its own interval */
     const char *header;         /* its columns joined by commas, "time_s" first */
@@ -36,8 +36,8 @@ struct probes {
 
 enum { PROBE_MAX_COLUMNS = 5 };
 
-/* Finds the particles that carry each probe and their weights, and what stands in which file; memory is
- * the arena's. ERR_INPUT: a probe too far from its body. */
+/* Finds the particles and weights of each probe, and the columns of each file; the arena owns the memory.
+ * ERR_INPUT: a probe is too far from its body. */
 enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
                        struct diag *d) SPHFSI_CHECKED;
 

@@ -29,34 +29,33 @@ static bool swap(const struct publishing *p)
     return true;
 }
 
-static enum err place(struct publishing *p)
-{
-    if (!sync_file(p->spare) || !swap(p))
-        return diag_fail(&p->diag, ERR_IO, "%s: cannot be put in place: %s", p->path,
-                         strerror(errno));
-    return directory_sync(p->folder, &p->diag);
-}
-
 static void *publish_thread(void *publishing)
 {
     struct publishing *const p = publishing;
-    p->diag.code = place(p);
+    enum err e = ERR_OK;
+    if (!sync_file(p->spare) || !swap(p))
+        e = diag_fail(&p->diag, ERR_IO, "%s: cannot be replaced by %s: %s", p->path, p->spare,
+                      strerror(errno));
+    else
+        e = directory_sync(p->folder, &p->diag);
+    p->diag.code = e;
     return NULL;
 }
 
-void placing_begin(struct publishing *p, const char *folder, const char *path, const char *spare)
+void publish_begin(struct publishing *p, const char *folder, const char *path, const char *spare)
 {
     *p = (struct publishing){.folder = folder, .path = path, .spare = spare, .begun = true};
-    /* Signals are for the threads that were there before. */
-    sigset_t all, were;
+    ASSERT(!p->begun);
+    /* The new thread inherits a mask that blocks all signals: other threads receive them. */
+    sigset_t all, before;
     sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &were);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
     p->threaded = pthread_create(&p->thread, NULL, publish_thread, p) == 0;
-    pthread_sigmask(SIG_SETMASK, &were, NULL);
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
     if (!p->threaded) publish_thread(p);
 }
 
-enum err publishing_end(struct publishing *p, struct diag *d)
+enum err publish_end(struct publishing *p, struct diag *d)
 {
     if (!p->begun) return ERR_OK;
     if (p->threaded) pthread_join(p->thread, NULL);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * A file takes the name of another, and neither is broken at any moment, not by a power cut either: the file
- * is synced before, the folder after. A thread of its own waits for the disk, some milliseconds each time. */
+ * Swaps a finished file with the one of the final name, in a thread of its own, since syncing takes some
+ * milliseconds. The file is synced before the swap and the folder after it, so that both files survive a power
+ * failure. */
 #ifndef SPHFSI_OUTPUT_PUBLISH_H
 #define SPHFSI_OUTPUT_PUBLISH_H
 
@@ -8,19 +9,19 @@
 
 #include "base/base.h"
 
-/* A zeroed one has nothing under way. */
+/* A swap in progress; zeroed: none. */
 struct publishing {
     const char *folder, *path, *spare;
     pthread_t thread;
-    bool begun, threaded; /* whether something is to be waited for, and whether by a thread */
-    struct diag diag;     /* the thread's */
+    bool begun, threaded; /* in progress; by a thread (else it is already done) */
+    struct diag diag;     /* of the swap */
 };
 
-/* Begins to give the spare the name `path`; the file that has it becomes the spare. Where a file system has
- * no links the old one is gone. The texts stay the caller's, and as they are until the end. */
-void placing_begin(struct publishing *p, const char *folder, const char *path, const char *spare);
+/* Starts to swap the files `spare` and `path`. On a file system without hard links the old file is deleted.
+ * The strings must remain valid until publish_end. */
+void publish_begin(struct publishing *p, const char *folder, const char *path, const char *spare);
 
-/* Waits for it and says how it went; nothing under way: well. */
-enum err publishing_end(struct publishing *p, struct diag *d);
+/* Waits for the swap, if one is in progress, and returns its result. */
+enum err publish_end(struct publishing *p, struct diag *d);
 
 #endif

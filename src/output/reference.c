@@ -20,12 +20,12 @@ static const char *next_line(const char *at)
     return *at ? at + 1 : at;
 }
 
-/* 1: a row; 0: a line without numbers; -1: neither. */
-static int read_row(const char *line, bool head_possible, double row[2])
+/* 1: a row; 0: a comment, an empty line or (if allowed) names; -1: malformed. */
+static int read_row(const char *line, bool names_allowed, double row[2])
 {
     const char *at = line + strspn(line, " \t\r");
     if (!*at || *at == '\n' || *at == '#') return 0;
-    if (head_possible && isalpha((unsigned char)*at)) return 0;
+    if (names_allowed && isalpha((unsigned char)*at)) return 0;
     for (int k = 0; k < 2; k++) {
         char *end;
         row[k] = strtod(at, &end);
@@ -36,7 +36,7 @@ static int read_row(const char *line, bool head_possible, double row[2])
     return *at == '\n' || *at == '\0' ? 1 : -1;
 }
 
-/* Digitised points may go back and forth. */
+/* Inserts a row by time: times of digitised points need not ascend. */
 static void insert_row(struct reference *r, const double row[2])
 {
     int k = r->n++;
@@ -53,22 +53,24 @@ static enum err read_rows(struct reference *r, const char *path, const char *tex
 {
     int lines = 1;
     for (const char *at = text; *at; at = next_line(at)) lines++;
-    if (lines > MAX_ROWS) return diag_fail(d, ERR_INPUT, "%s: more than %d lines", path, MAX_ROWS);
+    if (lines > MAX_ROWS)
+        return diag_fail(d, ERR_INPUT, "%s: has more than %d lines; use fewer points", path,
+                         MAX_ROWS);
     r->t = arena_alloc(a, (size_t)lines, sizeof *r->t, "reference", d);
     r->value = arena_alloc(a, (size_t)lines, sizeof *r->value, "reference", d);
     if (!r->t || !r->value) return ERR_MEMORY;
     int number = 1;
-    bool head_possible = true;
+    bool names_allowed = true;
     for (const char *at = text; *at; at = next_line(at), number++) {
         double row[2];
-        const int got = read_row(at, head_possible, row);
+        const int got = read_row(at, names_allowed, row);
         if (got < 0)
             return diag_fail(d, ERR_INPUT,
-                             "%s:%d: '%.*s' is no row of a reference; two numbers are expected, "
-                             "time (s) and value (SI)",
+                             "%s:%d: '%.*s' is no row of a reference; write two numbers, time (s) "
+                             "and value (SI)",
                              path, number, (int)(strcspn(at, "\r\n") % 60), at);
         if (got > 0) insert_row(r, row);
-        if (got > 0 || isalpha((unsigned char)*at)) head_possible = false;
+        if (got > 0 || isalpha((unsigned char)*at)) names_allowed = false;
     }
     if (r->n == 0) return diag_fail(d, ERR_INPUT, "%s: holds no row of time and value", path);
     return ERR_OK;
@@ -97,7 +99,7 @@ static enum err read_file(struct reference *r, const struct scene *s, struct are
 
 enum { COLUMN_NAMES = 64 };
 
-/* The k-th name of a header, its length; NULL: there are fewer. */
+/* The k-th item of a line of comma-separated ones and its length; NULL: there are fewer. */
 static const char *column_name(const char *header, int k, size_t *length)
 {
     for (; k > 0; k--) {
@@ -109,7 +111,7 @@ static const char *column_name(const char *header, int k, size_t *length)
     return header;
 }
 
-/* Looks for the column in one file; its names are offered as near ones. */
+/* Searches one file for the column; collects its names for the message. */
 static bool has_column(struct reference *r, int file, const char *header, struct nearest *near,
                        char names[][2 * SCENE_NAME], int *n_names)
 {
@@ -141,7 +143,7 @@ static enum err find_column(struct reference *r, const struct scene *s, int n,
         snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", k ? "," : "", names[k]);
     scene_location(s, r->from->common.line, place);
     return diag_fail(d, ERR_INPUT,
-                     "%s: [reference %s] probe = %.80s: the probes have the columns %s%s%s", place,
+                     "%s: [reference %s] probe = %.80s: no such column; there are %s%s%s", place,
                      r->from->common.name, r->from->probe, list,
                      near.name ? "; the nearest is " : "", near.name ? near.name : "");
 }
@@ -162,41 +164,41 @@ enum err references_open(struct references *r, const struct scene *s, int n,
 
 /* --- comparison --- */
 
-/* One column of probes.csv beside its times. */
-struct track {
+/* Values over time. */
+struct curve {
     int n;
     double *t, *value;
 };
 
-static void read_track(struct track *track, const char *csv, int column)
+static void read_curve(struct curve *curve, const char *csv, int column)
 {
-    track->n = 0;
+    curve->n = 0;
     for (const char *line = next_line(csv); *line; line = next_line(line)) {
-        if (!strchr(line, '\n')) break; /* torn */
+        if (!strchr(line, '\n')) break; /* incomplete */
         size_t length;
         const char *const field = column_name(line, column, &length);
         if (!field || field > line + strcspn(line, "\n")) continue;
-        track->t[track->n] = strtod(line, NULL);
-        track->value[track->n++] = strtod(field, NULL);
+        curve->t[curve->n] = strtod(line, NULL);
+        curve->value[curve->n++] = strtod(field, NULL);
     }
 }
 
-static double at_time(const struct track *track, double t)
+static double at_time(const struct curve *curve, double t)
 {
-    if (track->n < 2) return track->value[0];
-    int low = 0, k = track->n - 1; /* t lies in the interval that ends at row k */
+    if (curve->n < 2) return curve->value[0];
+    int low = 0, k = curve->n - 1; /* t is in the interval that ends at row k */
     while (k - low > 1) {
         const int middle = (low + k) / 2;
-        *(track->t[middle] < t ? &low : &k) = middle;
+        *(curve->t[middle] < t ? &low : &k) = middle;
     }
-    const double span = track->t[k] - track->t[k - 1];
-    const double share = span > 0 ? (t - track->t[k - 1]) / span : 0;
-    return track->value[k - 1] + share * (track->value[k] - track->value[k - 1]);
+    const double span = curve->t[k] - curve->t[k - 1];
+    const double fraction = span > 0 ? (t - curve->t[k - 1]) / span : 0;
+    return curve->value[k - 1] + fraction * (curve->value[k] - curve->value[k - 1]);
 }
 
-/* The first turn of largest size, but for 2 %: of an oscillation not whichever cycle round-off has made
- * the highest. */
-static void find_peak(const struct track *v, double from, double until, double *peak, double *when)
+/* The first local extremum within 2 % of the largest magnitude. Of an oscillation this is always the same
+ * cycle, where round-off would decide which one is the highest. */
+static void find_peak(const struct curve *v, double from, double until, double *peak, double *when)
 {
     double top = 0;
     for (int k = 0; k < v->n; k++)
@@ -212,40 +214,40 @@ static void find_peak(const struct track *v, double from, double until, double *
     }
 }
 
-/* The reference where it is compared, within the time that both have. */
-static void fill_wanted(const struct reference *r, const struct track *track, double from,
-                        double until, struct track *wanted)
+/* The reference at the times of the comparison, where both are known. */
+static void reference_curve(const struct reference *r, const struct curve *curve, double from,
+                            double until, struct curve *expected)
 {
-    wanted->n = 0;
-    const int rows = r->n > 1 ? r->n : track->n;
-    for (int k = 0; k < rows && track->n > 0; k++) {
-        const double t = r->n > 1 ? r->t[k] : track->t[k];
-        if (t < max2(from, track->t[0]) || t > min2(until, track->t[track->n - 1])) continue;
-        wanted->t[wanted->n] = t;
-        wanted->value[wanted->n++] = r->n > 1    ? r->value[k]
-                                     : r->n == 1 ? r->value[0]
-                                                 : scene_expr_at(r->from->formula.e[0], t, 0);
+    expected->n = 0;
+    const int rows = r->n > 1 ? r->n : curve->n;
+    for (int k = 0; k < rows && curve->n > 0; k++) {
+        const double t = r->n > 1 ? r->t[k] : curve->t[k];
+        if (t < max2(from, curve->t[0]) || t > min2(until, curve->t[curve->n - 1])) continue;
+        expected->t[expected->n] = t;
+        expected->value[expected->n++] = r->n > 1    ? r->value[k]
+                                         : r->n == 1 ? r->value[0]
+                                                     : scene_expr_at(r->from->formula.e[0], t, 0);
     }
 }
 
-static void compare(const struct reference *r, const struct track *track, struct track *wanted,
+static void compare(const struct reference *r, const struct curve *curve, struct curve *expected,
                     struct score *c)
 {
     const double from = r->n > 1 ? max2(r->from->from, r->t[0]) : r->from->from;
     const double until = r->n > 1 ? min2(r->from->until, r->t[r->n - 1]) : r->from->until;
     *c = (struct score){0};
-    fill_wanted(r, track, from, until, wanted);
-    find_peak(track, from, until, &c->peak, &c->peak_time);
-    find_peak(wanted, from, until, &c->peak_wanted, &c->peak_when);
-    for (int k = 0; k < wanted->n; k++) {
-        const double probe = at_time(track, wanted->t[k]), off = probe - wanted->value[k];
-        c->rms += off * off / wanted->n;
-        c->mean += off / wanted->n;
-        c->probe_mean += probe / wanted->n;
+    reference_curve(r, curve, from, until, expected);
+    find_peak(curve, from, until, &c->peak, &c->peak_time);
+    find_peak(expected, from, until, &c->peak_reference, &c->peak_time_reference);
+    for (int k = 0; k < expected->n; k++) {
+        const double probe = at_time(curve, expected->t[k]), off = probe - expected->value[k];
+        c->rms += off * off / expected->n;
+        c->mean += off / expected->n;
+        c->probe_mean += probe / expected->n;
         c->largest = max2(c->largest, fabs(off));
-        c->scale = max2(c->scale, fabs(wanted->value[k]));
+        c->scale = max2(c->scale, fabs(expected->value[k]));
     }
-    c->points = wanted->n;
+    c->points = expected->n;
     c->rms = sqrt(c->rms);
 }
 
@@ -265,21 +267,22 @@ enum err references_score(const struct references *r, int file, const char *prob
     double *const numbers = malloc(4 * rows * sizeof *numbers);
     if (!numbers) {
         free(csv);
-        return diag_fail(d, ERR_MEMORY, "%s: no memory to compare it", probes_csv);
+        return diag_fail(d, ERR_MEMORY, "%s: no memory to compare it with its references",
+                         probes_csv);
     }
-    struct track track = {0, numbers, numbers + rows};
-    struct track wanted = {0, numbers + 2 * rows, numbers + 3 * rows};
+    struct curve curve = {0, numbers, numbers + rows};
+    struct curve expected = {0, numbers + 2 * rows, numbers + 3 * rows};
     for (int k = 0; k < r->n; k++) {
         if (r->item[k].file != file) continue;
-        read_track(&track, csv, r->item[k].column);
-        compare(&r->item[k], &track, &wanted, &score[k]);
+        read_curve(&curve, csv, r->item[k].column);
+        compare(&r->item[k], &curve, &expected, &score[k]);
     }
     free(numbers);
     free(csv);
     return ERR_OK;
 }
 
-/* --- what is said of it --- */
+/* --- results --- */
 
 static double known(const struct score *c, double value)
 {
@@ -302,10 +305,10 @@ void references_write(struct json *j, const struct references *r, const struct s
         json_number(j, "mean", known(c, c->mean));
         json_number(j, "peak", known(c, c->peak));
         json_number(j, "peak_time", known(c, c->peak_time));
-        json_number(j, "peak_reference", known(c, c->peak_wanted));
-        json_number(j, "peak_time_reference", known(c, c->peak_when));
-        json_number(j, "peak_error", known(c, c->peak - c->peak_wanted));
-        json_number(j, "peak_time_error", known(c, c->peak_time - c->peak_when));
+        json_number(j, "peak_reference", known(c, c->peak_reference));
+        json_number(j, "peak_time_reference", known(c, c->peak_time_reference));
+        json_number(j, "peak_error", known(c, c->peak - c->peak_reference));
+        json_number(j, "peak_time_error", known(c, c->peak_time - c->peak_time_reference));
         json_close(j, '}');
     }
     json_close(j, '}');
@@ -316,7 +319,7 @@ void reference_line(const struct reference *r, const struct score *c, char *text
     const char *const name = r->from->label[0] ? r->from->label : r->from->common.name;
     const double percent = c->scale > 0 ? 100 / c->scale : (double)NAN;
     if (c->points == 0)
-        snprintf(text, size, "%s: no time in common with %s", r->from->probe, name);
+        snprintf(text, size, "%s: its times do not overlap with those of %s", r->from->probe, name);
     else if (r->n == 1)
         snprintf(text, size, "%s: mean %.4g, %+.2g (%+.2g %%) off %s; RMS %.2g (%.2g %%)",
                  r->from->probe, c->probe_mean, c->mean, percent * c->mean, name, c->rms,
@@ -326,5 +329,5 @@ void reference_line(const struct reference *r, const struct score *c, char *text
                  "%s: RMS %.3g (%.2g %% of the peak) from %s; peak %.4g at %.4g s instead of %.4g "
                  "at %.4g s",
                  r->from->probe, c->rms, percent * c->rms, name, c->peak, c->peak_time,
-                 c->peak_wanted, c->peak_when);
+                 c->peak_reference, c->peak_time_reference);
 }

@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * What a run is compared with: the curves that its case names, and how far its probes are off. */
+ * Reference curves of a case, and the deviation of its probes from them. */
 #ifndef SPHFSI_OUTPUT_REFERENCE_H
 #define SPHFSI_OUTPUT_REFERENCE_H
 
 #include "output/json.h"
 #include "case/scene.h"
 
-/* One [reference] section, ready to be compared. */
+/* One [reference] section. */
 struct reference {
     const struct scene_reference *from;
     int file, column;  /* of probes.csv, or of another file of probes */
@@ -19,32 +19,31 @@ struct references {
     struct reference *item;
 };
 
-/* How far a probe is off one reference; units: those of the column. A peak is the first turn whose size
- * is the largest but for 2 %; NAN: none. */
+/* Deviation of a probe from a reference, in units of the column. A peak is the first local extremum within 2 %
+ * of the largest magnitude; NAN: none. */
 struct score {
-    int points;                /* compared; 0: the run has none in the reference's time */
-    double rms, largest, mean; /* of probe - reference; largest of its size */
+    int points;                /* compared; 0: the times of run and reference do not overlap */
+    double rms, largest, mean; /* of probe - reference; largest: of its magnitude */
     double peak, peak_time;
-    double peak_wanted, peak_when; /* of the reference */
+    double peak_reference, peak_time_reference; /* of the reference */
     double probe_mean;
-    double scale; /* largest size of the reference */
+    double scale; /* largest magnitude of the reference */
 };
 
-/* Reads the files of the scene's references and finds their columns among those of the n files of probes.
- * ERR_INPUT: a file is missing or malformed, or there is no such column. Memory: the arena's. */
+/* Reads the files of the scene's references, and finds the column of each in the headers of the n files of
+ * probes. ERR_INPUT: a file is missing or malformed, or no such column exists. The arena owns the memory. */
 enum err references_open(struct references *r, const struct scene *s, int n,
                          const char *const *header, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* Compares the rows of one file of probes with the references that it has the columns of. A reference of
- * several rows is compared at its rows, the probe interpolated linearly between its own; a constant or a
- * formula at the rows of the probe. */
+/* Compares one file of probes with the references to its columns. A reference with several rows is compared at
+ * its times, the probe being interpolated linearly; a constant or a formula at the times of the probe. */
 enum err references_score(const struct references *r, int file, const char *probes_csv,
                           struct score *score, struct diag *d) SPHFSI_CHECKED;
 
-/* An object of the scores by name. */
+/* Writes the scores as an object, by name. */
 void references_write(struct json *j, const struct references *r, const struct score *score);
 
-/* One line for the user. */
+/* Writes one line for the user. */
 void reference_line(const struct reference *r, const struct score *score, char *text, size_t size);
 
 #endif

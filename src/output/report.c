@@ -65,7 +65,7 @@ static void write_section(struct json *j, enum section_id id, const void *sectio
             write_value(j, &param_table[k], (const char *)section + param_table[k].offset);
 }
 
-/* The keys at the top of the case stand at the top; sections by word, named ones by name below. */
+/* Keys of the top of the case first; then sections by word, and named ones by name below their word. */
 static void write_parameters(struct json *j, const struct scene *scene)
 {
     json_open(j, "parameters", '{');
@@ -159,8 +159,8 @@ static double energy(const struct ledger *l)
     return l->kinetic + l->potential + l->internal + l->elastic + l->hourglass;
 }
 
-/* The drift is the energy that nothing accounts for, in units of the largest energy that changed
- * hands: kinetic energy or what potential, compression and strain gave and took. */
+/* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the changes of the
+ * others. */
 static void write_drift(struct json *j, const struct simulation *s, const struct record *r)
 {
     const struct ledger *a = &r->first, *b = &r->last;
@@ -211,7 +211,6 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_integer(j, "memory_bytes", (int64_t)s->arena.bytes);
 }
 
-/* Counters without a place of their own above. */
 static void write_counters(struct json *j, const struct state *st)
 {
     json_open(j, "counters", '{');

@@ -1,36 +1,36 @@
 /* SPDX-License-Identifier: MIT
- * summary.json: what was run, how far it came, what it cost and how sound it was. */
+ * summary.json: parameters, progress, cost, conservation and extremes of a run. */
 #ifndef SPHFSI_OUTPUT_REPORT_H
 #define SPHFSI_OUTPUT_REPORT_H
 
 #include "output/reference.h"
 #include "time/simulation.h"
 
-/* What a summary says besides the simulation itself. */
+/* What a summary holds besides the simulation itself. */
 struct record {
     const char *exit_reason; /* "finished", "running", "guard", "input_output", "interrupted" */
-    const char *message;     /* the sentence of a failure, or "" */
+    const char *message;     /* of a failure, or "" */
     const char *version;
     const char *restarted_from; /* checkpoint, or "" */
     const char *forked_from;    /* checkpoint of another run, or "" */
-    int64_t snapshots_missed;   /* that could not be written, [output] snapshot_failure = go_on */
+    int64_t snapshots_missed;   /* not written, with [output] snapshot_failure = go_on */
     int threads;
     double wall_seconds; /* of this process, from the first step on */
     double start_time;   /* s, simulated, at which this process began */
     int64_t start_particle_steps;
     struct ledger first, last; /* at time zero and now */
     const struct references *references;
-    const struct score *score; /* of each reference; NULL: not compared (yet) */
+    const struct score *score; /* of each reference; NULL: not compared */
 };
 
-/* Writes summary.json to the folder of the run: complete or not at all. */
+/* Writes summary.json to the folder of the run, atomically. */
 enum err report_summary(const char *folder, struct simulation *s, const struct record *r,
                         struct diag *d) SPHFSI_CHECKED;
 
-/* Particles (fluid and solid) times their steps per second of this process. */
+/* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *s, const struct record *r);
 
-/* The bound that limited most steps; BOUND_COUNT before the first step. */
+/* The bound that limited the most steps; BOUND_COUNT before the first step. */
 enum bound report_binding(const struct simulation *s);
 
 #endif

@@ -24,7 +24,7 @@ static int count_columns(const char *header)
     return n;
 }
 
-/* A row is one write, so that a run that is killed leaves whole rows. */
+/* One write() per row, so that a killed run leaves complete rows. */
 static enum err append(struct series *s, const char *text, size_t length, struct diag *d)
 {
     const off_t before = lseek(s->fd, 0, SEEK_END);
@@ -33,7 +33,7 @@ static enum err append(struct series *s, const char *text, size_t length, struct
     diag_fail(d, ERR_IO, "%s: cannot be written: %s", s->path,
               strerror(written < 0 ? errno : ENOSPC));
     if (written > 0 && before >= 0 && ftruncate(s->fd, before) != 0)
-        diag_warn(d, "%s: ends in a part of a row, which a restart drops", s->path);
+        diag_warn(d, "%s: ends in an incomplete row, which a restart drops", s->path);
     return ERR_IO;
 }
 
@@ -43,8 +43,9 @@ static enum err begin(struct series *s, const char *folder, const char *name, co
     s->fd = -1;
     s->columns = count_columns(header);
     if (s->columns > SERIES_MAX_COLUMNS)
-        return diag_fail(d, ERR_INPUT, "%s: would have %d columns, at most %d are possible", name,
-                         s->columns, SERIES_MAX_COLUMNS);
+        return diag_fail(d, ERR_INPUT,
+                         "%s: would have %d columns, at most %d are possible; use fewer probes",
+                         name, s->columns, SERIES_MAX_COLUMNS);
     return path_join(s->path, folder, name, d);
 }
 
@@ -59,7 +60,7 @@ enum err series_create(struct series *s, const char *folder, const char *name, c
     return append(s, "\n", 1, d);
 }
 
-/* Length of the rows up to `time` behind `at`; a row without its newline is torn. */
+/* Length of the rows up to `time` from `at` on; a row without a newline is incomplete. */
 static size_t rows_until(const char *at, double time, const char **first, double *last)
 {
     const char *const start = at;
@@ -128,7 +129,7 @@ enum err series_row(struct series *s, const double *values, struct diag *d)
 
 enum err series_sync(const struct series *s, struct diag *d)
 {
-    /* EINVAL: what cannot be synced, such as a pipe. */
+    /* EINVAL: a pipe or another file that cannot be synced. */
     if (s->fd < 0 || fsync(s->fd) == 0 || errno == EINVAL) return ERR_OK;
     return diag_fail(d, ERR_IO, "%s: cannot be synced: %s", s->path, strerror(errno));
 }

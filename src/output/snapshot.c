@@ -17,7 +17,7 @@ enum { VTK_VERTEX = 1 };
 
 /* --- a snapshot --- */
 
-/* Cauchy's stress, in the order of the file: xx yy zz xy yz xz. */
+/* Cauchy stress, in the order of the file: xx yy zz xy yz xz. */
 static double stress_value(const double sigma[4], int column)
 {
     static const int order[] = {0, 1, 3, 2};
@@ -29,7 +29,7 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
-/* Value of a dataset of points, of one particle, where it is floating. */
+/* Value of one particle in a floating dataset. */
 static double real_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
                          int column)
 {
@@ -57,7 +57,7 @@ static double real_value(enum data what, const struct simulation *s, enum kind k
     }
 }
 
-static int64_t whole_value(enum data what, const struct simulation *s, enum kind kind, int64_t i)
+static int64_t integer_value(enum data what, const struct simulation *s, enum kind kind, int64_t i)
 {
     switch (what) {
     case D_KIND: return kind;
@@ -67,44 +67,44 @@ static int64_t whole_value(enum data what, const struct simulation *s, enum kind
     }
 }
 
-/* What positions are rounded to beside fields in single precision, about 1e-6 dp, m: their last digits say
- * nothing, and packing them takes as long as packing all else. A power of two, so that they end in zeros. */
+/* Positions beside single-precision fields are rounded to this, m: a power of two near 1e-6 dp. Bits
+ * below carry no information, and would take as long to compress as all other fields together. */
 static double position_unit(const struct scene *scene)
 {
     return ldexp(1, ilogb(scene->top.dp) - 20);
 }
 
-/* What a snapshot is made of. */
-struct picture {
+/* The source of a snapshot. */
+struct source {
     const struct simulation *s;
-    double unit; /* of positions, 0: not rounded */
+    double unit; /* to which positions are rounded; 0: not rounded */
 };
 
-static int64_t within(int64_t value, int64_t most)
+static int64_t clamp(int64_t value, int64_t most)
 {
     return value < 0 ? 0 : value > most ? most : value;
 }
 
-/* A snapshot_values: the particles of one kind after those of the other. */
+/* A snapshot_values callback: rows are the particles of all kinds, in the order of the kinds. */
 static void values_of(const void *context, enum data what, int column, int64_t first, int64_t n,
                       void *values)
 {
-    const struct picture *const picture = context;
-    const struct simulation *const s = picture->s;
-    const double unit = what == D_POINTS ? picture->unit : 0;
+    const struct source *const source = context;
+    const struct simulation *const s = source->s;
+    const double unit = what == D_POINTS ? source->unit : 0;
     double *const real = values;
-    int64_t *const whole = values;
-    if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a cell of its own */
-        for (int64_t row = 0; row < n; row++) whole[row] = first + row;
+    int64_t *const integer = values;
+    if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a VTK cell */
+        for (int64_t row = 0; row < n; row++) integer[row] = first + row;
         return;
     }
     const bool is_real = snapshot_file_real(what);
     int64_t row = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const int64_t most = s->kind[kind].n, end = within(first + n, most);
-        for (int64_t i = within(first, most); i < end; i++, row++) {
+        const int64_t most = s->kind[kind].n, end = clamp(first + n, most);
+        for (int64_t i = clamp(first, most); i < end; i++, row++) {
             if (!is_real) {
-                whole[row] = whole_value(what, s, (enum kind)kind, i);
+                integer[row] = integer_value(what, s, (enum kind)kind, i);
                 continue;
             }
             const double value = real_value(what, s, (enum kind)kind, i, column);
@@ -135,7 +135,7 @@ static int64_t count_points(const struct simulation *s)
     return n;
 }
 
-/* The most points that any snapshot has: fluid only ever leaves. */
+/* The most points of any snapshot. */
 static int64_t count_capacity(const struct simulation *s)
 {
     int64_t n = 0;
@@ -147,19 +147,19 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, st
 {
     int64_t rows[D_COUNT];
     const int64_t n = count_points(s), steps = snapshot_file_steps(file);
-    const struct picture picture = {s, layout->doubles ? 0 : position_unit(s->scene)};
+    const struct source source = {s, layout->doubles ? 0 : position_unit(s->scene)};
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
     const bool ok = root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
                     append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]) &&
-                    snapshot_file_append_points(root, layout, n, values_of, &picture);
+                    snapshot_file_append_points(root, layout, n, values_of, &source);
     H5Gclose(root);
     return ok && snapshot_file_set_steps(file, steps + 1);
 }
 
 /* --- files --- */
 
-/* Opens the spare, or makes a new one: where there is none, where it is damaged, and where a reader
- * still holds it open from the time when it had the name. */
+/* Opens the spare, or creates a new one: if there is none, if it is damaged, or if a reader that opened it
+ * under the final name still locks it. */
 static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points, hid_t named)
 {
     hid_t file = access(w->spare, F_OK) == 0 ? H5Fopen(w->spare, H5F_ACC_RDWR, H5P_DEFAULT) : -1;
@@ -169,7 +169,7 @@ static hid_t open_spare(const struct snapshots *w, int64_t steps, int64_t points
     if (file >= 0) H5Fclose(file);
     unlink(w->spare);
     file = H5Fcreate(w->spare, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
-    if (file >= 0 && !snapshot_file_lay_out(file, w->scene, w->version, points, named)) {
+    if (file >= 0 && !snapshot_file_create(file, w->scene, w->version, points, named)) {
         H5Fclose(file);
         return -1;
     }
@@ -182,13 +182,13 @@ static int64_t file_bytes(const char *path)
     return stat(path, &info) == 0 ? (int64_t)info.st_size : 0;
 }
 
-/* Claims the disk space that the spare can need: HDF5 does not survive a write that fails, it
- * crashes at the end of the program. It gives back what it does not use when it closes the file. */
-static bool claim_space(const struct snapshots *w, int64_t points)
+/* Reserves the disk space that the spare can need: after a failed write HDF5 crashes at the end of the program.
+ * HDF5 truncates the file to its real size when it closes it. */
+static bool reserve_space(const struct snapshots *w, int64_t points)
 {
 #if _POSIX_ADVISORY_INFO > 0
-    const int64_t have = file_bytes(w->spare), named = file_bytes(w->path);
-    const int64_t want = (have > named ? have : named) + snapshot_file_bytes(&w->layout, points);
+    const int64_t spare = file_bytes(w->spare), named = file_bytes(w->path);
+    const int64_t want = (spare > named ? spare : named) + snapshot_file_bytes(&w->layout, points);
     const int fd = file_open_no_follow(w->spare, O_WRONLY | O_CREAT);
     const int why = fd < 0 ? errno : posix_fallocate(fd, 0, (off_t)want);
     if (fd >= 0) close(fd);
@@ -199,30 +199,29 @@ static bool claim_space(const struct snapshots *w, int64_t points)
 #endif
 }
 
-/* Brings the spare to the first `steps` snapshots of the named file (all of them: negative), then
- * appends one of `s`, unless that is NULL. */
+/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they are missing
+ * there; then appends a snapshot of `s`, unless that is NULL. */
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *s)
 {
-    const int64_t points = s ? count_points(s) : 0, room = s ? count_capacity(s) : 0;
+    const int64_t points = s ? count_points(s) : 0, most = s ? count_capacity(s) : 0;
     struct stat info;
     if (lstat(w->spare, &info) == 0 && !S_ISREG(info.st_mode)) unlink(w->spare);
-    if (!claim_space(w, room)) return false;
+    if (!reserve_space(w, most)) return false;
     const bool is_named = access(w->path, F_OK) == 0;
     const hid_t named = is_named ? H5Fopen(w->path, H5F_ACC_RDONLY, H5P_DEFAULT) : -1;
     if (steps < 0) steps = named >= 0 ? snapshot_file_steps(named) : 0;
     const hid_t file = named >= 0 || !is_named ? open_spare(w, steps, points, named) : -1;
     const bool ok = file >= 0 &&
-                    (named < 0 || snapshot_file_catch_up(&w->layout, named, file, steps)) &&
+                    (named < 0 || snapshot_file_copy_missing(&w->layout, named, file, steps)) &&
                     (!s || append_snapshot(&w->layout, file, s));
     if (named >= 0) H5Fclose(named);
     return (file < 0 || H5Fclose(file) >= 0) && ok;
 }
 
-/* HDF5 is mostly built for one thread: simulations in several take turns. */
-static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
+/* HDF5 is seldom built thread-safe: simulations in several threads of a program exclude each other. */
+static pthread_mutex_t hdf5_mutex = PTHREAD_MUTEX_INITIALIZER;
 
-/* HDF5 prints what fails unless told otherwise; the setting belongs to the program, so it is put
- * back. */
+/* Turns off HDF5's own error messages. The setting is global and may be the user's, so it is restored. */
 struct quiet {
     H5E_auto2_t report;
     void *context;
@@ -231,7 +230,7 @@ struct quiet {
 static struct quiet quiet_begin(void)
 {
     struct quiet q = {NULL, NULL};
-    pthread_mutex_lock(&turn);
+    pthread_mutex_lock(&hdf5_mutex);
     H5Eget_auto2(H5E_DEFAULT, &q.report, &q.context);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
     return q;
@@ -240,10 +239,10 @@ static struct quiet quiet_begin(void)
 static void quiet_end(struct quiet q)
 {
     H5Eset_auto2(H5E_DEFAULT, q.report, q.context);
-    pthread_mutex_unlock(&turn);
+    pthread_mutex_unlock(&hdf5_mutex);
 }
 
-/* Leaves the filled spare to be put in place. */
+/* Fills the spare and starts the swap. */
 static enum err update(struct snapshots *w, int64_t steps, struct simulation *s, struct diag *d)
 {
     const struct quiet q = quiet_begin();
@@ -257,7 +256,7 @@ static enum err update(struct snapshots *w, int64_t steps, struct simulation *s,
                          "%s: a snapshot cannot be written: %s; those before it are kept", w->path,
                          why ? strerror(why) : "HDF5 reports a failure");
     }
-    placing_begin(&w->publishing, w->folder, w->path, w->spare);
+    publish_begin(&w->publishing, w->folder, w->path, w->spare);
     return ERR_OK;
 }
 
@@ -265,17 +264,17 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
                           const char *version, struct diag *d)
 {
     w->scene = scene;
-    pthread_mutex_lock(&turn);
+    pthread_mutex_lock(&hdf5_mutex);
     w->layout = snapshot_file_layout(scene);
-    pthread_mutex_unlock(&turn);
+    pthread_mutex_unlock(&hdf5_mutex);
     w->version = version;
     TRY(path_join(w->folder, folder, ".", d));
     TRY(path_join(w->path, folder, "fields.vtkhdf", d));
     return path_join(w->spare, folder, "fields.vtkhdf.spare", d);
 }
 
-/* How many snapshots the named file holds, and how many of them up to `time`; the time of the last
- * of these. errno is ENOMEM where it is memory that is missing. */
+/* Counts the snapshots of the named file, and those up to `time`; `last`: the time of the last of these. errno
+ * is ENOMEM if memory is missing. */
 static bool count_snapshots(const struct snapshots *w, double time, int64_t *all, int64_t *keep,
                             double *last)
 {
@@ -298,7 +297,7 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     *last = -1;
     unlink(w->spare);
     if (access(w->path, F_OK) != 0) {
-        diag_warn(d, "%s: is not there; snapshots begin anew", w->path);
+        diag_warn(d, "%s: does not exist; snapshots start at %.6g s", w->path, time);
         return ERR_OK;
     }
     int64_t all, keep;
@@ -307,35 +306,35 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
     const int why = errno;
     quiet_end(q);
     if (!counted && why == ENOMEM)
-        return diag_fail(d, ERR_MEMORY, "%s: no memory to look at its snapshots", w->path);
+        return diag_fail(d, ERR_MEMORY, "%s: no memory to count its snapshots", w->path);
     if (!counted)
         return diag_fail(d, ERR_INPUT,
-                         "%s: cannot be read as snapshots; move it away to go on "
+                         "%s: cannot be read as snapshots; move it to another folder to continue "
                          "without it",
                          w->path);
     if (keep == all) return ERR_OK;
     TRY(update(w, keep, NULL, d));
-    TRY(snapshots_settle(w, d));
+    TRY(snapshots_wait(w, d));
     unlink(w->spare);
     return ERR_OK;
 }
 
-enum err snapshots_settle(struct snapshots *w, struct diag *d)
+enum err snapshots_wait(struct snapshots *w, struct diag *d)
 {
-    return publishing_end(&w->publishing, d);
+    return publish_end(&w->publishing, d);
 }
 
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d)
 {
-    TRY(snapshots_settle(w, d));
+    TRY(snapshots_wait(w, d));
     simulation_refresh(s);
     return update(w, -1, s, d);
 }
 
 void snapshots_close(struct snapshots *w)
 {
-    struct diag unheard = {.code = ERR_OK};
-    const enum err e = snapshots_settle(w, &unheard);
+    struct diag ignored = {.code = ERR_OK};
+    const enum err e = snapshots_wait(w, &ignored);
     (void)e;
     if (w->spare[0]) unlink(w->spare);
 }

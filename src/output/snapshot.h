@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * fields.vtkhdf: snapshots of all particles in the VTKHDF layout, which ParaView and h5py open. */
+ * fields.vtkhdf: snapshots of all particles in the VTKHDF layout, readable by ParaView and h5py. */
 #ifndef SPHFSI_OUTPUT_SNAPSHOT_H
 #define SPHFSI_OUTPUT_SNAPSHOT_H
 
@@ -8,8 +8,8 @@
 #include "output/snapshot_file.h"
 #include "output/publish.h"
 
-/* A snapshot is appended to a spare copy, which then takes the name; so the file with the name is
- * whole at any moment, and the other one lags a snapshot behind and is caught up first. */
+/* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the spare file,
+ * then the two swap names (output/publish.h). The spare is one snapshot older and is brought up to date first. */
 struct snapshots {
     char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;
@@ -18,20 +18,19 @@ struct snapshots {
     struct publishing publishing;
 };
 
-/* Begins with no snapshot, or goes on with those up to `time`; `last` is the time of the last one,
- * -1 if there is none. */
+/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or -1. */
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, struct diag *d) SPHFSI_CHECKED;
 enum err snapshots_resume(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, double time, double *last, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Appends one. It has its place in the file with the name when snapshots_settle or the next call comes
- * back: the disk is waited for beside the simulation. */
+/* Appends a snapshot. It is in the named file when snapshots_wait or the next snapshots_write returns: a thread
+ * waits for the disk meanwhile. */
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
-enum err snapshots_settle(struct snapshots *w, struct diag *d) SPHFSI_CHECKED;
+enum err snapshots_wait(struct snapshots *w, struct diag *d) SPHFSI_CHECKED;
 
-/* Settles, and removes the spare. */
+/* Waits, and removes the spare. */
 void snapshots_close(struct snapshots *w);
 
 #endif

@@ -7,13 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How the rows of a dataset grow with a snapshot of n points. */
+/* Rows that a snapshot of n points adds to a dataset: 1, n, n + 1. */
 enum growth { BY_STEP, BY_POINT, BY_POINT_AND_ONE };
 
 enum item { F64, REAL, I64, I32, I8, U8 }; /* REAL: float32 or float64 */
 
-/* The datasets below /VTKHDF. Values are handed to HDF5 as double where the file holds a floating
- * type and as int64 otherwise; HDF5 converts. */
+/* The datasets below /VTKHDF. In memory their values are double (floating types) or int64; HDF5 converts. */
 static const struct column {
     const char *name;
     enum growth growth;
@@ -83,8 +82,8 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 
 /* --- one dataset --- */
 
-/* Rows of a chunk of a dataset: those of a snapshot, or of an equal part of one that is too much at a time.
- * A chunk that two snapshots share is packed twice; among so many parts there mostly are equal ones. */
+/* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds POINT_CHUNK_MOST. Chunks
+ * that two snapshots share would be compressed twice, so a number of parts that divides the rows is sought. */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;
@@ -106,8 +105,8 @@ static bool size_of_chunk(hid_t set, hsize_t size[2])
     return ok;
 }
 
-/* How a dataset of snapshots of about n points lies in its file. Each component has chunks of its own: bytes
- * of one kind beside each other pack better than those of two or three in turn. */
+/* Creation properties of a dataset for snapshots of about n points. Each component has its own chunks, since
+ * values of one component compress better than interleaved ones. */
 static hid_t layout_of(const struct snapshot_layout *layout, const struct column *c, int64_t n)
 {
     const hsize_t chunk[2] = {(hsize_t)chunk_rows(c, n), 1};
@@ -120,8 +119,8 @@ static hid_t layout_of(const struct snapshot_layout *layout, const struct column
     return how;
 }
 
-/* How the dataset lies in another file, down to its filters: what is packed there can then be taken over
- * as it is. Negative: there is no such file. */
+/* Creation properties of the dataset in another file, including filters, so that compressed chunks can be
+ * copied. Negative: no such file. */
 static hid_t layout_in(hid_t file, const struct column *c)
 {
     char name[96];
@@ -132,7 +131,7 @@ static hid_t layout_in(hid_t file, const struct column *c)
     return how;
 }
 
-/* Takes over `how`. */
+/* Creates a dataset and closes `how`. */
 static bool create_dataset(hid_t root, const struct snapshot_layout *layout, const struct column *c,
                            hid_t how)
 {
@@ -157,13 +156,13 @@ static int64_t count_rows(hid_t set)
     return ok ? (int64_t)size[0] : -1;
 }
 
-/* A part of a dataset: rows and columns. */
+/* A rectangle of a dataset: rows and columns. */
 struct block {
     int64_t row, rows;
     int column, columns;
 };
 
-/* Moves a part between memory and an open dataset. */
+/* Reads or writes a block of an open dataset. */
 static bool move_block(hid_t set, const struct column *c, struct block b, void *values, bool write)
 {
     if (b.rows == 0) return true;
@@ -182,7 +181,7 @@ static bool move_block(hid_t set, const struct column *c, struct block b, void *
     return ok;
 }
 
-/* Makes room for n more rows; returns the first of them, negative if that fails. */
+/* Extends a dataset by n rows; returns the first of them, or a negative number. */
 static int64_t add_rows(hid_t set, const struct column *c, int64_t n)
 {
     const int64_t first = count_rows(set);
@@ -209,8 +208,8 @@ struct growing {
     int64_t first, last;
 };
 
-/* New rows of a chunk. */
-struct slice {
+/* The new rows of one chunk. */
+struct chunk_update {
     enum data what;
     struct block at;
 };
@@ -227,8 +226,8 @@ static bool open_growing(struct growing *g, hid_t root, const struct column *c, 
     return g->first >= 0;
 }
 
-/* Lists what is to be written, or just counts it where `list` is NULL. */
-static int64_t list_slices(const struct growing growing[D_COUNT], struct slice *list)
+/* Lists the updates of a snapshot; only counts them if `list` is NULL. */
+static int64_t list_updates(const struct growing growing[D_COUNT], struct chunk_update *list)
 {
     int64_t n = 0;
     for (int k = 0; k < D_COUNT; k++)
@@ -236,62 +235,65 @@ static int64_t list_slices(const struct growing growing[D_COUNT], struct slice *
             for (int64_t row = growing[k].first, end; row < growing[k].last; row = end) {
                 end = row - row % growing[k].chunk + growing[k].chunk;
                 if (end > growing[k].last) end = growing[k].last;
-                if (list) list[n] = (struct slice){(enum data)k, {row, end - row, column, 1}};
+                if (list)
+                    list[n] = (struct chunk_update){(enum data)k, {row, end - row, column, 1}};
                 n++;
             }
     return n;
 }
 
-/* Makes a slice into the chunk that it belongs to, with the older rows of that; where pack_chunk does not
- * know the packing, just finds its values. */
-static struct packed_chunk make_slice(const struct growing *g, const struct slice *slice,
-                                      snapshot_values *values_of, const void *context, char *room)
+/* Reads the older rows of the chunk, appends the new ones and compresses the chunk. If pack_chunk does not
+ * support its filters, the result is the values of the new rows. */
+static struct packed_chunk pack_update(const struct growing *g, const struct chunk_update *update,
+                                       snapshot_values *values_of, const void *context,
+                                       char *buffer)
 {
-    const struct block *const b = &slice->at;
+    const struct block *const b = &update->at;
     const int64_t old = g->packing.known ? b->row % g->chunk : 0;
     const struct block before = {b->row - old, old, b->column, 1};
     const int64_t rest = g->chunk - old - b->rows;
     bool ok;
 #pragma omp critical
-    ok = move_block(g->set, &columns[slice->what], before, room, false);
+    ok = move_block(g->set, &columns[update->what], before, buffer, false);
     if (!ok) return (struct packed_chunk){NULL, 0, 0};
-    values_of(context, slice->what, b->column, b->row - g->first, b->rows, room + old * 8);
-    if (!g->packing.known) return (struct packed_chunk){room, 0, 0};
-    memset(room + (old + b->rows) * 8, 0, (size_t)rest * 8);
-    return pack_chunk(&g->packing, g->chunk, room);
+    ASSERT(old >= 0 && b->rows > 0 && rest >= 0);
+    values_of(context, update->what, b->column, b->row - g->first, b->rows, buffer + old * 8);
+    if (!g->packing.known) return (struct packed_chunk){buffer, 0, 0};
+    memset(buffer + (old + b->rows) * 8, 0, (size_t)rest * 8);
+    return pack_chunk(&g->packing, g->chunk, buffer);
 }
 
-static bool write_slice(const struct growing *g, const struct slice *slice,
-                        const struct packed_chunk *chunk, void *room)
+static bool write_update(const struct growing *g, const struct chunk_update *update,
+                         const struct packed_chunk *chunk, void *buffer)
 {
-    const struct block *const b = &slice->at;
+    const struct block *const b = &update->at;
     const hsize_t at[2] = {(hsize_t)(b->row - b->row % g->chunk), (hsize_t)b->column};
     if (!chunk->bytes) return false;
-    if (!g->packing.known) return move_block(g->set, &columns[slice->what], *b, room, true);
+    if (!g->packing.known) return move_block(g->set, &columns[update->what], *b, buffer, true);
     return H5Dwrite_chunk(g->set, H5P_DEFAULT, chunk->filters, at, chunk->size, chunk->bytes) >= 0;
 }
 
-/* HDF5 is called by one thread at a time, and writes in the order of the list. */
-static bool write_slices(const struct growing growing[D_COUNT], const struct slice *list, int64_t n,
-                         int64_t chunk, snapshot_values *values_of, const void *context)
+/* Threads compress chunks in parallel. One thread at a time calls HDF5; chunks are written in list order. */
+static bool write_updates(const struct growing growing[D_COUNT], const struct chunk_update *list,
+                          int64_t n, int64_t chunk, snapshot_values *values_of, const void *context)
 {
-    const int threads = thread_count(); /* fewer would have libgomp end some and start them again */
-    char *const room = malloc((size_t)(threads * chunk) * PACK_ROOM);
-    bool ok = room != NULL;
+    const int threads = thread_count(); /* with fewer, libgomp would end threads and restart them */
+    char *const buffers = malloc((size_t)(threads * chunk) * PACK_BYTES);
+    bool ok = buffers != NULL;
     const int64_t count = ok ? n : 0;
 #pragma omp parallel num_threads(threads)
     {
-        char *const own = room + thread_index() * chunk * PACK_ROOM;
+        char *const own = buffers + thread_index() * chunk * PACK_BYTES;
 #pragma omp for ordered schedule(dynamic, 1)
         for (int64_t k = 0; k < count; k++) {
             const struct growing *const g = &growing[list[k].what];
-            const struct packed_chunk made = make_slice(g, &list[k], values_of, context, own);
+            const struct packed_chunk made = pack_update(g, &list[k], values_of, context, own);
 #pragma omp ordered
 #pragma omp critical
-            ok = ok && write_slice(g, &list[k], &made, own);
+            ok = ok && write_update(g, &list[k], &made, own);
         }
     }
-    free(room);
+    free(buffers);
     return ok;
 }
 
@@ -306,9 +308,10 @@ bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layou
         ok = open_growing(&growing[k], root, &columns[k], n);
         chunk = growing[k].chunk > chunk ? growing[k].chunk : chunk;
     }
-    struct slice *const list =
-        ok ? malloc((size_t)list_slices(growing, NULL) * sizeof *list) : NULL;
-    ok = list && write_slices(growing, list, list_slices(growing, list), chunk, values_of, context);
+    struct chunk_update *const list =
+        ok ? malloc((size_t)list_updates(growing, NULL) * sizeof *list) : NULL;
+    ok = list &&
+         write_updates(growing, list, list_updates(growing, list), chunk, values_of, context);
     free(list);
     for (int k = 0; k < D_COUNT; k++)
         if (growing[k].set > 0 && H5Dclose(growing[k].set) < 0) ok = false;
@@ -341,7 +344,7 @@ static bool put_numbers(hid_t at, const char *name, enum item item, const void *
     return ok;
 }
 
-/* What VTK has no place for stands in a group of its own, which VTK ignores. */
+/* Attributes outside the VTKHDF layout, in the group /sphfsi, which VTK ignores. */
 static bool put_case(hid_t file, const struct scene *scene, const char *version)
 {
     const hid_t group = H5Gcreate2(file, "sphfsi", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -356,8 +359,8 @@ static bool put_case(hid_t file, const struct scene *scene, const char *version)
     return ok;
 }
 
-bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *program, int64_t n,
-                           hid_t like)
+bool snapshot_file_create(hid_t file, const struct scene *scene, const char *program, int64_t n,
+                          hid_t like)
 {
     static const char *const groups[] = {"Steps", "PointData", "Steps/PointDataOffsets"};
     const int64_t version[2] = {2, 0}, none = 0;
@@ -376,7 +379,7 @@ bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *pr
         ok = create_dataset(root, &layout, &columns[k],
                             how >= 0 ? how : layout_of(&layout, &columns[k], n));
     }
-    /* All arrays of points are read from the same place: their offsets are one dataset. */
+    /* All arrays of points have the same offsets: hard links to one dataset. */
     for (int k = D_FIRST_POINTDATA; ok && k < D_COUNT; k++) {
         char link[64];
         if (!layout.has[k]) continue;
@@ -420,7 +423,7 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values)
     return ok;
 }
 
-/* --- catching up --- */
+/* --- copying snapshots --- */
 
 bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT])
 {
@@ -441,7 +444,7 @@ struct chunk_buffer {
     size_t size;
 };
 
-/* Copies the chunk that begins at a row and a column as it lies in the file, without unpacking it. */
+/* Copies the chunk that begins at a row and a column, compressed as it is. */
 static bool copy_chunk(hid_t source, hid_t target, hsize_t row, hsize_t column,
                        struct chunk_buffer *b)
 {
@@ -459,8 +462,8 @@ static bool copy_chunk(hid_t source, hid_t target, hsize_t row, hsize_t column,
            H5Dwrite_chunk(target, H5P_DEFAULT, filters, at, bytes, b->bytes) >= 0;
 }
 
-/* Appends what `target` lacks of the first `until` rows of `source`, which begins with all that it has: a
- * chunk that both have in part is taken over whole. */
+/* Appends to `target` the rows it lacks of the first `until` of `source`. A chunk that is partly filled in
+ * `target` is replaced. */
 static bool copy_rows(hid_t source, hid_t target, int64_t width, int64_t until,
                       struct chunk_buffer *b)
 {
@@ -490,8 +493,8 @@ static bool copy_dataset(hid_t from, hid_t to, const struct column *c, int64_t u
     return (target < 0 || H5Dclose(target) >= 0) && ok;
 }
 
-bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
-                            int64_t steps)
+bool snapshot_file_copy_missing(const struct snapshot_layout *layout, hid_t from, hid_t to,
+                                int64_t steps)
 {
     int64_t rows[D_COUNT];
     struct chunk_buffer buffer = {0};
@@ -506,7 +509,7 @@ int snapshot_file_width(enum data what) { return columns[what].width; }
 
 bool snapshot_file_real(enum data what) { return is_real(columns[what].item); }
 
-int64_t snapshot_file_point(const struct snapshot_layout *layout)
+int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout)
 {
     int64_t bytes = 0;
     for (int k = 0; k < D_COUNT; k++)
@@ -516,10 +519,10 @@ int64_t snapshot_file_point(const struct snapshot_layout *layout)
     return bytes;
 }
 
-/* The rows, and once more the last chunk of each dataset, which moves when it grows; METADATA_BYTES
- * cover what grows by the step. */
+/* The rows, and the last chunk of each dataset a second time, since HDF5 moves it when it grows. METADATA_BYTES
+ * covers datasets that grow by one row per snapshot. */
 int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n)
 {
-    return snapshot_file_point(layout) * (n + 1 + chunk_rows(&columns[D_POINTS], n)) +
+    return snapshot_file_point_bytes(layout) * (n + 1 + chunk_rows(&columns[D_POINTS], n)) +
            METADATA_BYTES;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Inside of snapshot: the datasets of fields.vtkhdf, and appending to them by HDF5. */
+ * For snapshot.c: the datasets of fields.vtkhdf, and appending to them with HDF5. */
 #ifndef SPHFSI_OUTPUT_SNAPSHOT_FILE_H
 #define SPHFSI_OUTPUT_SNAPSHOT_FILE_H
 
@@ -29,7 +29,7 @@ enum data {
     D_FIRST_POINTDATA = D_TYPES + 1
 };
 
-/* What a scene's file holds. */
+/* The datasets of a scene's file, and their precision and compression. */
 struct snapshot_layout {
     bool has[D_COUNT];
     bool doubles; /* arrays of points are float64 */
@@ -37,12 +37,12 @@ struct snapshot_layout {
 };
 struct snapshot_layout snapshot_file_layout(const struct scene *scene);
 
-/* Makes the groups and empty datasets of a new file for snapshots of about n points, packed like those
- * of another file, whose rows can then be taken over; negative: there is none. */
-bool snapshot_file_lay_out(hid_t file, const struct scene *scene, const char *version, int64_t n,
-                           hid_t like);
+/* Creates the groups and empty datasets of a new file for snapshots of about n points. Chunks and filters are
+ * those of the file `like`, so that its chunks can be copied; negative: no such file. */
+bool snapshot_file_create(hid_t file, const struct scene *scene, const char *version, int64_t n,
+                          hid_t like);
 
-/* Columns of a dataset, and whether its values are handed over as double; otherwise as int64. */
+/* Columns of a dataset, and whether its values in memory are double; otherwise they are int64. */
 int snapshot_file_width(enum data what);
 bool snapshot_file_real(enum data what);
 
@@ -53,12 +53,12 @@ bool snapshot_file_set_steps(hid_t file, int64_t n);
 /* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
 bool snapshot_file_append(hid_t root, enum data what, void *value);
 
-/* Finds the values of n rows of a snapshot, from `first` on, in one column: double where snapshot_file_real
- * says so, int64_t otherwise. Called by several threads at a time. */
+/* A callback that writes the values of rows first to first + n - 1 of a snapshot in one column: double or
+ * int64_t (snapshot_file_real). Several threads call it at the same time. */
 typedef void snapshot_values(const void *context, enum data what, int column, int64_t first,
                              int64_t n, void *values);
 
-/* Appends a snapshot of n points to all datasets of points. All threads pack; the file does not depend on
+/* Appends a snapshot of n points to all datasets of points. All threads compress; the file does not depend on
  * their number. */
 bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
                                  snapshot_values *values_of, const void *context);
@@ -66,15 +66,15 @@ bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layou
 /* Reads the first n rows of a dataset of one column. */
 bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values);
 
-/* Rows of every dataset in the first `steps` snapshots of a file; false: it does not hold them. */
+/* Rows of every dataset in the first `steps` snapshots of a file; false: it has fewer. */
 bool snapshot_file_rows(hid_t file, int64_t steps, int64_t rows[D_COUNT]);
 
-/* Appends to `to`, which has the chunks of `from`, what it lacks of the first `steps` snapshots. */
-bool snapshot_file_catch_up(const struct snapshot_layout *layout, hid_t from, hid_t to,
-                            int64_t steps);
+/* Appends to `to` the snapshots it lacks of the first `steps` of `from`; both have equal chunks. */
+bool snapshot_file_copy_missing(const struct snapshot_layout *layout, hid_t from, hid_t to,
+                                int64_t steps);
 
-/* Bytes of a point before compression; bytes that a snapshot of n points adds at most. */
-int64_t snapshot_file_point(const struct snapshot_layout *layout);
+/* Bytes of a point before compression; the most bytes that a snapshot of n points adds. */
+int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout);
 int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n);
 
 #endif

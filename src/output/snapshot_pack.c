@@ -4,7 +4,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* Items that a dataset can have, and the type of the values that they are made of. */
+/* Item types of datasets, and the types of their values in memory. */
 #define ITEMS(ITEM)                          \
     ITEM(double, double, H5T_NATIVE_DOUBLE)  \
     ITEM(float, double, H5T_NATIVE_FLOAT)    \
@@ -13,7 +13,7 @@
     ITEM(int8_t, int64_t, H5T_NATIVE_INT8)   \
     ITEM(uint8_t, int64_t, H5T_NATIVE_UINT8)
 
-/* In place: an item is not larger than the value that it is made of. */
+/* Conversion in place: an item is not larger than its value in memory. */
 #define ITEM(type, value, native)                                                  \
     static void value##_to_##type(void *values, int64_t n)                         \
     {                                                                              \
@@ -47,8 +47,8 @@ static int item_of(hid_t type)
     return found;
 }
 
-/* Takes the next filter of the pipeline: the shuffle first, if there is one. */
-static bool take_filter(struct packing *p, hid_t how, unsigned k)
+/* Reads the k-th filter of the pipeline; false if pack_chunk does not support it there. */
+static bool read_filter(struct packing *p, hid_t how, unsigned k)
 {
     unsigned flags, values[8] = {0};
     size_t n = COUNT_OF(values);
@@ -70,13 +70,13 @@ struct packing packing_of(hid_t set, hsize_t columns)
     const int filters = how >= 0 ? H5Pget_nfilters(how) : -1;
     p.known = p.item >= 0 && columns == 1 && filters >= 0 && filters <= 2;
     for (int k = 0; p.known && k < filters; k++)
-        p.known = p.level == 0 && take_filter(&p, how, (unsigned)k);
+        p.known = p.level == 0 && read_filter(&p, how, (unsigned)k);
     if (type >= 0) H5Tclose(type);
     if (how >= 0) H5Pclose(how);
     return p;
 }
 
-/* The first bytes of all items, then the second ones: those of a kind beside each other pack better. */
+/* HDF5's byte shuffle: the first bytes of all items, then the second ones, and so on. */
 #define SHUFFLE(type)                                                          \
     static void shuffle_##type(const void *from, unsigned char *to, int64_t n) \
     {                                                                          \
@@ -90,16 +90,16 @@ struct packing packing_of(hid_t set, hsize_t columns)
 SHUFFLE(uint32_t)
 SHUFFLE(uint64_t)
 
-struct packed_chunk pack_chunk(const struct packing *k, int64_t n, void *room)
+struct packed_chunk pack_chunk(const struct packing *k, int64_t n, void *buffer)
 {
     const struct item *const item = &items[k->item];
-    unsigned char *from = room, *to = from + n * PACK_ROOM / 2;
+    unsigned char *from = buffer, *to = from + n * PACK_BYTES / 2;
     const size_t size = (size_t)n * item->bytes;
     item->convert(from, n);
     if (k->shuffled && item->bytes > 1) {
         (item->bytes == 4 ? shuffle_uint32_t : shuffle_uint64_t)(from, to, n);
         from = to;
-        to = room;
+        to = buffer;
     }
     if (k->level == 0) return (struct packed_chunk){from, size, 0};
     uLongf packed = (uLongf)size;

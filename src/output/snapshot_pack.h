@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Inside of snapshot: chunks as they lie in a file, packed without HDF5, which uses one thread. */
+ * For snapshot_file.c: compresses chunks in the format of HDF5's filters. HDF5 itself would use one thread. */
 #ifndef SPHFSI_OUTPUT_SNAPSHOT_PACK_H
 #define SPHFSI_OUTPUT_SNAPSHOT_PACK_H
 
@@ -7,29 +7,29 @@
 
 #include <hdf5.h>
 
-/* How the values of a dataset lie in its chunks. */
+/* Item type and filters of a dataset. */
 struct packing {
-    bool
-        known; /* by pack_chunk: chunks of one column, an item of the list there, a byte shuffle or none,
-                     * deflate or none after it */
-    int item; /* of that list */
+    /* pack_chunk supports chunks of one column, the item types in its list, and the filters byte shuffle and
+     * deflate, each of them optional, in this order. */
+    bool known;
+    int item; /* index in that list */
     bool shuffled;
-    int level;     /* of deflate; 0: not deflated */
-    uint32_t skip; /* bit of the mask of filters that says: not deflated */
+    int level;     /* of deflate; 0: none */
+    uint32_t skip; /* filter mask of a chunk without deflate */
 };
 
-/* Of an open dataset with chunks of so many columns. */
+/* The packing of an open dataset with chunks of so many columns. */
 struct packing packing_of(hid_t set, hsize_t columns);
 
-enum { PACK_ROOM = 16 }; /* bytes of room for a value */
+enum { PACK_BYTES = 16 }; /* of the buffer, for each value */
 
 struct packed_chunk {
-    const void *bytes; /* in the room that was given; NULL: it failed */
+    const void *bytes; /* in the buffer; NULL: failed */
     size_t size;
-    uint32_t filters; /* the mask that HDF5 keeps with the chunk */
+    uint32_t filters; /* filter mask of the chunk, as HDF5 stores it */
 };
 
-/* Packs the n values of a chunk, double or int64_t, with which `room` begins; they are lost. */
-struct packed_chunk pack_chunk(const struct packing *k, int64_t n, void *room);
+/* Packs the n values at the start of the buffer, double or int64_t; they are overwritten. */
+struct packed_chunk pack_chunk(const struct packing *k, int64_t n, void *buffer);
 
 #endif

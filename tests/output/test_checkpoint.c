@@ -94,7 +94,7 @@ static void says_what_it_is(void)
 static void cells_of_another_grid_are_refused(void)
 {
     const int32_t wrong[] = {-2, 0, INT32_MAX};
-    const char *const why[] = {"is in cell -2", "is nowhere near cell 0", "is in cell 2147483647"};
+    const char *const why[] = {"is in cell -2", "is too far from its cell, 0", "is in cell 2147483647"};
     for (int k = 0; k < 3; k++) {
         open_with(0, NULL);
         step(&first, 3);
@@ -214,7 +214,7 @@ static void the_last_two_are_kept(void)
         store(tiny_path("two"), &first);
     }
     TEST_ASSERT_EQUAL_HEX(0xc, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
-    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_forget_later(tiny_path("two"), 15, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_remove_later(tiny_path("two"), 15, &diag));
     TEST_ASSERT_EQUAL_HEX(0x4, kept(tiny_path("two"), (int[]){5, 10, 15, 20}, 4));
 }
 

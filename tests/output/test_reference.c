@@ -71,7 +71,7 @@ static void test_file_is_compared_at_its_rows(void)
     TEST_ASSERT_EQUAL_DOUBLE(-1, c.mean);
     TEST_ASSERT_EQUAL_DOUBLE(3, c.peak);
     TEST_ASSERT_EQUAL_DOUBLE(0.5, c.peak_time);
-    TEST_ASSERT_EQUAL_DOUBLE(5, c.peak_wanted);
+    TEST_ASSERT_EQUAL_DOUBLE(5, c.peak_reference);
 }
 
 static void test_formula_and_window(void)
@@ -101,7 +101,7 @@ static void test_nothing_in_common(void)
     TEST_ASSERT_EQUAL(0, c.points);
     char text[300];
     reference_line(&references.item[0], &c, text, sizeof text);
-    TEST_ASSERT_EQUAL_STRING("P_dx_m: no time in common with r", text);
+    TEST_ASSERT_EQUAL_STRING("P_dx_m: its times do not overlap with those of r", text);
 }
 
 static void refuses(const char *lines, const char *header, const char *words)
@@ -119,7 +119,8 @@ static void test_malformed_row(void)
 {
     put("r.csv", "time_s,value\n0,1\n0.1,two\n");
     refuses("file = r.csv\n", "time_s,P_dx_m",
-            "r.csv:3: '0.1,two' is no row of a reference; two numbers are expected");
+            "r.csv:3: '0.1,two' is no row of a reference; write two numbers, time (s) "
+            "and value (SI)");
 }
 
 static void test_third_column(void)
@@ -137,7 +138,7 @@ static void test_empty_file(void)
 static void test_unknown_column(void)
 {
     refuses("formula = 0\n", "time_s,P_dy_m,Q_p_Pa",
-            "[reference r] probe = P_dx_m: the probes have the columns P_dy_m,Q_p_Pa; the "
+            "[reference r] probe = P_dx_m: no such column; there are P_dy_m,Q_p_Pa; the "
             "nearest is P_dy_m");
 }
 

@@ -42,7 +42,7 @@ static void write_one(double time)
     simulation.state.time = time;
     simulation.kind[KIND_FLUID].x[0] = time;
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_write(&writer, &simulation, &diag), diag.text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_settle(&writer, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, snapshots_wait(&writer, &diag), diag.text);
 }
 
 /* Reads a whole dataset of doubles; returns its items. */
@@ -159,13 +159,13 @@ static void a_place_that_is_taken_is_said_later(void)
     mkdir(writer.path, 0777);
     mkdir(tiny_path("taken/fields.vtkhdf/kept"), 0777);
     struct publishing publishing = {.begun = false};
-    TEST_ASSERT_EQUAL_INT(ERR_OK, publishing_end(&publishing, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, publish_end(&publishing, &diag));
     fclose(fopen(writer.spare, "w"));
-    placing_begin(&publishing, writer.folder, writer.path, writer.spare);
-    TEST_ASSERT_EQUAL_INT(ERR_IO, publishing_end(&publishing, &diag));
-    TEST_ASSERT_NOT_NULL(strstr(diag.text, "taken/fields.vtkhdf: cannot be put in place"));
+    publish_begin(&publishing, writer.folder, writer.path, writer.spare);
+    TEST_ASSERT_EQUAL_INT(ERR_IO, publish_end(&publishing, &diag));
+    TEST_ASSERT_NOT_NULL(strstr(diag.text, "taken/fields.vtkhdf: cannot be replaced by"));
     diag.code = ERR_OK;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, publishing_end(&publishing, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, publish_end(&publishing, &diag));
 }
 
 static void fewer_particles_are_fewer_points(void)
@@ -175,7 +175,7 @@ static void fewer_particles_are_fewer_points(void)
     write_one(0);
     simulation.kind[KIND_FLUID].n -= 7;
     TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_write(&writer, &simulation, &diag));
-    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_settle(&writer, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, snapshots_wait(&writer, &diag));
     TEST_ASSERT_EQUAL_UINT(2, read_all("VTKHDF/NumberOfPoints", counts, 4));
     TEST_ASSERT_TRUE(counts[0] - counts[1] == 7);
 }
@@ -226,7 +226,7 @@ static void fields_and_precision_are_chosen(void)
     read_all("VTKHDF/PointData/velocity", v, COUNT_OF(v));
     TEST_ASSERT_TRUE(v[0] == 1.0 / 3);
     /* Positions 24, Connectivity 8, Offsets 8, Types 1, velocity 24, stress 48, kind 1, id 8, body 4 */
-    TEST_ASSERT_EQUAL_INT(126, (int)snapshot_file_point(&writer.layout));
+    TEST_ASSERT_EQUAL_INT(126, (int)snapshot_file_point_bytes(&writer.layout));
 }
 
 static void positions_are_rounded_beside_single_precision(void)

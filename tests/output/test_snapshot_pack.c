@@ -84,7 +84,7 @@ static void fill(bool real, bool noise, void *values)
 static void a_chunk_comes_back(hid_t type, bool real, const char *filters, bool noise)
 {
     static double values[ROWS], back[ROWS][2];
-    static unsigned char room[ROWS * PACK_ROOM];
+    static unsigned char room[ROWS * PACK_BYTES];
     const hid_t native = real ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
     const hid_t set = make_set("x", type, filters, 1);
     const struct packing k = packing_of(set, 1);
@@ -128,7 +128,7 @@ static void chunks_come_back(void)
 
 static void noise_is_not_deflated(void)
 {
-    static unsigned char room[ROWS * PACK_ROOM];
+    static unsigned char room[ROWS * PACK_BYTES];
     const hid_t set = make_set("x", H5T_NATIVE_INT64, "sd", 1);
     const struct packing k = packing_of(set, 1);
     fill(false, true, room);
@@ -195,7 +195,7 @@ static void snapshots_come_back(const char *compression, int threads)
                           scene_parse(&scene, tiny_case, "tiny.cfg", 1, &compression, &diag));
     thread_use(threads);
     /* Chunks for 60 points: of 64 rows, so that snapshots share them and have several. */
-    TEST_ASSERT_TRUE(snapshot_file_lay_out(file, &scene, "1.2.3", 60, -1));
+    TEST_ASSERT_TRUE(snapshot_file_create(file, &scene, "1.2.3", 60, -1));
     const struct snapshot_layout layout = snapshot_file_layout(&scene);
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
     append_all(root, &layout);
@@ -223,7 +223,7 @@ static void files_packed_otherwise_go_on(void)
     struct diag diag = {.code = ERR_OK};
     struct scene scene;
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
-    TEST_ASSERT_TRUE(snapshot_file_lay_out(file, &scene, "1.2.3", 60, -1));
+    TEST_ASSERT_TRUE(snapshot_file_create(file, &scene, "1.2.3", 60, -1));
     const struct snapshot_layout layout = snapshot_file_layout(&scene);
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
     const hsize_t size[2] = {0, 3}, most[2] = {H5S_UNLIMITED, 3}, chunk[2] = {64, 3};
