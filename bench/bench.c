@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What a step costs: ns per fluid particle and force evaluation by phase, ns per solid particle and
- * step, a snapshot and a checkpoint, and the machine's own rates to hold them against. Prints CSV, asserts
- * nothing.
+ * Cost of a step: ns per fluid particle and evaluation by phase, ns per solid particle and step, of a
+ * snapshot and a checkpoint; and the machine's rates of fma and copying for comparison. Prints CSV.
  *   bench_bench [--large] [--reps N] [--out FILE]      --large: a million fluid particles as well */
 #include "output/checkpoint.h"
 #include "counter.h"
@@ -23,8 +22,8 @@ enum { MAX_REPS = 99 };
 struct bench {
     FILE *out;
     int reps, all_threads, counter;
-    double sample[PHASE_COUNT + 1][MAX_REPS]; /* of the run at hand; the last row is their sum */
-    double instructions[MAX_REPS];            /* of the run at hand, if there is one thread */
+    double sample[PHASE_COUNT + 1][MAX_REPS]; /* of the current run, by phase; last row: the sum */
+    double instructions[MAX_REPS];            /* of the current run, if it has one thread */
 };
 
 /* --- output --- */
@@ -55,7 +54,7 @@ static const char *info_value(char *line, const char *key)
     return colon && colon[1] == ' ' ? colon + 2 : NULL;
 }
 
-/* With family and model, since a cloud's "AMD EPYC" may be any of several generations. */
+/* The processor's name with family and model: the name alone may mean several generations. */
 static void find_processor(char name[256])
 {
     static const char *const keys[] = {"model name", "cpu family", "model"};
@@ -95,7 +94,7 @@ static void print_machine(const struct bench *b)
 
 /* --- the machine --- */
 
-/* Chains of fma, as many as hide its latency and still fit sixteen registers. */
+/* Independent chains of fma: enough to hide the latency, few enough for sixteen registers. */
 enum { CHAINS = 10, ROUNDS = 2000000 };
 
 static double run_float(void)
@@ -127,18 +126,18 @@ static void bench_fma(struct bench *b, int threads, const char *name, double (*r
                       int lanes)
 {
     double sum = 0;
-    for (int r = -1; r < b->reps; r++) { /* round -1 wakes the clock up */
+    for (int r = -1; r < b->reps; r++) { /* round -1 raises the clock rate */
         const double start = wall_clock();
 #pragma omp parallel num_threads(threads) reduction(+ : sum)
         sum += run();
         const double seconds = wall_clock() - start;
         if (r >= 0) b->sample[0][r] = 1e-9 * threads * (double)CHAINS * ROUNDS * lanes / seconds;
     }
-    if (isnan(sum)) puts("# the chains are not to be optimised away");
+    if (isnan(sum)) puts("# unused"); /* so that the compiler keeps the chains */
     print_row(b, "machine", "fma", 0, threads, name, "1e9/s", b->sample[0]);
 }
 
-/* Arrays that no cache holds; each thread copies, and has touched first, a share of its own. */
+/* Arrays larger than any cache; each thread first touches and copies its own part. */
 static void bench_copy(struct bench *b, int threads)
 {
     const size_t n = (size_t)1 << 27;
@@ -189,7 +188,8 @@ static void sim_close(struct sim *x)
     scene_free(&x->scene);
 }
 
-/* A tank with a swirl of a twentieth of the speed of sound, so that sorting comes up as in a flow. */
+/* A tank with a swirl of a twentieth of the speed of sound, so that particles are sorted as often as in a
+ * flow. */
 static void fluid_case(char *text, size_t size, double n, bool rich, const char *precision)
 {
     snprintf(text, size,
@@ -202,11 +202,10 @@ static void fluid_case(char *text, size_t size, double n, bool rich, const char 
              1 / sqrt(n), precision, rich ? 0.05 : 0.0, rich ? 0.1 : 0.0, 4 / sqrt(n));
 }
 
-/* Of a repetition, at every size: the particles are sorted some six times in them, and fewer steps would
- * leave that out of most repetitions. */
+/* Steps of a repetition: enough for some six sorts in each. */
 enum { FLUID_STEPS = 100 };
 
-/* One repetition; false where a guard has stopped it. */
+/* One repetition; false if a guard stopped it. */
 static bool time_steps(struct bench *b, struct sim *x, int rep)
 {
     double before[PHASE_COUNT];
@@ -238,8 +237,8 @@ static void print_per_particle(const struct bench *b, const struct sim *x, int t
     print_row(b, "fluid", x->s.fluid.sweeps->name, n, threads, part, unit, seconds);
 }
 
-/* What a snapshot and a checkpoint cost: files in a folder that goes away. The first snapshot lays the file
- * out and is not counted. */
+/* Cost of a snapshot and a checkpoint, in a temporary folder. The first snapshot creates the file and is not
+ * counted. */
 static void bench_output(struct bench *b, struct sim *x, int threads)
 {
     char folder[] = "bench-XXXXXX", kept[PATH_BYTES] = "";
@@ -275,7 +274,7 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
     if (rmdir(folder)) perror(folder);
 }
 
-/* Pairs of fluid particles that a sweep takes, over the particles. */
+/* Pairs that a sweep computes, per fluid particle. */
 static double pairs_of(const struct simulation *s)
 {
     static struct neighbour_clusters around;
@@ -283,7 +282,7 @@ static double pairs_of(const struct simulation *s)
     const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
     const struct cluster_boxes *const boxes = &s->fluid.packed[KIND_FLUID].boxes;
     const int32_t n = list->n_active;
-    int64_t seen = 0;
+    int64_t clusters = 0;
     for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
         const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
@@ -291,11 +290,11 @@ static double pairs_of(const struct simulation *s)
                                             s->fluid.k.h, clusters_of(list, first, end));
             for (int32_t own = 0; own < clusters_in(list, list->active[k]); own++) {
                 cluster_list_build_half(&near, &around, boxes);
-                seen += near.n;
+                clusters += near.n;
             }
         }
     }
-    return (double)(seen * CLUSTER * CLUSTER) / (double)s->kind[KIND_FLUID].n;
+    return (double)(clusters * CLUSTER * CLUSTER) / (double)s->kind[KIND_FLUID].n;
 }
 
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)

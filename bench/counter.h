@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Instructions of this thread in user space, where the machine counts them and lets a program ask. */
+ * Counts instructions of this thread in user space, if machine and system allow it. */
 #ifndef SPHFSI_BENCH_COUNTER_H
 #define SPHFSI_BENCH_COUNTER_H
 
@@ -11,7 +11,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-/* A descriptor to read from; -1: there is no such counter (many virtual machines have none). */
+/* Descriptor of the counter; -1: none (as on many virtual machines). */
 static int counter_open(void)
 {
     struct perf_event_attr what;
@@ -24,7 +24,7 @@ static int counter_open(void)
     return (int)syscall(SYS_perf_event_open, &what, 0, -1, -1, 0);
 }
 
-/* Instructions since it was opened; negative: it cannot be read. */
+/* Instructions since counter_open; negative: not readable. */
 static double counter_read(int counter)
 {
     uint64_t count;

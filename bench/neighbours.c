@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Where a particle finds its neighbours: in the clusters near its own, all pairs from both sides or, as the
- * program does it, those in a share of cells from one; in a tile of candidates copied once per cell; or in a
- * list of its own with a skin (Verlet 1967), as most codes do. The bare laws (Eqs. 1 and 3b) over the same
- * particles in single precision, one thread. Prints CSV; all ways give the same sums but for rounding.
+ * Compares neighbour searches: cluster pair lists, full or, as in the program, half lists in chunks of
+ * cells; a tile of candidates copied once per cell; and a neighbour list per particle with a skin (Verlet
+ * 1967). The laws are Eqs. 1 and 3b, in single precision, on one thread, for the same particles. Prints
+ * CSV; the sums of all methods agree but for rounding.
  *   bench_neighbours [--reps N] */
 #include "fluid/fluid.h"
 #include "particles/morton.h"
@@ -12,15 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 316, N = SIDE * SIDE, TILE = 512, ROOM = 64, MAX_REPS = 99 };
+enum { SIDE = 316, N = SIDE * SIDE, TILE = 512, MOST_NEIGHBOURS = 64, MAX_REPS = 99 };
 #define H 1.35f   /* in spacings, as the case files have it */
 #define SKIN 0.2f /* 0.15 h */
 #define REACH (2 * H + SKIN)
 
 enum field { X, Y, U, V, P, VOLUME, FIELDS };
-enum way { WAY_TILE, WAY_LIST, WAY_CLUSTER, WAY_SHARE, WAYS };
+enum method { BY_TILE, BY_LIST, BY_CLUSTER, BY_CHUNK, METHODS };
 
-static float field[FIELDS][N + TILE], rate[WAYS][3][N]; /* by way: d ln rho/dt, ax, ay */
+static float field[FIELDS][N + TILE], rate[METHODS][3][N]; /* d ln rho/dt, ax, ay */
 static int32_t first[(SIDE + 8) * (SIDE + 8)], count[(SIDE + 8) * (SIDE + 8)];
 static int32_t *list, neighbours[N];
 static int cells;
@@ -42,7 +42,7 @@ static int compare_key(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* A shaken lattice with a flow, along Morton's curve through the cells. */
+/* A perturbed lattice with a flow, in Morton order of the cells. */
 static void place(void)
 {
     static float raw[FIELDS][N];
@@ -65,7 +65,7 @@ static void place(void)
         if (count[cell_of(i)]++ == 0) first[cell_of(i)] = i;
 }
 
-/* What a vector of pairs brings the three sums of a particle, or of one to each group. */
+/* Contributions of a vector of pairs to the three sums of a particle, or of one particle per group. */
 SPHFSI_INLINE void pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfloat v, vfloat p,
                          vfloat volume, vfloat more[3])
 {
@@ -87,13 +87,13 @@ SPHFSI_INLINE void add_pairs(const vfloat *me, vfloat x, vfloat y, vfloat u, vfl
     for (int k = 0; k < 3; k++) sum[k] = sum[k] + more[k];
 }
 
-static void keep(enum way way, int i, const vfloat sum[3])
+static void store(enum method method, int i, const vfloat sum[3])
 {
     for (int k = 0; k < 3; k++) {
         float group[GROUPS_FLOAT];
         vsum_four_float(sum[k], group);
-        rate[way][k][i] = group[0];
-        for (int g = 1; g < GROUPS_FLOAT; g++) rate[way][k][i] += group[g];
+        rate[method][k][i] = group[0];
+        for (int g = 1; g < GROUPS_FLOAT; g++) rate[method][k][i] += group[g];
     }
 }
 
@@ -123,16 +123,16 @@ static void sweep_tiles(void)
                 add_pairs(me, vload_float(&tile[X][j]), vload_float(&tile[Y][j]),
                           vload_float(&tile[U][j]), vload_float(&tile[V][j]),
                           vload_float(&tile[P][j]), vload_float(&tile[VOLUME][j]), sum);
-            keep(WAY_TILE, i, sum);
+            store(BY_TILE, i, sum);
         }
     }
 }
 
-/* Indices within the reach, filled up to whole packs with a particle far away that weighs nothing. */
+/* Indices within the reach, padded to whole vectors with a distant particle of zero volume. */
 static void build_lists(void)
 {
     for (int i = 0; i < N; i++) {
-        int32_t *const mine = &list[(size_t)i * ROOM];
+        int32_t *const mine = &list[(size_t)i * MOST_NEIGHBOURS];
         int n = 0;
         const int cx = cell_of(i) % cells, cy = cell_of(i) / cells;
         for (int y = cy > 0 ? cy - 1 : 0; y <= cy + 1 && y < cells; y++)
@@ -140,7 +140,7 @@ static void build_lists(void)
                 for (int j = first[y * cells + x]; j < first[y * cells + x] + count[y * cells + x];
                      j++) {
                     const float dx = field[X][i] - field[X][j], dy = field[Y][i] - field[Y][j];
-                    if (dx * dx + dy * dy < REACH * REACH && n < ROOM) mine[n++] = j;
+                    if (dx * dx + dy * dy < REACH * REACH && n < MOST_NEIGHBOURS) mine[n++] = j;
                 }
         neighbours[i] = n;
         while (n % LANES_FLOAT) mine[n++] = N;
@@ -164,7 +164,7 @@ static void sweep_lists(void)
 {
     field[X][N] = 1e6f, field[VOLUME][N] = 0;
     for (int i = 0; i < N; i++) {
-        const int32_t *const mine = &list[(size_t)i * ROOM];
+        const int32_t *const mine = &list[(size_t)i * MOST_NEIGHBOURS];
         vfloat me[FIELDS];
         for (int f = 0; f < FIELDS; f++) me[f] = vset_float(field[f][i]);
         vfloat sum[3] = {{0}, {0}, {0}};
@@ -172,17 +172,17 @@ static void sweep_lists(void)
             add_pairs(me, gather(field[X], &mine[k]), gather(field[Y], &mine[k]),
                       gather(field[U], &mine[k]), gather(field[V], &mine[k]),
                       gather(field[P], &mine[k]), gather(field[VOLUME], &mine[k]), sum);
-        keep(WAY_LIST, i, sum);
+        store(BY_LIST, i, sum);
     }
 }
 
-/* The program's own cells and clusters, with lanes like its own. */
+/* The program's cells and clusters, with packed fields. */
 static struct arena arena;
 static struct particles kinds[KIND_COUNT];
 static struct cells grid;
 static struct cluster_boxes boxes;
-static float *lanes;             /* [clusters][FIELDS][CLUSTER] */
-static int64_t looked_at, taken; /* pairs by clusters, and in shares of them */
+static float *packed; /* [clusters][FIELDS][CLUSTER] */
+static int64_t full_pairs, half_pairs;
 
 static enum err clusters_create(struct diag *d)
 {
@@ -194,9 +194,9 @@ static enum err clusters_create(struct diag *d)
         p->x[i] = (double)field[X][i], p->y[i] = (double)field[Y][i], p->id[i] = i;
     TRY(cells_create(&grid, &arena, lower, upper, 2 * (double)H, 0.75 * (double)H, kinds, d));
     TRY(cluster_boxes_create(&boxes, &arena, cells_clusters(&grid, N), d));
-    lanes = arena_alloc(&arena, (size_t)cells_clusters(&grid, N), sizeof *lanes * FIELDS * CLUSTER,
-                        "lanes", d);
-    return lanes ? ERR_OK : ERR_MEMORY;
+    packed = arena_alloc(&arena, (size_t)cells_clusters(&grid, N),
+                         sizeof *packed * FIELDS * CLUSTER, "packed fields", d);
+    return packed ? ERR_OK : ERR_MEMORY;
 }
 
 static void sort_clusters(void) { cells_sort(&grid, KIND_FLUID, &kinds[KIND_FLUID]); }
@@ -211,7 +211,7 @@ static void fill_clusters(void)
         for (int32_t m = 0; m < clusters_in(listed, cell) * CLUSTER; m++) {
             const int32_t cluster = listed->cluster[cell] + m / CLUSTER,
                           i = listed->start[cell] + m;
-            float *const out = lanes + cluster * FIELDS * CLUSTER + m % CLUSTER;
+            float *const out = packed + cluster * FIELDS * CLUSTER + m % CLUSTER;
             const bool is = m < listed->count[cell];
             for (int f = 0; f < FIELDS; f++) out[f * CLUSTER] = is ? field[f][p->id[i]] : 0;
             out[X * CLUSTER] = is ? (float)(p->x[i] - centre[0]) : 1e9f;
@@ -227,10 +227,10 @@ static void fill_clusters(void)
     }
 }
 
-/* Particles of a cluster from the r-th on, one to each group, and where the cells around see them. */
+/* Particles of a cluster from the r-th on, one per group, and their positions relative to the 3 x 3 cells. */
 SPHFSI_INLINE void receivers_of(int32_t cluster, int r, vfloat me[FIELDS], vfloat x[3], vfloat y[3])
 {
-    const float *const own = lanes + cluster * FIELDS * CLUSTER + r;
+    const float *const own = packed + cluster * FIELDS * CLUSTER + r;
     for (int f = 0; f < FIELDS; f++) me[f] = vspread_float(own + f * CLUSTER);
     for (int k = 0; k < 3; k++) x[k] = me[X] - (float)(k - 1) * (float)grid.side[0];
     for (int k = 0; k < 3; k++) y[k] = me[Y] - (float)(k - 1) * (float)grid.side[1];
@@ -243,7 +243,7 @@ static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t code = near->code[k];
-        const float *const b = lanes + neighbour_number(code) * FIELDS * CLUSTER;
+        const float *const b = packed + neighbour_number(code) * FIELDS * CLUSTER;
         me[X] = x[neighbour_column(code)], me[Y] = y[neighbour_row(code)];
         add_pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
                   vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
@@ -253,23 +253,23 @@ static void sweep_receivers(const struct cluster_list *near, int32_t at, int32_t
         float out[GROUPS_FLOAT];
         vsum_four_float(sum[k], out);
         for (int g = 0; g < GROUPS_FLOAT && at + g < N; g++)
-            rate[WAY_CLUSTER][k][kinds[KIND_FLUID].id[at + g]] = out[g];
+            rate[BY_CLUSTER][k][kinds[KIND_FLUID].id[at + g]] = out[g];
     }
 }
 
-/* In order: what a cell's last cluster writes beyond its particles, the next cell overwrites. */
+/* In order: the padding that the last cluster of a cell writes is overwritten by the next cell. */
 static void sweep_clusters(void)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
-    looked_at = 0;
+    full_pairs = 0;
     for (int32_t k = 0; k < listed->n_active; k++) {
         const int32_t cell = listed->active[k];
         neighbour_clusters_collect(&around, &boxes, &grid, KIND_FLUID, cell, (double)H);
         for (int32_t m = 0; m < clusters_in(listed, cell); m++) {
             cluster_list_build(&near, &around, &boxes, listed->cluster[cell] + m);
-            looked_at += near.n * CLUSTER * CLUSTER;
+            full_pairs += near.n * CLUSTER * CLUSTER;
             for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT)
                 sweep_receivers(&near, listed->start[cell] + m * CLUSTER + r,
                                 listed->cluster[cell] + m, r);
@@ -277,62 +277,63 @@ static void sweep_clusters(void)
     }
 }
 
-/* By cluster of a share and sum: [receiver][candidate]. */
-static float room[1 + CHUNK_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
+/* Deferred sums of the clusters of a chunk: [cluster][sum][receiver][candidate]; cluster 0 is discarded. */
+static float deferred[1 + CHUNK_CELLS * CELL_CAPACITY / CLUSTER][3][CLUSTER][CLUSTER];
 
-/* The receivers of a cluster from the r-th on, pairs with those ahead for both sides: with both volumes. */
-static void share_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
+/* The receivers of a cluster from the r-th on. Pairs of the half list serve both particles, so both volumes
+ * are factors. */
+static void chunk_receivers(const struct cluster_list *near, size_t before, int32_t cluster, int r,
                             vfloat sum[3])
 {
     vfloat me[FIELDS], x[3], y[3], more[3];
     receivers_of(cluster, r, me, x, y);
     for (int k = 0; k < near->n; k++) {
         const uint32_t code = near->code[k];
-        const float *const b = lanes + neighbour_number(code) * FIELDS * CLUSTER;
+        const float *const b = packed + neighbour_number(code) * FIELDS * CLUSTER;
         me[X] = x[neighbour_column(code)], me[Y] = y[neighbour_row(code)];
         pairs(me, vfour_float(b + X * CLUSTER), vfour_float(b + Y * CLUSTER),
               vfour_float(b + U * CLUSTER), vfour_float(b + V * CLUSTER),
               vfour_float(b + P * CLUSTER), me[VOLUME] * vfour_float(b + VOLUME * CLUSTER), more);
         const size_t place = (neighbour_number(code) - before) * neighbour_is_half(code);
         for (int m = 0; m < 3; m++) {
-            float *const at = room[place][m][r];
+            float *const at = deferred[place][m][r];
             sum[m] = sum[m] + more[m];
             vstore_float(at, vload_float(at) + more[m]);
         }
     }
 }
 
-/* Of the m-th cluster of a cell, what its receivers have and what those before left for them. */
-static void share_cluster(const struct cluster_list *near, size_t before, int32_t cell, int32_t m)
+/* Adds the deferred sums of the m-th cluster of a cell to its own sums. */
+static void chunk_cluster(const struct cluster_list *near, size_t before, int32_t cell, int32_t m)
 {
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     const int32_t cluster = listed->cluster[cell] + m, i = listed->start[cell] + m * CLUSTER;
     float own[3][CLUSTER];
     for (int r = 0; r < CLUSTER; r += GROUPS_FLOAT) {
         vfloat sum[3] = {{0}, {0}, {0}};
-        share_receivers(near, before, cluster, r, sum);
+        chunk_receivers(near, before, cluster, r, sum);
         for (int k = 0; k < 3; k++) vsum_four_float(sum[k], &own[k][r]);
     }
     for (int k = 0; k < 3; k++) {
-        float(*const left)[CLUSTER] = room[(size_t)cluster - before][k];
+        float(*const left)[CLUSTER] = deferred[(size_t)cluster - before][k];
         const float sign = k == 0 ? 1 : -1;
         for (int r = 0; r < CLUSTER && m * CLUSTER + r < listed->count[cell]; r++)
-            rate[WAY_SHARE][k][kinds[KIND_FLUID].id[i + r]] =
+            rate[BY_CHUNK][k][kinds[KIND_FLUID].id[i + r]] =
                 (own[k][r] + sign * ((left[0][r] + left[2][r]) + (left[1][r] + left[3][r]))) /
-                lanes[(cluster * FIELDS + VOLUME) * CLUSTER + r];
-        memset(left, 0, sizeof room[0][0]);
+                packed[(cluster * FIELDS + VOLUME) * CLUSTER + r];
+        memset(left, 0, sizeof deferred[0][0]);
     }
 }
 
-static void sweep_shares(void)
+static void sweep_chunks(void)
 {
     static struct neighbour_clusters around;
     static struct cluster_list near;
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     const int32_t n = listed->n_active;
-    taken = 0;
-    for (int32_t share = 0; share < fluid_chunk_count(n); share++) {
-        const int32_t begin = fluid_chunk_start(n, share), end = fluid_chunk_start(n, share + 1);
+    half_pairs = 0;
+    for (int32_t chunk = 0; chunk < fluid_chunk_count(n); chunk++) {
+        const int32_t begin = fluid_chunk_start(n, chunk), end = fluid_chunk_start(n, chunk + 1);
         if (begin == end) continue;
         const struct cluster_range range = clusters_of(listed, begin, end);
         for (int32_t k = begin; k < end; k++) {
@@ -341,8 +342,8 @@ static void sweep_shares(void)
                                             range);
             for (int32_t m = clusters_in(listed, cell) - 1; m >= 0; m--) {
                 cluster_list_build_half(&near, &around, &boxes);
-                taken += near.n * CLUSTER * CLUSTER;
-                share_cluster(&near, (size_t)range.first - 1, cell, m);
+                half_pairs += near.n * CLUSTER * CLUSTER;
+                chunk_cluster(&near, (size_t)range.first - 1, cell, m);
             }
         }
     }
@@ -354,7 +355,7 @@ static int compare_double(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void measure(const char *way, const char *part, void (*run)(void), int reps)
+static void measure(const char *method, const char *part, void (*run)(void), int reps)
 {
     double sample[MAX_REPS];
     run();
@@ -364,20 +365,20 @@ static void measure(const char *way, const char *part, void (*run)(void), int re
         sample[r] = 1e9 * (wall_clock() - start) / N;
     }
     qsort(sample, (size_t)reps, sizeof *sample, compare_double);
-    printf("neighbours,%s,%d,1,%s,ns/particle,%.4g,%.4g,%.4g\n", way, N, part, sample[reps / 2],
+    printf("neighbours,%s,%d,1,%s,ns/particle,%.4g,%.4g,%.4g\n", method, N, part, sample[reps / 2],
            sample[0], sample[reps - 1]);
 }
 
-static void say(const char *way, const char *what, const char *unit, double value)
+static void say(const char *method, const char *what, const char *unit, double value)
 {
-    printf("neighbours,%s,%d,1,%s,%s,%.4g,%.4g,%.4g\n", way, N, what, unit, value, value, value);
+    printf("neighbours,%s,%d,1,%s,%s,%.4g,%.4g,%.4g\n", method, N, what, unit, value, value, value);
 }
 
 int main(int argc, char **argv)
 {
     const int asked = argc > 2 && strcmp(argv[1], "--reps") == 0 ? atoi(argv[2]) : 5;
     const int reps = asked < 1 ? 1 : asked < MAX_REPS ? asked : MAX_REPS;
-    list = aligned_alloc(64, sizeof *list * ROOM * N);
+    list = aligned_alloc(64, sizeof *list * MOST_NEIGHBOURS * N);
     if (!list) return 1;
     place();
     struct diag diag = {0};
@@ -388,19 +389,19 @@ int main(int argc, char **argv)
     measure("cluster", "sort", sort_clusters, reps);
     measure("cluster", "fill", fill_clusters, reps);
     measure("cluster", "look and sweep", sweep_clusters, reps);
-    measure("share", "look and sweep", sweep_shares, reps);
+    measure("share", "look and sweep", sweep_chunks, reps);
     double off = 0, top = 0, mean = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++) {
-            const double tile = (double)rate[WAY_TILE][k][i];
-            for (int way = 1; way < WAYS; way++)
-                off = fmax(off, fabs(tile - (double)rate[way][k][i]));
+            const double tile = (double)rate[BY_TILE][k][i];
+            for (int method = 1; method < METHODS; method++)
+                off = fmax(off, fabs(tile - (double)rate[method][k][i]));
             top = fmax(top, fabs(tile));
         }
     for (int i = 0; i < N; i++) mean += (double)neighbours[i] / N;
     say("list", "entries", "1/particle", mean);
-    say("cluster", "pairs", "1/particle", (double)looked_at / N);
-    say("share", "pairs", "1/particle", (double)taken / N);
+    say("cluster", "pairs", "1/particle", (double)full_pairs / N);
+    say("share", "pairs", "1/particle", (double)half_pairs / N);
     say("all", "largest difference", "of the largest", off / top);
     arena_free(&arena);
     free(list);

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * A wall on a spring, driven by the water beside it: the program integrates the wall's motion and hands it
- * to the library, which hands back the force of the water.
+ * A wall on a spring, pushed by water: the program integrates the motion of the wall and passes it to the
+ * library, which returns the force of the water.
  *
  *     cc spring_wall.c $(pkg-config --cflags --libs sphfsi) -o spring_wall && ./spring_wall
  *
- * The wall of mass m per depth hangs on a spring of stiffness k and holds back a column of water; at rest
- * the spring would be pressed together by rho g H^2/(2 k) = 14 mm. */
+ * The wall has mass m per depth, and a spring of stiffness k holds it against a column of water of height
+ * H. In equilibrium the spring is compressed by rho g H^2/(2 k) = 14 mm. */
 #include <sphfsi.h>
 
 #include <stdio.h>
@@ -25,7 +25,7 @@ static const char scene[] = "title = Wall on a spring\n"
                             "[wall piston]\n"
                             "shape = box 0.2, 0, 0.22, 0.2\n"
                             "motion = spring\n"
-                            "[motion spring]\n" /* this program's own, below */
+                            "[motion spring]\n" /* replaced by spring_motion */
                             "[domain]\n"
                             "lower = -0.03, -0.03\n"
                             "upper = 0.41, 0.4\n"
@@ -35,10 +35,10 @@ static const char scene[] = "title = Wall on a spring\n"
 
 struct wall {
     double mass, stiffness; /* kg/m, N/m^2 */
-    double time, x, v, a;   /* s, m, m/s, m/s^2: as of the last step */
+    double time, x, v, a;   /* s, m, m/s, m/s^2: after the last step */
 };
 
-/* Where the wall is at a time, carried on from the last step. */
+/* The motion of the wall, extrapolated from the last step with constant acceleration. */
 static void spring_motion(void *context, double time, double d[2], double v[2], double a[2])
 {
     const struct wall *const w = context;

@@ -9,10 +9,10 @@
  *     if (!sphfsi_field(s, SPHFSI_FLUID, "x", &x)) printf("%g m\n", ((const double *)x.data)[0]);
  *     sphfsi_free(s);
  *
- * All units are SI; extensive quantities are per metre of depth. Functions that can fail return 0 or
- * an enum sphfsi_status, and leave one sentence in sphfsi_error(). The library does not print, does
- * not exit and installs no signal handlers; what it has to say goes to the callbacks. Different
- * simulations may be used from different threads; one simulation by one thread at a time. */
+ * All units are SI; extensive quantities are per metre of depth. Functions that can fail return 0 or an
+ * enum sphfsi_status; sphfsi_error() then returns one sentence. The library does not print, does not exit
+ * and installs no signal handlers; notes and warnings go to the message callback. Different simulations may
+ * be used from different threads at the same time; one simulation only by one thread at a time. */
 #ifndef SPHFSI_H
 #define SPHFSI_H
 
@@ -46,7 +46,7 @@ enum sphfsi_type { SPHFSI_DOUBLE, SPHFSI_INT64, SPHFSI_INT32 };
 /** What a message is. */
 enum sphfsi_message { SPHFSI_NOTE, SPHFSI_WARNING };
 
-/** How a run is going; valid during the callback. */
+/** Progress of a run; valid during the callback. */
 struct sphfsi_progress {
     double time, end_time; /**< s, simulated */
     double start_time;     /**< s, simulated, at which this process began */
@@ -59,19 +59,21 @@ struct sphfsi_progress {
     int finished; /**< 1 at the last call */
 };
 
-/** Wishes to a running sphfsi_run; may be set from a signal handler. */
+/** Requests to a running sphfsi_run; may be set from a signal handler. */
 struct sphfsi_requests {
-    volatile sig_atomic_t stop;       /**< not 0: write a checkpoint and stop */
-    volatile sig_atomic_t checkpoint; /**< not 0: write a checkpoint and go on; reset when done */
+    volatile sig_atomic_t stop; /**< not 0: write a checkpoint and stop */
+    volatile sig_atomic_t
+        checkpoint; /**< not 0: write a checkpoint and continue; reset when done */
 };
 
-/** What to simulate and how. Zero-initialise, then set what is needed; nothing is kept of it after
- * the call, except by sphfsi_create the message callback and its context. */
+/** What to simulate and how. Zero-initialise, then set what is needed. The library does not refer to it after
+ * the call; only sphfsi_create keeps the message callback and its context. */
 struct sphfsi_options {
-    const char *case_path;   /**< case file; with case_text: the name for messages and the anchor of
-                                  relative file names, may be NULL */
+    const char
+        *case_path; /**< case file; with case_text: the name in messages and the path that file
+                                  names are relative to, may be NULL */
     const char *case_text;   /**< the case itself, instead of a file */
-    const char *const *sets; /**< "key=value" or "section.key=value", in effect over the case */
+    const char *const *sets; /**< "key=value" or "section.key=value", replace values of the case */
     int n_sets;
     int threads;  /**< 0: as many as OpenMP offers */
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
@@ -80,14 +82,14 @@ struct sphfsi_options {
     const char *out;          /**< folder of the run; NULL: runs/<name of the case>[-fork] */
     int restart;              /**< 1: continue the run in that folder */
     const char *restart_file; /**< checkpoint to continue from; NULL: the newest valid one */
-    const char *fork; /**< checkpoint, or folder of a run, that a new run with other physics starts
-                           from; NULL: from the case. What the state is made of may not change. */
+    const char *fork; /**< checkpoint, or folder of a run, from which a new run with other physics
+                           starts; NULL: none. Keys that the state depends on must not change. */
     struct sphfsi_requests *requests;                                 /**< may be NULL */
     void (*progress)(void *context, const struct sphfsi_progress *p); /**< may be NULL */
     double progress_interval; /**< s, least wall time between calls; 0: 0.25 */
 
     void (*message)(void *context, enum sphfsi_message kind, const char *text); /**< may be NULL */
-    void *context; /**< handed to the callbacks */
+    void *context; /**< first argument of the callbacks */
 };
 
 /** A view of a field: no copy, owned by the simulation, read only. Valid until the next step,
@@ -112,7 +114,7 @@ SPHFSI_API const char *sphfsi_error(void);
  * is 128 and the number of the signal. */
 SPHFSI_API int sphfsi_exit_status(enum sphfsi_status status, int signal_number);
 
-/** The candidate nearest to a misspelt word, for messages; NULL if none is near. */
+/** The name most similar to a misspelt word, for messages; NULL if none is similar. */
 SPHFSI_API const char *sphfsi_nearest(const char *word, const char *const *names, int n);
 
 /** Builds a simulation in memory at time zero; no file is written. On success the caller frees
@@ -122,9 +124,8 @@ SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,
 /** Frees a simulation; NULL is allowed. */
 SPHFSI_API void sphfsi_free(struct sphfsi_simulation *s);
 
-/** Takes one time step, which ends at `limit` (s) if it would reach further. SPHFSI_INPUT: `limit`
- * is not later than the time. SPHFSI_GUARD: the state is not sound; the simulation can be looked at
- * and freed, not stepped. */
+/** Takes one time step, which ends at `limit` (s) at the latest. SPHFSI_INPUT: `limit` is not later than the
+ * time. SPHFSI_GUARD: the state is not sound; the simulation can be read and freed, but not stepped. */
 SPHFSI_API enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit);
 
 /** Steps until the simulated time is exactly `time` (s). Errors as sphfsi_step. */
@@ -139,9 +140,9 @@ SPHFSI_API double sphfsi_time_step(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
 
-/** Looks at a field by its name: x, y (m), vx, vy (m/s), id, body, and where the kind has them dens
- * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m), and further ones. p and ddens (1/s) are brought up to
- * date with the positions. SPHFSI_INPUT: no such field of this kind in this scene. */
+/** Gives a view of a field by its name: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens
+ * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m) and others. p and ddens (1/s) are updated to the present
+ * positions first. SPHFSI_INPUT: this kind has no such field in this scene. */
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 
@@ -151,7 +152,7 @@ enum { SPHFSI_PROBE_COLUMNS = 5 };
 SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                                            double values[SPHFSI_PROBE_COLUMNS]);
 
-/** Particles as a force sees them; n items each, read only, valid during the call. */
+/** The particles, for a user's force; n items each, read only, valid during the call. */
 struct sphfsi_particles {
     double time; /**< s */
     int64_t n;
@@ -161,21 +162,20 @@ struct sphfsi_particles {
     const double *vx, *vy; /**< m/s */
 };
 
-/** A force from outside: adds its accelerations (m/s^2) to ax and ay, which are zero before. Is called for
- * every evaluation of the rates, one or two times a step, also when pressure is asked for, and so should
- * depend on its arguments only. Its work is in no ledger. */
+/** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before. It is called at every
+ * evaluation of the rates, once or twice a step, and also when pressure is read. So it should depend on its
+ * arguments only. The energy ledger does not contain its work. */
 typedef void sphfsi_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay);
 
-/** Sets the force on fluid or solid; NULL takes it away. Clamped particles stay where they are. */
+/** Sets the force on fluid or solid; NULL removes it. Clamped particles do not move. */
 SPHFSI_API enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                                sphfsi_force *force, void *context);
 
-/** A motion of walls: displacement from their place in the case (m), velocity, acceleration at a time;
+/** A motion of walls at a time: displacement from their position in the case (m), velocity and acceleration;
  * all are zero before. The acceleration enters the pressure on the wall. */
 typedef void sphfsi_motion(void *context, double time, double d[2], double v[2], double a[2]);
 
-/** Puts a motion in the place of [motion NAME] of the case, from the next step on; NULL gives the case's
- * own back. */
+/** Replaces [motion NAME] of the case by a user's motion, from the next step on; NULL restores it. */
 SPHFSI_API enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
                                                 sphfsi_motion *motion, void *context);
 
@@ -186,43 +186,42 @@ SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
  * and checkpoints to its folder. */
 SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 
-/** Says, through the message callback, what the case would cost in a few resolutions and which is the
- * finest that this machine runs within `seconds` of wall time. Writes nothing but a cache of costs. */
+/** Prints, through the message callback, the cost of the case in a few resolutions, and the finest one that
+ * this machine runs within `seconds` of wall time. Writes nothing but a cache of costs. */
 SPHFSI_API enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds);
 
 /** Runs a case in `runs` resolutions (3 to 6), dp growing by `ratio` (1.1 to 4), coarsest first, in
- * sub-folders of the run's folder, and says what the probes and the energies converge to, with the order
- * and the error band of the finest run; refine.json holds the same. Runs that have finished are not
- * repeated. */
+ * sub-folders of the run's folder. Prints the limits of probes and energies, with the order and the error
+ * band of the finest run, and writes them to refine.json. Finished runs are not repeated. */
 SPHFSI_API enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs,
                                             double ratio);
 
-/** Says, line by line through the message callback, what would be simulated and what it would cost.
- * Writes nothing. */
+/** Prints, line by line through the message callback, effects, memory, time step and cost of a case. Writes
+ * nothing but a cache of costs. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
 
 /** Writes the case in effect, every default spelled out, to a file ("/dev/stdout" is one). */
 SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
                                                const char *path);
 
-/** Draws the scene of a case, before anything is run, as SVG: bodies as they are sampled, with names and
- * sizes, clamps, probes. To options->out; NULL: preview-<name of the case>.svg. */
+/** Draws the scene at the start as SVG: particles of bodies, names, sizes, clamps, probes. To options->out;
+ * NULL: preview-<name of the case>.svg. */
 SPHFSI_API enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options);
 
-/** Says, line by line through the message callback, where the methods that a case uses come from. */
+/** Prints, line by line through the message callback, the publications of the methods that a case uses. */
 SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
 
-/** Says, line by line through the message callback of the options (all else in them may be zero), what a
- * case file may hold: every section and key, in Markdown. */
+/** Prints, line by line through the message callback, every section and key of a case file, in Markdown. The
+ * other options may be zero. */
 SPHFSI_API void sphfsi_keys(const struct sphfsi_options *options);
 
-/** A commented case to start from; NULL, with the known names in sphfsi_error(), if there is none of this
- * name. The k-th name; NULL at the end of the list. */
+/** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has this
+ * name. sphfsi_template_name: the k-th name; NULL at the end of the list. */
 SPHFSI_API const char *sphfsi_template(const char *name);
 SPHFSI_API const char *sphfsi_template_name(int k);
 
-/** Says, line by line through the message callback of the options (all else in them may be zero),
- * what a checkpoint holds. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
+/** Prints the contents of a checkpoint, line by line through the message callback. The other options may be
+ * zero. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
 SPHFSI_API enum sphfsi_status sphfsi_inspect(const char *file,
                                              const struct sphfsi_options *options);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The library's face: the public header in terms of the floors below. */
+ * The functions of include/sphfsi.h. */
 #include "app/budget.h"
 #include "app/explain.h"
 #include "base/files.h"
@@ -25,8 +25,8 @@ _Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)
                    (int)SPHFSI_SOLID == (int)KIND_SOLID,
                "the public kinds are those of particles.h");
 
-/* What a force of the program is called with. */
-struct outside {
+/* A force that the calling program has set. */
+struct user_force {
     sphfsi_force *force;
     void *context;
 };
@@ -34,8 +34,8 @@ struct outside {
 struct sphfsi_simulation {
     struct session session;
     struct probes probes;
-    struct outside outside[KIND_COUNT];
-    bool unsound; /* a guard has stopped it */
+    struct user_force force[KIND_COUNT];
+    bool stopped; /* by a guard */
 };
 
 static _Thread_local char last_error[sizeof((struct diag *)0)->text];
@@ -96,15 +96,16 @@ enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
 {
     struct diag d = {.code = ERR_OK};
     struct simulation *const sim = &s->session.simulation;
-    if (s->unsound)
-        return result(&d, diag_fail(&d, ERR_GUARD, "step: a guard has stopped this simulation"));
+    if (s->stopped)
+        return result(&d, diag_fail(&d, ERR_GUARD,
+                                    "step: a guard has stopped this simulation; create a new one"));
     if (!(limit > sim->state.time))
         return result(&d, diag_fail(&d, ERR_INPUT,
                                     "step: the limit %.17g s is not later than the "
                                     "simulated time %.17g s",
                                     limit, sim->state.time));
     const enum err e = simulation_step(sim, limit, &d);
-    s->unsound = e == ERR_GUARD;
+    s->stopped = e == ERR_GUARD;
     return result(&d, e);
 }
 
@@ -193,12 +194,12 @@ enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                             near.name ? "; the nearest name is " : "", near.name ? near.name : ""));
 }
 
-static void push_from_outside(void *context, double time, const struct particles *p, double *ax,
-                              double *ay)
+static void add_user_force(void *context, double time, const struct particles *p, double *ax,
+                           double *ay)
 {
-    const struct outside *const o = context;
-    const struct sphfsi_particles seen = {time, p->n, p->id, p->body, p->x, p->y, p->vx, p->vy};
-    o->force(o->context, &seen, ax, ay);
+    const struct user_force *const user = context;
+    const struct sphfsi_particles view = {time, p->n, p->id, p->body, p->x, p->y, p->vx, p->vy};
+    user->force(user->context, &view, ax, ay);
 }
 
 enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
@@ -208,11 +209,11 @@ enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kin
     struct simulation *const sim = &s->session.simulation;
     if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
         return result(&d, diag_fail(&d, ERR_INPUT,
-                                    "force: acts on fluid or solid that the scene has, not on %s",
+                                    "force: must act on fluid or solid of the scene, not on %s",
                                     (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this"));
-    s->outside[kind] = (struct outside){force, context};
-    return result(&d, simulation_push(sim, (enum kind)kind, force ? push_from_outside : NULL,
-                                      &s->outside[kind], &d));
+    s->force[kind] = (struct user_force){force, context};
+    return result(&d, simulation_push(sim, (enum kind)kind, force ? add_user_force : NULL,
+                                      &s->force[kind], &d));
 }
 
 enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
@@ -365,7 +366,8 @@ const char *sphfsi_template(const char *name)
         snprintf(list + at, sizeof list - at, "%s%s", k ? ", " : "", manual_template_name(k));
         nearest_offer(&near, name, manual_template_name(k));
     }
-    result(&d, diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
-                         near.name ? ", but " : "", near.name ? near.name : "", list));
+    result(&d,
+           diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
+                     near.name ? "; the nearest name is " : "", near.name ? near.name : "", list));
     return NULL;
 }

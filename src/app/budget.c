@@ -8,22 +8,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Spacings that are worth a look: these times a power of ten, m. */
-static const double nice[] = {1, 1.25, 2, 2.5, 4, 5, 8};
-/* A finer one is neither sampled nor proposed. */
+/* Candidates for dp: these times a power of ten, m. */
+static const double round_numbers[] = {1, 1.25, 2, 2.5, 4, 5, 8};
+/* Candidates with more particles are skipped. */
 static const double most_particles = 2e7;
 
-static void look_for_lattice(void *context, const char *text)
-{
-    bool *const off = context;
-    *off |= strstr(text, "off the lattice") != NULL;
-}
-
-/* Whether the case can be had in this spacing with all bodies on the lattice; why not. */
+/* Whether the case can be read with this spacing and all bodies are on the lattice; `why` not. */
 static bool fits(const struct sphfsi_options *o, double dp, const char **why)
 {
-    bool off = false;
-    struct diag d = {.code = ERR_OK, .warn = look_for_lattice, .warn_context = &off};
+    struct diag d = {.code = ERR_OK};
     struct session *const s = calloc(1, sizeof *s);
     const char **const sets = calloc((size_t)o->n_sets + 1, sizeof *sets);
     char set[40];
@@ -36,7 +29,7 @@ static bool fits(const struct sphfsi_options *o, double dp, const char **why)
         mine.sets = sets;
         mine.n_sets++;
         if (session_read(s, &mine, &d) == ERR_OK) {
-            *why = off ? "bodies off the lattice" : "";
+            *why = s->scene.off_lattice ? "bodies off the lattice" : "";
             scene_free(&s->scene);
         }
     }
@@ -60,10 +53,10 @@ static void propose(const struct session *x, const struct unit_costs *c, int thr
     session_say(o, "budget of %.4g s with %d thread%s on this machine when idle", seconds, threads,
                 threads == 1 ? "" : "s");
     for (int power = (int)ceil(log10(dp0)) + 1; power > -9; power--)
-        for (int k = (int)COUNT_OF(nice) - 1; k >= 0; k--) {
-            const double dp = nice[k] * pow(10, power), scale = dp / dp0;
+        for (int k = (int)COUNT_OF(round_numbers) - 1; k >= 0; k--) {
+            const double dp = round_numbers[k] * pow(10, power), scale = dp / dp0;
             const struct forecast f = forecast_run(c, &x->simulation, threads, scale);
-            /* From a tenth of the budget to three times: what one step of refinement more would cost. */
+            /* Prints candidates from a tenth of the budget to three times the budget. */
             if (f.seconds < 0.1 * seconds || f.seconds > 3 * seconds ||
                 f.particles > most_particles)
                 continue;
@@ -77,7 +70,7 @@ static void propose(const struct session *x, const struct unit_costs *c, int thr
     if (best > 0)
         session_say(o, "the finest that fits: --set dp=%.6g", best);
     else
-        session_say(o, "none of the round spacings near the budget fits both it and the lattice");
+        session_say(o, "no round spacing near the budget fits both the budget and the lattice");
 }
 
 enum err budget_session(struct session *x, int threads, double seconds,

@@ -5,9 +5,8 @@
 
 #include "app/session.h"
 
-/* Says what a few round spacings would cost and which is the finest within the wall time
- * with so many threads. Takes steps of the
- * simulation. */
+/* Prints the cost of a few round spacings, and the finest one that runs within `seconds` of wall time on so
+ * many threads. Advances the simulation by some steps. */
 enum err budget_session(struct session *x, int threads, double seconds,
                         const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
 

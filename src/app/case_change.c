@@ -6,7 +6,7 @@
 
 enum { SECTION_TEXT = 128 };
 
-/* A place in the text of an effective case: the line at hand and the section it stands in. */
+/* A position in the text of an effective case: the current line and its section. */
 struct place {
     const char *next, *line;
     int length;
@@ -27,8 +27,7 @@ static bool has_key(const struct place *p, const char *key)
     return strncmp(p->line, key, n) == 0 && p->line[n] == ' ';
 }
 
-/* The end of a run and how often it writes may change at a restart; all else is another case, or another
- * layout of its file of snapshots. */
+/* All keys but end_time and [output]; of [output] those that define the datasets of snapshots. */
 static bool matters_to_restart(const struct place *p)
 {
     if (p->length == 0 || p->line[0] == '#') return false;
@@ -37,8 +36,8 @@ static bool matters_to_restart(const struct place *p)
            has_key(p, "snapshot_precision");
 }
 
-/* The state: where particles are and what they weigh, the kernel they see, the pressure that their
- * density stands for, the previous step of the integrator. */
+/* Keys that the state depends on: positions and masses of particles, the kernel, the equation of state, and
+ * the fields of the integrator. */
 static bool matters_to_fork(const struct place *p)
 {
     static const char *const kept[] = {"dp",          "integrator", "h_over_dp",   "lattice_origin",
@@ -54,8 +53,8 @@ static bool matters_to_fork(const struct place *p)
     return false;
 }
 
-/* Goes to the next line that matters; an empty one stands for the end. */
-static void go_on(struct place *p)
+/* Moves to the next line that matters; at the end the line is empty. */
+static void next_line(struct place *p)
 {
     do {
         p->line = p->next;
@@ -73,8 +72,8 @@ static enum err differs(const struct place *a, const struct place *b, const char
 {
     if (has_key(a, "dp") && has_key(b, "dp") && !a->section[0])
         return diag_fail(d, ERR_INPUT,
-                         "%s: the checkpoint has '%.*s', this case '%.*s': particles cannot change "
-                         "their spacing on the way; start anew with the other dp",
+                         "%s: the checkpoint has '%.*s', but this case '%.*s': the spacing of "
+                         "particles cannot change during a run; start a new run with the other dp",
                          what, shown(a), a->line, shown(b), b->line);
     return diag_fail(d, ERR_INPUT,
                      "%s: the case has changed since the checkpoint: %s '%.*s' is now '%.*s'; %s",
@@ -86,28 +85,28 @@ static enum err compare(struct place a, struct place b, const char *what, const 
                         struct diag *d)
 {
     do {
-        go_on(&a);
-        go_on(&b);
+        next_line(&a);
+        next_line(&b);
         if (a.length != b.length || memcmp(a.line, b.line, (size_t)a.length) != 0)
             return differs(&a, &b, what, may, d);
     } while (a.length > 0);
     return ERR_OK;
 }
 
-enum err change_for_restart(const char *then, const char *now, struct diag *d)
+enum err change_for_restart(const char *old, const char *now, struct diag *d)
 {
-    return compare((struct place){.next = then, .matters = matters_to_restart},
+    return compare((struct place){.next = old, .matters = matters_to_restart},
                    (struct place){.next = now, .matters = matters_to_restart}, "restart",
-                   "only end_time, [output] and the threads may change (--fork starts a new run "
-                   "with other physics)",
+                   "only end_time, [output] and the number of threads may change; --fork starts a "
+                   "new run with other physics",
                    d);
 }
 
-enum err change_for_fork(const char *then, const char *now, struct diag *d)
+enum err change_for_fork(const char *old, const char *now, struct diag *d)
 {
-    return compare((struct place){.next = then, .matters = matters_to_fork},
+    return compare((struct place){.next = old, .matters = matters_to_fork},
                    (struct place){.next = now, .matters = matters_to_fork}, "fork",
-                   "a fork keeps its bodies with their shapes and densities, the sound speed, the "
-                   "kernel and the integrator; materials, motions, gravity and numerics may change",
+                   "shapes, densities, sound speed, kernel and integrator must stay; materials, "
+                   "motions, gravity and other numerics may change",
                    d);
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Which sources a scene rests on. */
+ * The publications of the methods that a scene uses. */
 #include "case/effects.h"
 #include "app/manual.h"
 

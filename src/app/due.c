@@ -21,12 +21,12 @@ void due_pass(struct due *u, double time)
     while (due_time(u) <= time) u->k++;
 }
 
-void due_begin(struct due *u, double interval, double time, bool again)
+void due_begin(struct due *u, double interval, double time, bool restart)
 {
     u->interval = interval;
     u->k = interval > 0 ? (int64_t)(time / interval) : 0;
-    while (again && due_time(u) < time) u->k++;
-    /* A run that was stopped right at an output may have written it, or not. */
+    while (restart && due_time(u) < time) u->k++;
+    /* A run that stopped at the time of an output may have written it or not. */
     u->k += due_time(u) <= u->written;
 }
 

@@ -1,27 +1,28 @@
 /* SPDX-License-Identifier: MIT
- * When an output is due. */
+ * The times at which an output is written. */
 #ifndef SPHFSI_APP_DUE_H
 #define SPHFSI_APP_DUE_H
 
 #include "base/base.h"
 
-/* An output on the grid k * interval of simulated time. */
+/* An output at the times k * interval. */
 struct due {
     double interval; /* s; 0: never */
-    int64_t k;       /* next one */
-    double written;  /* time of the last one; -1: none */
+    int64_t k;       /* of the next output */
+    double written;  /* time of the last output; -1: none */
 };
 
-/* Begins at `time`, with `written` as it is; `again`: a restart, which does not repeat what lies before. */
-void due_begin(struct due *u, double interval, double time, bool again);
+/* Starts at `time`; `written` must be set. `restart`: outputs before `time` are not repeated. */
+void due_begin(struct due *u, double interval, double time, bool restart);
 
 double due_time(const struct due *u);
-/* At the end of a run everything is due that was not just written. */
+/* Whether to write now; at the end of a run always, unless it was written at this time. */
 bool due_now(const struct due *u, double time, bool at_end);
+/* Records an output at `time` and moves on to the next. */
 void due_pass(struct due *u, double time);
 
-/* The time up to which a restart keeps what is written. A row off its grid stands there because a run
- * ended; one that does not end there does not write it. */
+/* The time up to which a restart at `time` keeps rows. The last row of a run may be between two multiples of
+ * the interval; a restart drops it, as an uninterrupted run would not have it. */
 double due_kept_until(double interval, double time);
 
 #endif

@@ -39,7 +39,7 @@ static void say_effects(const struct simulation *s, const struct sphfsi_options 
                         effect_table[k].meaning);
 }
 
-/* Bytes that each group of fields takes; what holds no field is left out. */
+/* Bytes of each group of fields that is in use. */
 static void say_groups(const struct simulation *s, const struct sphfsi_options *o)
 {
     for (int g = 0; g < GROUP_COUNT; g++) {
@@ -73,7 +73,7 @@ static void say_fields(const struct simulation *s, const struct sphfsi_options *
                     1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
     }
     say_groups(s, o);
-    session_say(o, "  in all %.3g MB with cells, lanes and stencils; %.3g MB for the scene",
+    session_say(o, "  in all %.3g MB with cells, packed fields and stencils; %.3g MB for the scene",
                 1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
 }
 
@@ -87,9 +87,8 @@ static void say_output(const struct simulation *s, const struct sphfsi_options *
     for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
     session_say(o, "output");
     session_say(o,
-                "  fields.vtkhdf: %.0f snapshots, %.0f points of %.0f bytes: %.3g MB %s; while the "
-                "run lasts "
-                "there are two of it",
+                "  fields.vtkhdf: %.0f snapshots, %.0f points of %.0f bytes: %.3g MB %s; twice "
+                "that during the run",
                 snapshots, points, point, 1e-6 * snapshots * points * point,
                 layout.deflate ? "before compression" : "(no compression)");
 }

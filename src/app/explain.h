@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * What a scene would simulate and what it would cost. */
+ * Effects, memory, time step and cost of a scene. */
 #ifndef SPHFSI_APP_EXPLAIN_H
 #define SPHFSI_APP_EXPLAIN_H
 
 #include "app/session.h"
 
-/* Tells line by line, through the message callback; takes a few steps in memory to know the cost,
- * and writes nothing. */
+/* Prints them line by line, through the message callback. Takes some steps in memory to measure the cost;
+ * writes no file but the cache of costs. */
 enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
                          struct diag *d) SPHFSI_CHECKED;
 

@@ -18,44 +18,38 @@
 #endif
 
 enum { CACHE_BYTES = 1 << 20, FIRST_STEPS = 20 };
-/* Part of the ideal speed-up that a further thread brings: assumed; docs/accuracy.md holds what it is. */
+/* Assumed parallel efficiency of each further thread; docs/accuracy.md compares it with measurements. */
 static const double thread_efficiency = 0.93;
-/* Short repeats: some then fall between the slices that other work takes of a busy machine. */
+/* Repeats are short, so that other work on the machine does not disturb all of them. */
 static const double calibration_seconds = 1.0, repeat_seconds = 0.005;
 
-/* --- the cache: lines of `key numbers`, the last of a key counts --- */
+/* --- the cache: lines of a key and numbers; of equal keys the last line is valid --- */
 
-static uint64_t mix(uint64_t h, const void *bytes, size_t n)
-{
-    /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): callers fill all n bytes */
-    for (size_t k = 0; k < n; k++) h = (h ^ ((const unsigned char *)bytes)[k]) * 0x100000001b3u;
-    return h;
-}
-
-static uint64_t mix_file_line(uint64_t h, const char *path, const char *start)
+/* Continues the hash with the first line of a file that begins with `start`. */
+static uint64_t hash_file_line(uint64_t h, const char *path, const char *start)
 {
     char line[256];
     FILE *file = fopen(path, "r");
     if (!file) return h;
     while (fgets(line, sizeof line, file))
         if (strncmp(line, start, strlen(start)) == 0) {
-            h = mix(h, line, strlen(line));
+            h = hash_bytes(h, line, strlen(line));
             break;
         }
     fclose(file);
     return h;
 }
 
-/* Of the machine, the program and all that decides what its kernels cost for this scene. */
+/* Identifies the machine, the program, and all settings of the scene that the cost of a step depends on. */
 static uint64_t cache_key(const struct simulation *s)
 {
     const struct scene *const c = s->scene;
-    uint64_t h = mix(0xcbf29ce484222325u, SPHFSI_VERSION, sizeof SPHFSI_VERSION);
+    uint64_t h = hash_bytes(HASH_START, SPHFSI_VERSION, sizeof SPHFSI_VERSION);
     struct stat program;
-    h = mix_file_line(h, "/proc/cpuinfo", "model name");
+    h = hash_file_line(h, "/proc/cpuinfo", "model name");
     if (stat("/proc/self/exe", &program) == 0) {
-        h = mix(h, &program.st_mtime, sizeof program.st_mtime);
-        h = mix(h, &program.st_size, sizeof program.st_size);
+        h = hash_bytes(h, &program.st_mtime, sizeof program.st_mtime);
+        h = hash_bytes(h, &program.st_size, sizeof program.st_size);
     }
     const int words[] = {(int)s->effects,
                          (int)(s->effects >> 32),
@@ -64,17 +58,17 @@ static uint64_t cache_key(const struct simulation *s)
                          s->solid.sweeps ? s->solid.sweeps->lanes : 0,
                          c->numerics.kernel,
                          c->numerics.suction};
-    h = mix(h, words, sizeof words);
+    h = hash_bytes(h, words, sizeof words);
     const double numbers[] = {c->numerics.h_over_dp, c->numerics.skin};
-    h = mix(h, numbers, sizeof numbers);
+    h = hash_bytes(h, numbers, sizeof numbers);
     for (int k = 0; k < c->n_solid; k++) {
         const int form[] = {c->solid[k].law, c->solid[k].gradient, c->solid[k].hourglass_form};
-        h = mix(h, form, sizeof form);
+        h = hash_bytes(h, form, sizeof form);
     }
     for (int k = 0; k < KIND_COUNT;
          k++) { /* sizes by quarters of an octave: caches, walls, overhead */
         const int size = s->kind[k].n ? (int)lround(4 * log2((double)s->kind[k].n)) : -1;
-        h = mix(h, &size, sizeof size);
+        h = hash_bytes(h, &size, sizeof size);
     }
     return h;
 }
@@ -157,7 +151,7 @@ static void cache_keep(uint64_t key, const struct unit_costs *c)
 
 /* --- calibration --- */
 
-/* Time that this thread has worked, s: unlike the clock's it does not count what other programs took. */
+/* CPU time of this thread, s: it does not include the time of other programs. */
 static double work_clock(void)
 {
     struct timespec t;
@@ -165,9 +159,9 @@ static double work_clock(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* A step costs the least work of any repeat, other work on the machine only ever adds; its phases share it
- * as their least times do. Sorting, which not every repeat has, costs its mean, unless that is disturbed
- * beyond belief. */
+/* The least CPU time per step of all repeats, since other work on the machine can only add to it, and the
+ * least time of each phase. Not every repeat sorts, so sorting counts with its mean, limited to 5 % of a
+ * step. */
 struct least {
     double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
@@ -221,9 +215,10 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
     const uint64_t key = cache_key(s);
     const double end = s->scene->top.end_time;
     struct least least = {.steps = 0};
-    /* The first step pays for first touch and first sort; it also finds the bounds. */
+    /* The first step is not measured: it includes the first touch of memory and the first sort. It also finds
+     * the bounds of the time step. */
     TRY(simulation_step(s, end, d));
-    /* A state that a guard stops this early is worth telling. */
+    /* A guard that stops the run in these steps is reported. */
     const double start = wall_clock();
     for (int k = 0; k < FIRST_STEPS && s->state.time < end; k++) {
         if (wall_clock() - start > 0.5 * calibration_seconds) break;
@@ -231,12 +226,12 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
     }
     if (cache_find(key, c)) return ERR_OK;
     const double begin = wall_clock();
-    /* Later it is found by the run, not by the look ahead of it. */
-    struct diag quiet = {.code = ERR_OK};
+    /* A guard that stops the run later is not: the run will report it. */
+    struct diag ignored = {.code = ERR_OK};
     enum err e = ERR_OK;
     while (!e && s->state.time < end && wall_clock() - begin < calibration_seconds)
-        e = take_steps(&least, s, &quiet);
-    if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", quiet.text);
+        e = take_steps(&least, s, &ignored);
+    if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", ignored.text);
     if (least.steps == 0) return ERR_OK;
     set_costs(c, &least, s);
     cache_keep(key, c);
@@ -269,8 +264,8 @@ void forecast_close(struct session *x, int threads)
 
 /* --- the run --- */
 
-/* Eq. 28b with the speeds that are expected. Its approach of pairs over all five shipped flows was 0.6 to
- * 0.9 of `max_speed`, averaged over the run; a flow that has none named keeps what it has shown so far. */
+/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its mean was
+ * 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
 static double expected_step(const struct simulation *s)
 {
     const double limit = timestep_fluid_limit(s), fixed = s->scene->numerics.fixed_step;
@@ -281,8 +276,8 @@ static double expected_step(const struct simulation *s)
     return limit * s->fluid.k.c0 / (s->fluid.k.c0 + approach);
 }
 
-/* Steps up to `end` that hit all multiples of the intervals: every piece between two of them is cut into
- * equal parts. Pieces are those of the shortest interval; longer ones are mostly multiples of it. */
+/* Number of steps, which must end at every output time. Only the shortest interval counts: the others are
+ * usually multiples of it. */
 static double count_steps(const struct simulation *s, double dt)
 {
     const struct scene_output *const out = &s->scene->output;
@@ -293,7 +288,7 @@ static double count_steps(const struct simulation *s, double dt)
     return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
 }
 
-/* Bytes of all files: rows, snapshots without compression, twice while the run lasts, and two checkpoints. */
+/* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run. */
 static double disk_bytes(const struct simulation *s, double scale)
 {
     enum { BYTES_OF_SNAPSHOT = 140, BYTES_OF_ROW = 18 }; /* a particle; a number */
@@ -327,11 +322,11 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     if (n_solid > 0)
         f.substeps = f.steps * (s->effects & FX_MULTIRATE ? max2(1, ceil(f.dt / dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
-    /* A row of the ledger looks at the fluid once more. */
-    const double looks = end / s->scene->output.ledger_interval;
-    f.seconds = (f.evaluations + looks) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
+    const double ledger_evaluations = end / s->scene->output.ledger_interval;
+    f.seconds =
+        (f.evaluations + ledger_evaluations) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
     f.seconds /= 1 + thread_efficiency * (threads - 1);
-    /* Opened for one thread. */
+    /* The session has the memory of one thread. */
     const double shared = (double)(s->arena.bytes + s->scene->arena.bytes - s->fluid.thread_bytes);
     f.memory = shared / (scale * scale) + threads * (double)s->fluid.thread_bytes;
     f.disk = disk_bytes(s, scale);
@@ -377,7 +372,7 @@ void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
             at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;",
                                    row->percent, row->resolution, row->what);
     }
-    session_say(o, "%s", at > 0 ? line : "  the study has no such scene");
+    session_say(o, "%s", at > 0 ? line : "  the study has no scene of this kind");
 }
 
 void forecast_say_preset(const struct scene *s, const struct sphfsi_options *o)

@@ -14,9 +14,9 @@ static const char usage[] =
     "  --out DIR         folder of the results (runs/<case name>)\n"
     "  --threads N       threads to use (all)\n"
     "  --until TIME      simulated time in s to end at (end_time of the case)\n"
-    "  --set KEY=VALUE   value in effect over the case: dp=1mm, \"solid gate.young=12MPa\"; "
+    "  --set KEY=VALUE   replace a value of the case: dp=1mm, \"solid gate.young=12MPa\"; "
     "repeatable\n"
-    "  --restart [FILE]  go on from the newest valid checkpoint of the run, or from FILE\n"
+    "  --restart [FILE]  continue from the newest valid checkpoint of the run, or from FILE\n"
     "  --fork FILE       start a new run, with other physics, from the checkpoint (or a run's "
     "newest)\n"
     "  --quiet           no progress, warnings only\n"
@@ -29,15 +29,16 @@ static const char usage[] =
     "  --cite            print the sources of the methods that the case uses\n"
     "  --budget TIME     say which is the finest dp that runs within the time: 90s, 10min, 2h\n"
     "  --refine N        run in N resolutions (3 to 6), coarsest first, and say what probes\n"
-    "                    and energies converge to, with order and error band; goes on where it "
-    "was\n"
+    "                    and energies converge to, with order and error band; finished runs are\n"
+    "                    not repeated\n"
     "                    (--ratio R: of neighbouring resolutions, 2)\n"
     "  --inspect FILE    say what a checkpoint holds\n"
-    "  --new NAME        print a commented case to start from; without a name they are listed\n"
+    "  --new NAME        print a commented case to start from; without a name, list them\n"
     "  --keys            print all sections and keys of a case file\n"
     "  --version, --help\n"
     "exit status: 0 finished, 1 wrong input, 2 stopped by a guard or a failure,\n"
-    "             129, 130 or 143 interrupted with a checkpoint (SIGUSR1: checkpoint and go on)\n";
+    "             129, 130 or 143 interrupted with a checkpoint\n"
+    "SIGUSR1: write a checkpoint and continue\n";
 
 /* What the program does: RUN unless an option says otherwise. */
 enum mode {
@@ -83,7 +84,7 @@ struct command {
     double runs, ratio;  /* of --refine */
     double budget;       /* of --budget, s */
     int quiet;
-    int terminal, line_open; /* a progress line stands on the terminal */
+    int terminal, line_open; /* stderr is a terminal; it shows a progress line */
     double last_fraction, last_line;
 };
 
@@ -97,8 +98,8 @@ static void on_signal(int number)
         requests.stop = number;
 }
 
-/* A second SIGINT while the checkpoint is written ends the program at once, for whoever cannot wait;
- * a second SIGTERM does not, since batch systems send several. */
+/* A second SIGINT while the checkpoint is written ends the program immediately; a second SIGTERM does not,
+ * since batch systems send several. */
 static void install_signals(void)
 {
     struct sigaction once = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
@@ -142,16 +143,16 @@ static void remaining(double seconds, char text[32])
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
-/* One live line on a terminal; elsewhere a line for every tenth of the way or half a minute. */
+/* One line that is updated on a terminal; elsewhere one for each tenth of the run or half a minute. */
 static void on_progress(void *context, const struct sphfsi_progress *p)
 {
     struct command *c = context;
-    const double way = p->end_time - p->start_time;
-    const double share = way > 0 ? (p->time - p->start_time) / way : 1;
-    if (!c->terminal && !p->finished && floor(10 * share) <= floor(10 * c->last_fraction) &&
+    const double span = p->end_time - p->start_time;
+    const double fraction = span > 0 ? (p->time - p->start_time) / span : 1;
+    if (!c->terminal && !p->finished && floor(10 * fraction) <= floor(10 * c->last_fraction) &&
         p->wall_seconds - c->last_line < 30)
         return;
-    c->last_fraction = share;
+    c->last_fraction = fraction;
     c->last_line = p->wall_seconds;
     if (p->finished) {
         clear_line(c);
@@ -160,7 +161,7 @@ static void on_progress(void *context, const struct sphfsi_progress *p)
     char left[32];
     remaining(p->seconds_left, left);
     fprintf(stderr, "%s%5.1f %%  t %.5g s  dt %.3g s (%s)  %.3g M particle steps/s  %s left%s",
-            c->terminal ? "\r" : "", 100 * share, p->time, p->dt, p->bound,
+            c->terminal ? "\r" : "", 100 * fraction, p->time, p->dt, p->bound,
             1e-6 * p->particle_steps_per_second, left, c->terminal ? "\033[K" : "\n");
     fflush(stderr);
     c->line_open = c->terminal;
@@ -179,10 +180,10 @@ static int read_number(const char *option, const char *text, double low, double 
     char *end;
     *value = strtod(text, &end);
     if (end != text && *end == '\0' && *value >= low && *value <= high) return 0;
-    return complain(strcmp(option, "--threads") == 0  ? "%s %s: a number from 1 to 4096 is wanted"
-                    : strcmp(option, "--refine") == 0 ? "%s %s: a number from 3 to 6 is wanted"
-                    : strcmp(option, "--ratio") == 0  ? "%s %s: a number from 1.1 to 4 is wanted"
-                                                     : "%s %s: a time in seconds above 0 is wanted",
+    return complain(strcmp(option, "--threads") == 0  ? "%s %s: give a number from 1 to 4096"
+                    : strcmp(option, "--refine") == 0 ? "%s %s: give a number from 3 to 6"
+                    : strcmp(option, "--ratio") == 0  ? "%s %s: give a number from 1.1 to 4"
+                                                      : "%s %s: give a time in seconds, above 0",
                     option, text);
 }
 
@@ -201,7 +202,7 @@ static int read_duration(const char *text, double *seconds)
             *seconds *= units[k].seconds;
             return 0;
         }
-    return complain("--budget %s: a time such as 90s, 10min or 2h is wanted%s", text, "");
+    return complain("--budget %s: give a time such as 90s, 10min or 2h%s", text, "");
 }
 
 static int is_checkpoint(const char *text)
@@ -231,7 +232,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
         o->until = number;
     } else if (strcmp(name, "--set") == 0) {
         if (!strchr(word, '='))
-            return complain("%s %s: key=value or section.key=value is wanted", name, operand);
+            return complain("%s %s: give key=value or section.key=value", name, operand);
         ((const char **)(uintptr_t)o->sets)[o->n_sets++] = operand;
     } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
@@ -266,8 +267,8 @@ static int unknown_option(const char *argument)
                 : complain("unknown option %s%s", argument, "");
 }
 
-/* Whether the word behind an option that may have an operand is one. Behind --restart stands a
- * checkpoint, unless it can only be the case. */
+/* Whether the word after an option with an optional operand is its operand. After --restart it is the
+ * checkpoint, unless no case has been named yet and it does not end in .ckpt. */
 static int is_operand(const struct command *c, const struct option *option, const char *next)
 {
     if (!next || next[0] == '-') return 0;
@@ -384,8 +385,7 @@ int main(int argc, char **argv)
     if (!status) status = execute(&c);
     free(sets);
     if (status != 2) return status;
-    /* HDF5 may crash at the end of the program after one of its writes has failed: then there is no
-     * end, and the status is that of the failure. */
+    /* After a failed write HDF5 may crash in its exit handlers: they are skipped. */
     fflush(NULL);
     _exit(status);
 }

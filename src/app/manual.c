@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The reference of keys, from the tables that the reader of cases works with. */
+ * The reference of keys, from the same tables as the reader of cases. */
 #include "app/manual.h"
 
 #include "case/effects.h"
@@ -33,7 +33,7 @@ static const char *const section_meanings[][2] = {
 
 static bool pure(const struct param *p) { return !p->unit || strcmp(p->unit, "1") == 0; }
 
-/* The default as it would be written; "" where there is none. */
+/* The default as in a case file; "" if there is none. */
 static void default_of(const struct param *p, char *text, size_t size)
 {
     const double *const v = p->number_default;
@@ -101,7 +101,7 @@ static void range_of(const struct param *p, char *text, size_t size)
     }
 }
 
-/* A | would end a cell of the table. */
+/* Escapes |, which would end a cell of the table. */
 static void in_cell(const char *text, char *cell, size_t size)
 {
     size_t at = 0;

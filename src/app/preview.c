@@ -11,7 +11,7 @@
 #include <string.h>
 
 /* Pixels: the drawing, its margins, a line of text, the width of a letter. */
-enum { DRAWING = 1000, DEFERRED = 70, RIGHT = 30, HEAD = 60, FOOT = 52, LINE = 18, LETTER = 7 };
+enum { DRAWING = 1000, LEFT = 70, RIGHT = 30, HEAD = 60, FOOT = 52, LINE = 18, LETTER = 7 };
 enum { MAX_LABELS = 256 };
 
 struct box {
@@ -24,16 +24,13 @@ struct drawing {
     struct box view; /* m */
     double scale;    /* pixels per m */
     int n_labels;
-    struct box label[MAX_LABELS]; /* pixels that are taken by words */
+    struct box label[MAX_LABELS]; /* pixels, rectangles of the labels so far */
 };
 
-/* Okabe and Ito's colours; what a colour says the words beside it say too. */
+/* The palette of Okabe and Ito, for colour-blind readers. */
 static const char *const fills[KIND_COUNT] = {"#56B4E9", "#999999", "#E69F00"};
 
-static double px(const struct drawing *g, double x)
-{
-    return DEFERRED + (x - g->view.x0) * g->scale;
-}
+static double px(const struct drawing *g, double x) { return LEFT + (x - g->view.x0) * g->scale; }
 
 static double py(const struct drawing *g, double y) { return HEAD + (g->view.y1 - y) * g->scale; }
 
@@ -57,9 +54,9 @@ static void put_text(const struct drawing *g, double x, double y, const char *cl
     fputs("</text>\n", g->file);
 }
 
-/* --- words beside things --- */
+/* --- labels --- */
 
-static bool taken(const struct drawing *g, struct box b)
+static bool overlaps_label(const struct drawing *g, struct box b)
 {
     for (int k = 0; k < g->n_labels; k++) {
         const struct box *o = &g->label[k];
@@ -68,14 +65,14 @@ static bool taken(const struct drawing *g, struct box b)
     return false;
 }
 
-/* A name beside a point in pixels, moved up or down until it is clear of the others. */
+/* Writes a name next to a point in pixels, moved up or down until it overlaps no other. */
 static void put_label(struct drawing *g, double x, double y, const char *name)
 {
     const double width = LETTER * (double)strlen(name) + 6;
-    if (x + width > DEFERRED + DRAWING + RIGHT) x -= width + 10;
+    if (x + width > LEFT + DRAWING + RIGHT) x -= width + 10;
     struct box b = {x, y - 10, x + width, y + 4};
-    for (int k = 1; k < 16 && taken(g, b); k++) {
-        const int row = (k + 1) / 2; /* 1, 1, 2, 2, ...: above and below in turn */
+    for (int k = 1; k < 16 && overlaps_label(g, b); k++) {
+        const int row = (k + 1) / 2; /* 1, 1, 2, 2, ...: alternately above and below */
         const double shift = (k % 2 ? 15 : -15) * row;
         b.y0 = y - 10 + shift;
         b.y1 = y + 4 + shift;
@@ -86,46 +83,46 @@ static void put_label(struct drawing *g, double x, double y, const char *name)
 
 /* --- bodies as rows of particles --- */
 
-struct spot {
+struct lattice_site {
     int64_t row, column; /* of the lattice of the body */
 };
 
-static int compare_spots(const void *a, const void *b)
+static int compare_sites(const void *a, const void *b)
 {
-    const struct spot *const p = a, *const q = b;
+    const struct lattice_site *const p = a, *const q = b;
     if (p->row != q->row) return p->row < q->row ? -1 : 1;
     return p->column < q->column ? -1 : p->column > q->column;
 }
 
-/* The particles of a body, clamped or not, that start at `first` of the lattice. */
+/* Collects the particles of a body, clamped ones or the others, by row and column counted from `first`. */
 static int64_t collect(const struct scene_points *p, int body, int clamped, double dp,
-                       struct spot *spot, double first[2])
+                       struct lattice_site *site, double first[2])
 {
     int64_t n = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body || (p->clamped && p->clamped[i]) != clamped) continue;
         if (n == 0) first[0] = p->x[i], first[1] = p->y[i];
-        spot[n++] =
-            (struct spot){llround((p->y[i] - first[1]) / dp), llround((p->x[i] - first[0]) / dp)};
+        site[n++] = (struct lattice_site){llround((p->y[i] - first[1]) / dp),
+                                          llround((p->x[i] - first[0]) / dp)};
     }
-    qsort(spot, (size_t)n, sizeof *spot, compare_spots);
+    qsort(site, (size_t)n, sizeof *site, compare_sites);
     return n;
 }
 
 /* One rectangle for each row of neighbours, in one path. */
-static void put_rows(const struct drawing *g, const struct spot *spot, int64_t n,
+static void put_rows(const struct drawing *g, const struct lattice_site *site, int64_t n,
                      const double first[2], const char *style)
 {
     const double dp = g->s->top.dp;
     if (n == 0) return;
     fprintf(g->file, "<path %s d=\"", style);
     for (int64_t k = 0, end; k < n; k = end) {
-        for (end = k + 1; end < n && spot[end].row == spot[k].row &&
-                          spot[end].column == spot[end - 1].column + 1;
+        for (end = k + 1; end < n && site[end].row == site[k].row &&
+                          site[end].column == site[end - 1].column + 1;
              end++) {
         }
-        const double x = first[0] + ((double)spot[k].column - 0.5) * dp;
-        const double y = first[1] + ((double)spot[k].row + 0.5) * dp;
+        const double x = first[0] + ((double)site[k].column - 0.5) * dp;
+        const double y = first[1] + ((double)site[k].row + 0.5) * dp;
         fprintf(g->file, "M%.2f %.2fh%.2fv%.2fh%.2fz", px(g, x), py(g, y),
                 (double)(end - k) * dp * g->scale, dp * g->scale,
                 -(double)(end - k) * dp * g->scale);
@@ -154,19 +151,19 @@ static const char *body_name(const struct scene *s, enum kind kind, int body)
     return common->name;
 }
 
-static void put_body(struct drawing *g, enum kind kind, int body, struct spot *spot)
+static void put_body(struct drawing *g, enum kind kind, int body, struct lattice_site *site)
 {
     const struct scene_points *const p = &g->s->points[kind];
     const bool moves = kind == KIND_WALL && g->s->wall[body].motion[0];
     char style[64];
     double first[2];
     snprintf(style, sizeof style, "fill=\"%s\"", moves ? "#CC79A7" : fills[kind]);
-    put_rows(g, spot, collect(p, body, 0, g->s->top.dp, spot, first), first, style);
-    put_rows(g, spot, collect(p, body, 1, g->s->top.dp, spot, first), first,
+    put_rows(g, site, collect(p, body, 0, g->s->top.dp, site, first), first, style);
+    put_rows(g, site, collect(p, body, 1, g->s->top.dp, site, first), first,
              "fill=\"url(#clamp)\" stroke=\"#000\" stroke-width=\"0.3\"");
 }
 
-/* A name stands in the middle of a fluid, beside the middle of a body. */
+/* Writes a name: in the middle of a fluid, next to the particle in the middle of a body. */
 static void name_body(struct drawing *g, enum kind kind, int body)
 {
     const struct scene_points *const p = &g->s->points[kind];
@@ -192,7 +189,7 @@ static void name_body(struct drawing *g, enum kind kind, int body)
 
 /* --- probes --- */
 
-static bool has_place(const struct scene_probe *probe)
+static bool has_position(const struct scene_probe *probe)
 {
     const enum probe_target target = scene_probe_target(probe);
     return target == TARGET_SOLID_POINT || target == TARGET_FLUID_POINT ||
@@ -202,7 +199,7 @@ static bool has_place(const struct scene_probe *probe)
 static void put_probe(struct drawing *g, const struct scene_probe *probe)
 {
     const double x = px(g, probe->point[0]), y = py(g, probe->point[1]);
-    if (!has_place(probe)) return;
+    if (!has_position(probe)) return;
     if (probe->quantity == PROBE_FLUX)
         fprintf(g->file, "<path class=\"probe\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", x, y,
                 px(g, probe->to[0]), py(g, probe->to[1]));
@@ -214,11 +211,11 @@ static void put_probe(struct drawing *g, const struct scene_probe *probe)
 
 /* --- axes --- */
 
-/* 1, 2 or 5 times a power of ten, some eight to the length. */
+/* 1, 2 or 5 times a power of ten, for some eight ticks. */
 static double tick_step(double length)
 {
-    const double raw = length / 8, power = pow(10, floor(log10(raw))), share = raw / power;
-    return power * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
+    const double raw = length / 8, power = pow(10, floor(log10(raw))), digit = raw / power;
+    return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
 static void put_axes(const struct drawing *g)
@@ -280,7 +277,7 @@ static void describe_probe(const struct scene_probe *p, char *text, size_t size)
     if (p->quantity == PROBE_FLUX)
         snprintf(place, sizeof place, " from (%g, %g) to (%g, %g) m", p->point[0], p->point[1],
                  p->to[0], p->to[1]);
-    else if (has_place(p))
+    else if (has_position(p))
         snprintf(place, sizeof place, " at (%g, %g) m", p->point[0], p->point[1]);
     snprintf(text, size, "probe %s: %s%s%s%s", p->common.name, quantity, p->body[0] ? " of " : "",
              p->body, place);
@@ -293,16 +290,16 @@ static void put_list(const struct drawing *g, double y)
         for (int k = 0; k < section_count(g->s, sections[kind]); k++, y += LINE) {
             const bool moves = kind == KIND_WALL && g->s->wall[k].motion[0];
             fprintf(g->file, "<rect x=\"%d\" y=\"%.1f\" width=\"12\" height=\"12\" fill=\"%s\"/>\n",
-                    DEFERRED, y - 11, moves ? "#CC79A7" : fills[kind]);
+                    LEFT, y - 11, moves ? "#CC79A7" : fills[kind]);
             describe(g->s, (enum kind)kind, k, text, sizeof text);
-            put_text(g, DEFERRED + 20, y, "", text);
+            put_text(g, LEFT + 20, y, "", text);
         }
     for (int k = 0; k < g->s->n_probe; k++, y += LINE) {
-        if (has_place(&g->s->probe[k]))
-            fprintf(g->file, "<circle class=\"probe\" cx=\"%d\" cy=\"%.1f\" r=\"4\"/>\n",
-                    DEFERRED + 6, y - 5);
+        if (has_position(&g->s->probe[k]))
+            fprintf(g->file, "<circle class=\"probe\" cx=\"%d\" cy=\"%.1f\" r=\"4\"/>\n", LEFT + 6,
+                    y - 5);
         describe_probe(&g->s->probe[k], text, sizeof text);
-        put_text(g, DEFERRED + 20, y, "", text);
+        put_text(g, LEFT + 20, y, "", text);
     }
 }
 
@@ -349,23 +346,23 @@ static void put_head(const struct drawing *g, double width, double height)
           "<path d=\"M0 6L6 0M-1 1L1 -1M5 7L7 5\" stroke=\"#000\"/></pattern></defs>\n",
           g->file);
     fprintf(g->file, "<rect width=\"%.0f\" height=\"%.0f\" fill=\"#fff\"/>\n", width, height);
-    put_text(g, DEFERRED, 22, "title", s->top.title[0] ? s->top.title : s->path);
+    put_text(g, LEFT, 22, "title", s->top.title[0] ? s->top.title : s->path);
     snprintf(text, sizeof text,
              "dp %g m, h %g m, gravity (%g, %g) m/s^2, %g s; domain (%.4g, %.4g) to (%.4g, %.4g) m",
              s->top.dp, s->h, s->top.gravity[0], s->top.gravity[1], s->top.end_time,
              s->domain_lower[0], s->domain_lower[1], s->domain_upper[0], s->domain_upper[1]);
-    put_text(g, DEFERRED, 42, "", text);
+    put_text(g, LEFT, 42, "", text);
 }
 
-static void put_all(struct drawing *g, struct spot *spot)
+static void put_all(struct drawing *g, struct lattice_site *site)
 {
     const int rows = g->s->n_fluid + g->s->n_wall + g->s->n_solid + g->s->n_probe;
     const double bottom = py(g, g->view.y0) + FOOT;
-    put_head(g, DEFERRED + DRAWING + RIGHT, bottom + rows * LINE + 20);
+    put_head(g, LEFT + DRAWING + RIGHT, bottom + rows * LINE + 20);
     static const enum kind order[KIND_COUNT] = {KIND_WALL, KIND_FLUID, KIND_SOLID};
     for (int k = 0; k < KIND_COUNT; k++)
         for (int body = 0; body < section_count(g->s, sections[order[k]]); body++)
-            put_body(g, order[k], body, spot);
+            put_body(g, order[k], body, site);
     put_axes(g);
     for (int k = 0; k < g->s->n_probe; k++) put_probe(g, &g->s->probe[k]);
     for (int k = 0; k < KIND_COUNT; k++)
@@ -380,18 +377,18 @@ enum err preview_draw(const struct scene *s, const char *path, struct diag *d)
     int64_t most = 1;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         most = most > s->points[kind].n ? most : s->points[kind].n;
-    struct spot *const spot = malloc((size_t)most * sizeof *spot);
-    if (!spot)
+    struct lattice_site *const site = malloc((size_t)most * sizeof *site);
+    if (!site)
         return diag_fail(d, ERR_MEMORY, "%s: no memory for %lld particles", path, (long long)most);
     struct drawing g = {.s = s, .view = find_view(s), .file = fopen(path, "w")};
-    /* A tall scene is drawn as high as a wide one is wide. */
+    /* The longer side of the scene gets DRAWING pixels. */
     g.scale = DRAWING / max2(g.view.x1 - g.view.x0, g.view.y1 - g.view.y0);
     bool ok = g.file != NULL;
     if (ok) {
-        put_all(&g, spot);
+        put_all(&g, site);
         ok = !ferror(g.file);
         ok = fclose(g.file) == 0 && ok;
     }
-    free(spot);
+    free(site);
     return ok ? ERR_OK : diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A picture of the scene before anything is run. */
+ * A drawing of the scene at the start. */
 #ifndef SPHFSI_APP_PREVIEW_H
 #define SPHFSI_APP_PREVIEW_H
 

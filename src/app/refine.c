@@ -24,7 +24,7 @@ struct refinement {
     bool off_lattice; /* a body is not the same in all resolutions */
 };
 
-/* Values of a column that are refined. */
+/* Values of a column whose convergence is analysed. */
 enum measure { FINAL, PEAK, SETTLED, MEASURES };
 static const char *const measure_names[MEASURES] = {"final", "peak", "settled"};
 
@@ -85,22 +85,17 @@ static enum err prepare(struct one_run *one, const struct refinement *x, int k)
     return ERR_OK;
 }
 
-static void look_for_lattice(void *context, const char *text)
-{
-    struct refinement *x = context;
-    if (strstr(text, "off the lattice")) x->off_lattice = true;
-}
-
-/* Whether the case can be had in this resolution; before any run, not after hours of the others. */
+/* Whether the case can be read in this resolution: checked before any run, since runs may take hours. */
 static enum err try_case(struct refinement *x, int k)
 {
     struct one_run one = {.dp = ""};
     struct session *const s = calloc(1, sizeof *s);
-    struct diag why = {.code = ERR_OK, .warn = look_for_lattice, .warn_context = x};
+    struct diag why = {.code = ERR_OK};
     enum err e = s ? prepare(&one, x, k) : diag_fail(x->diag, ERR_MEMORY, "refine: no memory");
-    if (!e && (e = session_read(s, &one.options, &why)) == ERR_OK)
+    if (!e && (e = session_read(s, &one.options, &why)) == ERR_OK) {
+        x->off_lattice |= s->scene.off_lattice;
         scene_free(&s->scene);
-    else if (why.code)
+    } else if (why.code)
         diag_fail(x->diag, e, "refine: at dp = %.6g m, %.4g times the case's: %.500s",
                   spacing(x, k), spacing(x, k) / x->dp, why.text);
     free(one.sets);
@@ -135,7 +130,7 @@ static void remove_partial_run(const char *folder)
         if (path_join(path, folder, names[k], NULL) == ERR_OK) unlink(path);
 }
 
-/* Whether the folder holds this very run, finished. Another case is left to the restart to refuse. */
+/* Whether the folder holds a finished run of exactly this case. Of another case the restart reports it. */
 static bool is_done(const struct refinement *x, const struct one_run *one)
 {
     char summary[PATH_BYTES], path[PATH_BYTES], part[PATH_BYTES];
@@ -220,13 +215,13 @@ static enum err measure_run(const struct refinement *x, int k, const char *file,
 }
 
 static void say_value(const struct refinement *x, struct json *j, const char *name,
-                      const double value[3], bool aloud)
+                      const double value[3], bool print)
 {
     const struct convergence c = converge(value, x->ratio);
     char order[32] = "none";
     if (c.ordered) snprintf(order, sizeof order, "%.2f", c.order);
     const double percent = value[0] != 0 ? 100 / fabs(value[0]) : 0;
-    if (aloud)
+    if (print)
         session_say(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
                     name, value[2], value[1], value[0], c.extrapolated, order, c.band,
                     percent * c.band, *c.why ? "; " : "", c.why);
@@ -239,7 +234,7 @@ static void say_value(const struct refinement *x, struct json *j, const char *na
     json_close(j, '}');
 }
 
-/* Columns of one file of the runs. Of the ledger only what ends at other than zero is said aloud. */
+/* Reports the columns of one file. Of the ledger only energies that end at other than zero are printed. */
 static void say_columns(const struct refinement *x, struct json *j, const char *header, int columns,
                         bool ledger, double (*value[3])[MEASURES])
 {
@@ -259,7 +254,8 @@ static void say_columns(const struct refinement *x, struct json *j, const char *
     }
 }
 
-static enum err tell_file(const struct refinement *x, struct json *j, const char *file, bool ledger)
+static enum err report_file(const struct refinement *x, struct json *j, const char *file,
+                            bool ledger)
 {
     struct arena arena = {0};
     char path[PATH_BYTES], *header;
@@ -281,15 +277,15 @@ static enum err tell_file(const struct refinement *x, struct json *j, const char
     return e;
 }
 
-static enum err tell_probes(const struct refinement *x, const struct scene *scene, struct json *j)
+static enum err report_probes(const struct refinement *x, const struct scene *scene, struct json *j)
 {
     bool shared = false;
     for (int k = 0; k < scene->n_probe; k++) shared |= !(scene->probe[k].interval > 0);
-    if (shared) TRY(tell_file(x, j, "probes.csv", false));
+    if (shared) TRY(report_file(x, j, "probes.csv", false));
     for (int k = 0; k < scene->n_probe; k++) {
         char file[SCENE_NAME + 16];
         snprintf(file, sizeof file, "probes_%s.csv", scene->probe[k].common.name);
-        if (scene->probe[k].interval > 0) TRY(tell_file(x, j, file, false));
+        if (scene->probe[k].interval > 0) TRY(report_file(x, j, file, false));
     }
     return ERR_OK;
 }
@@ -312,20 +308,20 @@ static void say_foot(const struct refinement *x)
     if (x->off_lattice)
         session_say(
             x->options,
-            "bodies are off the lattice in some of these resolutions and so differ from one to "
-            "the next: the orders mean little");
+            "bodies are off the lattice in some of these resolutions, so their sizes differ: the "
+            "orders are not reliable");
 }
 
-static enum err tell(const struct refinement *x, const struct scene *scene)
+static enum err report_all(const struct refinement *x, const struct scene *scene)
 {
     struct atomic_file out;
     TRY(atomic_file_open(&out, x->folder, "refine.json", x->diag));
     struct json j = {.file = out.file};
     json_open(&j, NULL, '{');
     say_head(x, &j);
-    enum err e = tell_probes(x, scene, &j);
+    enum err e = report_probes(x, scene, &j);
     json_open(&j, "ledger", '{');
-    if (!e) e = tell_file(x, &j, "ledger.csv", true);
+    if (!e) e = report_file(x, &j, "ledger.csv", true);
     json_close(&j, '}');
     json_close(&j, '}');
     say_foot(x);
@@ -337,9 +333,8 @@ static enum err tell(const struct refinement *x, const struct scene *scene)
 static enum err check(struct refinement *x)
 {
     if (x->options->restart || x->options->fork)
-        return diag_fail(
-            x->diag, ERR_INPUT,
-            "refine: goes on by itself where it was; neither restart nor fork go with it");
+        return diag_fail(x->diag, ERR_INPUT,
+                         "refine: continues by itself; run it without restart and fork");
     if (x->runs < 3 || x->runs > MOST_RUNS)
         return diag_fail(x->diag, ERR_INPUT, "refine: %d resolutions; from 3 to %d are possible",
                          x->runs, MOST_RUNS);
@@ -356,7 +351,7 @@ enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, str
     TRY(run_dir_of_case(o, x.folder, d));
     struct session *const s = calloc(1, sizeof *s);
     if (!s) return diag_fail(d, ERR_MEMORY, "refine: no memory for %zu bytes", sizeof *s);
-    struct diag quiet = {.code = ERR_OK}; /* each run has its own warnings */
+    struct diag quiet = {.code = ERR_OK}; /* each run prints its own warnings */
     enum err e = session_read(s, o, &quiet);
     if (e) {
         free(s);
@@ -365,7 +360,7 @@ enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, str
     x.dp = s->scene.top.dp;
     e = check(&x);
     for (int k = 0; k < runs && !e; k++) e = run_one(&x, k);
-    if (!e) e = tell(&x, &s->scene);
+    if (!e) e = report_all(&x, &s->scene);
     scene_free(&s->scene);
     free(s);
     return e;

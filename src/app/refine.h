@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A case in several resolutions: what each probe converges to, and how far the finest run is off. */
+ * A case in several resolutions: the limit of each probe, the order of convergence, and the error band. */
 #ifndef SPHFSI_APP_REFINE_H
 #define SPHFSI_APP_REFINE_H
 
@@ -7,20 +7,20 @@
 
 #include "base/base.h"
 
-/* What three resolutions say of one value. */
+/* Convergence of one value over three resolutions. */
 struct convergence {
     bool ordered; /* monotone with an order of 0.5 or more; else there is no order */
     double order, extrapolated;
     double band;     /* of the finest value, in its unit */
-    const char *why; /* there is no order; "" where there is */
+    const char *why; /* why there is no order; "" if there is one */
 };
 
-/* `value` finest first, dp growing by `ratio`. */
+/* `value`: finest first; dp grows by the factor `ratio`. */
 struct convergence converge(const double value[3], double ratio);
 
-/* Runs dp * ratio^(runs - 1), ..., dp * ratio, dp in sub-folders of the run's folder, those that are not
- * finished yet, and says what the finest three tell of the probes and of the ledger's energies;
- * refine.json holds the same. */
+/* Runs the case at dp * ratio^(runs - 1), ..., dp * ratio, dp in sub-folders of the run's folder, unless a
+ * run is already finished. Prints the convergence of probes and energies over the three finest runs, and
+ * writes it to refine.json. */
 enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -33,8 +33,8 @@ struct run {
     struct series *probe_rows; /* [probes.n_files] */
     struct series ledger_rows;
     struct snapshots snapshots;
-    bool snapshot_lost; /* one that was written has not got its place, and that ends the run */
-    struct image image; /* state that was sound, for the guard */
+    bool snapshot_lost; /* a snapshot could not be published, and the run stops */
+    struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
     char restarted_from[PATH_BYTES], checkpoint[PATH_BYTES];
     struct due *probe_due; /* [probes.n_files] */
@@ -43,8 +43,8 @@ struct run {
     double wall_start, wall_progress, wall_checkpoint, wall_image, image_cost;
 };
 
-/* Copies of a sound state in memory take this share of the time at most. */
-static const double image_share = 0.0025;
+/* Most of the run time that copies of the state in memory may cost. */
+static const double image_fraction = 0.0025;
 static const double progress_seconds = 0.25;
 
 static const char ledger_header[] =
@@ -53,22 +53,22 @@ static const char ledger_header[] =
 #undef LEDGER
     ;
 
-/* --- when --- */
+/* --- output times --- */
 
 static void set_intervals(struct run *r, double time)
 {
     const struct scene_output *out = &r->session.scene.output;
-    const bool again = r->options->restart;
+    const bool restart = r->options->restart;
     const double interval[OUT_COUNT] = {
         [OUT_LEDGER] = out->ledger_interval,
         [OUT_SNAPSHOT] = out->snapshot_interval,
         [OUT_CHECKPOINT] = out->checkpoint_interval,
     };
-    for (int k = 0; k < OUT_COUNT; k++) due_begin(&r->due[k], interval[k], time, again);
+    for (int k = 0; k < OUT_COUNT; k++) due_begin(&r->due[k], interval[k], time, restart);
     for (int k = 0; k < r->probes.n_files; k++)
-        due_begin(&r->probe_due[k], r->probes.file[k].interval, time, again);
-    /* The state at the beginning is the case itself, or the checkpoint that is forked. */
-    r->due[OUT_CHECKPOINT].k += !r->options->restart;
+        due_begin(&r->probe_due[k], r->probes.file[k].interval, time, restart);
+    /* No checkpoint at the start: that state is the case, or the checkpoint of the fork. */
+    r->due[OUT_CHECKPOINT].k += !restart;
 }
 
 static double next_time(const struct run *r)
@@ -79,7 +79,7 @@ static double next_time(const struct run *r)
     return next;
 }
 
-/* --- what --- */
+/* --- output --- */
 
 static enum err write_probes(struct run *r, int file)
 {
@@ -101,7 +101,7 @@ static enum err write_ledger(struct run *r)
     return e;
 }
 
-/* How far the probes are off their references; that it cannot be told is no failure of the run. */
+/* Compares the probes with their references; a failure is only a warning. */
 static void compare(struct run *r)
 {
     struct diag why = session_diag(r->options);
@@ -135,7 +135,7 @@ static enum err capture(struct run *r, struct diag *d)
     return ERR_OK;
 }
 
-/* A checkpoint must not outlive the rows before it through a power cut: they are synced first. */
+/* Rows are synced first: after a power failure a checkpoint must not be newer than the rows. */
 static enum err store(struct run *r, struct diag *d)
 {
     for (int k = 0; k < r->probes.n_files; k++) TRY(series_sync(&r->probe_rows[k], d));
@@ -143,8 +143,8 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }
 
-/* A full disk need not end a run whose user wants its rows more than its pictures; the next snapshot
- * is tried again. The file with the name stays as it was. */
+/* Decides about a failed snapshot: [output] snapshot_failure says whether the run stops. If not, the next
+ * snapshot is tried; the file keeps the earlier ones. */
 static enum err judge_snapshot(struct run *r, enum err e, double time, struct diag *why)
 {
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
@@ -154,7 +154,7 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
     return ERR_OK;
 }
 
-static enum err settle_snapshot(struct run *r)
+static enum err wait_for_snapshot(struct run *r)
 {
     struct diag why = session_diag(r->options);
     const enum err e = snapshots_wait(&r->snapshots, &why);
@@ -165,7 +165,7 @@ static enum err settle_snapshot(struct run *r)
 
 static enum err write_snapshot(struct run *r)
 {
-    TRY(settle_snapshot(r));
+    TRY(wait_for_snapshot(r));
     struct diag why = session_diag(r->options);
     const enum err e = snapshots_write(&r->snapshots, r->s, &why);
     return judge_snapshot(r, e, r->s->state.time, &why);
@@ -174,7 +174,7 @@ static enum err write_snapshot(struct run *r)
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
-    TRY(settle_snapshot(r));
+    TRY(wait_for_snapshot(r));
     TRY(capture(r, r->diag));
     TRY(store(r, r->diag));
     return write_summary(r, "running", "", r->diag);
@@ -198,8 +198,8 @@ static double phases_so_far(const struct simulation *s)
     return sum;
 }
 
-/* Writes what is due now; at the end of the run everything that was not just written. The checkpoint
- * comes last: a restart takes it that all else has been written. */
+/* Writes the outputs that are due; at the end of the run, all that were not written at this time. The
+ * checkpoint is the last: a restart relies on all others having been written. */
 static enum err write_due(struct run *r, bool at_end)
 {
     const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
@@ -213,17 +213,16 @@ static enum err write_due(struct run *r, bool at_end)
         TRY(write_output(r, (enum output)k));
         due_pass(&r->due[k], time);
     }
-    if (!at_end && image_share * (wall_clock() - r->wall_image) > r->image_cost)
+    if (!at_end && image_fraction * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
-    /* An evaluation that the next step takes over has booked itself. */
+    /* Evaluations for output, which the next step reuses, are already counted in their own phases. */
     r->s->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->s) - before);
     return ERR_OK;
 }
 
-/* --- the way --- */
+/* --- time loop --- */
 
-/* Seconds since a mark, which follows a clock that steps back: that of a guest does, when it is moved
- * to another machine. */
+/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark follows. */
 static double since(double *mark)
 {
     const double now = wall_clock();
@@ -260,24 +259,24 @@ static void show_progress(struct run *r, bool finished)
     o->progress(o->context, &p);
 }
 
-/* Wishes from outside and the cadence by wall time; neither changes a step. */
+/* Requests of the user and checkpoints by wall time; neither changes a step. */
 static enum err between_steps(struct run *r)
 {
-    struct sphfsi_requests *wish = r->options->requests;
+    struct sphfsi_requests *request = r->options->requests;
     const double minutes = r->session.scene.output.checkpoint_minutes;
     const bool by_clock = minutes > 0 && since(&r->wall_checkpoint) > 60 * minutes;
-    if (by_clock || (wish && wish->checkpoint)) {
-        if (wish) wish->checkpoint = 0;
+    if (by_clock || (request && request->checkpoint)) {
+        if (request) request->checkpoint = 0;
         const double begin = wall_clock();
         TRY(write_checkpoint(r));
         r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
     show_progress(r, false);
-    if (!wish || !wish->stop) return ERR_OK;
+    if (!request || !request->stop) return ERR_OK;
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,
-                     "stopped by signal %d at %.6g s; --restart goes on from %s", (int)wish->stop,
-                     r->s->state.time, r->checkpoint);
+                     "stopped by signal %d at %.6g s; --restart continues from %s",
+                     (int)request->stop, r->s->state.time, r->checkpoint);
 }
 
 static enum err advance(struct run *r)
@@ -293,21 +292,21 @@ static enum err advance(struct run *r)
         TRY(write_due(r, false));
     }
     TRY(write_due(r, true));
-    return settle_snapshot(r);
+    return wait_for_snapshot(r);
 }
 
-/* After a failure: what can still be left behind. The failure itself stays the message. */
+/* After a failure: saves what can be saved. The message remains that of the failure. */
 static void save_last_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
-    /* All rows and snapshots up to the image have been written, so that a restart from it leaves no gap. */
-    const bool whole = !r->snapshot_lost && settle_snapshot(r) == ERR_OK;
+    /* A checkpoint of the image needs all rows and snapshots up to its time, for a restart without a gap. */
+    const bool whole = !r->snapshot_lost && wait_for_snapshot(r) == ERR_OK;
     if (why != ERR_INTERRUPT && whole && r->image.size > 0 && store(r, &second))
-        diag_warn(&second, "the last sound state could not be kept: %s", second.text);
+        diag_warn(&second, "the last sound state could not be saved: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD &&
         (snapshots_write(&r->snapshots, r->s, &second) || snapshots_wait(&r->snapshots, &second)))
-        diag_warn(&second, "the state at the stop could not be kept: %s", second.text);
+        diag_warn(&second, "the state at the stop could not be saved: %s", second.text);
     second.code = ERR_OK;
     const char *reason = why == ERR_GUARD       ? "guard"
                          : why == ERR_INTERRUPT ? "interrupted"
@@ -320,7 +319,7 @@ static void save_last_state(struct run *r, enum err why)
                     r->checkpoint, r->snapshots.path);
 }
 
-/* --- the beginning --- */
+/* --- start --- */
 
 enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], struct diag *d)
 {
@@ -338,22 +337,21 @@ enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], 
     if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
     const size_t whole = strlen(name);
     const size_t length = whole > 4 && strcmp(name + whole - 4, ".cfg") == 0 ? whole - 4 : whole;
-    /* A name of dots would be another folder than one in runs/. */
+    /* A name of dots would be a folder outside of runs/. */
     if (strspn(name, ".") >= length)
-        return diag_fail(
-            d, ERR_INPUT,
-            "%s: the folder of the results takes its name from the case, and '%.*s' is "
-            "none; choose one with --out",
-            o->case_path, (int)length, name);
+        return diag_fail(d, ERR_INPUT,
+                         "%s: the folder of the results is named after the case, but '%.*s' is "
+                         "none; choose one with --out",
+                         o->case_path, (int)length, name);
     snprintf(path, PATH_BYTES, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
     return ERR_OK;
 }
 
-/* Writes case.cfg beside the one that may be there; its text stays in r->case_text. */
+/* Writes case.cfg.part, and keeps its text in r->case_text. */
 static enum err write_case(struct run *r, char part[PATH_BYTES])
 {
     TRY(path_join(part, r->folder.path, "case.cfg.part", r->diag));
-    unlink(part); /* of a run that was killed, or a link */
+    unlink(part); /* a killed run may have left one */
     TRY(scene_write(&r->session.scene, part, r->diag));
     size_t size;
     const enum err e = file_read(part, &r->case_text, &size, r->diag);
@@ -366,7 +364,7 @@ static enum err put_case(struct run *r, const char *part)
     char path[PATH_BYTES];
     TRY(path_join(path, r->folder.path, "case.cfg", r->diag));
     if (rename(part, path) != 0)
-        return diag_fail(r->diag, ERR_IO, "%s: cannot be put in place", path);
+        return diag_fail(r->diag, ERR_IO, "%s: cannot be replaced by %s", path, part);
     return directory_sync(r->folder.path, r->diag);
 }
 
@@ -385,12 +383,12 @@ static enum err start_fresh(struct run *r)
     return ERR_OK;
 }
 
-static enum err start_again(struct run *r)
+static enum err start_restart(struct run *r)
 {
     const double time = r->s->state.time;
     const struct scene_output *const out = &r->session.scene.output;
     double row[SERIES_MAX_COLUMNS];
-    /* First, so that a kill in between leaves no checkpoint that is later than the rows. */
+    /* First, so that a kill in between leaves no checkpoint that is newer than the rows. */
     TRY(checkpoint_remove_later(r->folder.path, r->s->state.steps, r->diag));
     TRY(snapshots_resume(&r->snapshots, r->folder.path, &r->session.scene, SPHFSI_VERSION,
                          due_kept_until(out->snapshot_interval, time),
@@ -412,7 +410,8 @@ static enum err start_again(struct run *r)
     return ERR_OK;
 }
 
-/* A fork's may be a file or the folder of a run. */
+/* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in a
+ * folder. */
 static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
@@ -430,7 +429,7 @@ static enum err load_checkpoint(struct run *r)
     const enum err missing = find_checkpoint(r);
     if (missing == ERR_MEMORY) return missing;
     if (missing) {
-        /* One that is not there or not sound is wrong input: nothing was started. */
+        /* A missing or damaged checkpoint is wrong input: nothing was started. */
         r->diag->code = ERR_INPUT;
         return ERR_INPUT;
     }
@@ -440,19 +439,21 @@ static enum err load_checkpoint(struct run *r)
     TRY(fork ? change_for_fork(info.case_text, r->case_text, r->diag)
              : change_for_restart(info.case_text, r->case_text, r->diag));
     if (strcmp(info.version, SPHFSI_VERSION) != 0)
-        diag_warn(r->diag, "%s was written by version %s, this is %s: the bits may differ",
+        diag_warn(r->diag, "%s was written by version %s, but this is %s: the bits may differ",
                   r->restarted_from, info.version, SPHFSI_VERSION);
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
              : checkpoint_apply(&r->image, r->s, r->diag));
     if (r->s->state.time > r->session.scene.top.end_time)
-        return diag_fail(r->diag, ERR_INPUT, "%s: %s is at %.6g s, beyond the end at %.6g s", what,
-                         r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
+        return diag_fail(r->diag, ERR_INPUT,
+                         "%s: %s is at %.6g s, beyond the end at %.6g s; choose a later end_time "
+                         "or --until",
+                         what, r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
                 r->s->state.time, (long long)r->s->state.steps);
     return ERR_OK;
 }
 
-/* A restart touches the files of the run only after its checkpoint has been found sound. */
+/* Prepares all files. A restart changes files of the run only after its checkpoint has been checked. */
 static enum err begin(struct run *r)
 {
     char part[PATH_BYTES];
@@ -463,7 +464,7 @@ static enum err begin(struct run *r)
         return e;
     }
     TRY(put_case(r, part));
-    TRY(r->options->restart ? start_again(r) : start_fresh(r));
+    TRY(r->options->restart ? start_restart(r) : start_fresh(r));
     const double time = r->s->state.time;
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
@@ -477,8 +478,8 @@ static enum err begin(struct run *r)
     return ERR_OK;
 }
 
-/* What it cost by phase, and how far off it was. */
-static void say_close(const struct run *r)
+/* Prints the cost by phase, and the deviations from references. */
+static void say_results(const struct run *r)
 {
     char text[1024] = "";
     size_t at = 0;
@@ -509,7 +510,7 @@ static void warn_of_losses(const struct run *r)
                   (long long)lost, (long long)(lost + left));
 }
 
-static enum err carry_out(struct run *r)
+static enum err simulate(struct run *r)
 {
     const enum err failed = advance(r);
     if (failed) {
@@ -522,7 +523,7 @@ static enum err carry_out(struct run *r)
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
-    say_close(r);
+    say_results(r);
     warn_of_losses(r);
     if (r->session.scene.n_probe > 0)
         session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
@@ -568,7 +569,7 @@ static enum err run_session(struct run *r, const char *path, enum run_dir_use us
     TRY(open_references(r));
     TRY(run_dir_open(&r->folder, path, use, r->diag));
     TRY(begin(r));
-    return carry_out(r);
+    return simulate(r);
 }
 
 enum err run_case(const struct sphfsi_options *o, struct diag *d)
@@ -577,7 +578,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     const enum run_dir_use use = o->restart ? RUN_DIR_CONTINUE : RUN_DIR_FRESH;
     if (o->restart && o->fork)
         return diag_fail(d, ERR_INPUT,
-                         "options: a restart continues a run, a fork starts one: choose one");
+                         "options: a restart continues a run, a fork starts a new one; choose one");
     TRY(run_dir_of_case(o, path, d));
     TRY(run_dir_check(path, use, d)); /* before the work of building the simulation */
     struct run *r = calloc(1, sizeof *r);

@@ -45,12 +45,13 @@ static enum err check_interval(const struct scene *scene, const char *key, doubl
 {
     const double least = 1e-9 * scene->top.end_time;
     if (interval == 0 || interval >= least) return ERR_OK;
-    return diag_fail(d, ERR_INPUT, "%s: %s = %g s is less than %g s, a billionth of end_time",
+    return diag_fail(d, ERR_INPUT,
+                     "%s: %s = %g s is less than %g s, 1e-9 of end_time; choose a longer one",
                      scene->path, key, interval, least);
 }
 
-/* Intervals follow the case's own end_time, so that a run that --until ends early writes the same
- * rows, and takes the same steps, as the whole one. */
+/* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes the same
+ * rows and takes the same steps as the whole one. */
 static enum err settle_times(struct scene *scene, double until, struct diag *d)
 {
     struct scene_output *out = &scene->output;
@@ -71,11 +72,11 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
 static enum err check_options(const struct sphfsi_options *o, struct diag *d)
 {
     if (!o->case_path && !o->case_text)
-        return diag_fail(d, ERR_INPUT, "options: neither a case file nor its text is given");
+        return diag_fail(d, ERR_INPUT, "options: set case_path or case_text");
     if (o->threads < 0 || o->threads > 4096)
         return diag_fail(d, ERR_INPUT,
-                         "threads = %d: from 1 to 4096 are possible, 0 leaves it to "
-                         "OpenMP",
+                         "threads = %d: from 1 to 4096 are possible, or 0 for the number that "
+                         "OpenMP chooses",
                          o->threads);
     if (!(o->until >= 0 && o->until <= 1e9))
         return diag_fail(d, ERR_INPUT, "until = %g: more than 0 and up to 1e9 seconds are possible",

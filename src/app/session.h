@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * A scene and its simulation, opened as the options of the public header ask. */
+ * A scene and its simulation, opened with the options of the public header. */
 #ifndef SPHFSI_APP_SESSION_H
 #define SPHFSI_APP_SESSION_H
 
@@ -12,8 +12,8 @@ struct session {
     struct simulation simulation;
 };
 
-/* Reads the case, settles what output.* and --until leave open, sets the number of threads. On
- * failure nothing remains to be freed. */
+/* Reads the case, sets default intervals of [output], applies --until and the number of threads. On failure
+ * nothing remains to be freed. */
 enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
@@ -25,11 +25,11 @@ void session_close(struct session *x);
 /* A diag whose warnings go to the message callback. */
 struct diag session_diag(const struct sphfsi_options *o);
 
-/* A line for the user, through the message callback. */
+/* Sends one line to the user, through the message callback. */
 void session_say(const struct sphfsi_options *o, const char *format, ...) SPHFSI_PRINTF(2, 3);
 
-/* A time as it is meant: without the last bits that arithmetic left, so that the grids of several
- * outputs, which k * interval may miss differently, meet in one number. */
+/* Rounds a time to 12 digits, so that the times k * interval of several outputs are equal where they should
+ * be and do not differ by round-off. */
 double session_time(double time);
 
 #endif

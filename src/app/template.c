@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Cases to start from. */
+ * Templates of cases. */
 #include "app/manual.h"
 
 #include <string.h>

@@ -158,6 +158,7 @@ struct scene {
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
     double domain_lower[2], domain_upper[2]; /* in effect */
+    bool off_lattice; /* a shape does not fit the lattice: its size depends on dp */
 };
 
 /* Reads and checks a case file. `sets` are the --set arguments ("key=value" or "section.key=value";

@@ -36,6 +36,7 @@ static void warn_box(struct sampler *g, const struct region *region, const struc
         if (on_lattice(a) && on_lattice(b)) continue;
         const double n = points_between(region, c, low, high);
         const double from = region->origin[c] + ceil(a - 0.5 - 1e-6) * dp;
+        g->scene->off_lattice = true;
         diag_warn(g->diag,
                   "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
                   "sampled as %.0f %s from %g to %g m; edges at %g and %g m would fit",
@@ -59,6 +60,7 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
             char place[LOCATION_TEXT];
             scene_location(g->scene, region->list->item[shape].line, place);
             const double fit = region->origin[c] + round(cells) * region->dp;
+            g->scene->off_lattice = true;
             diag_warn(g->diag,
                       "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
                       "%c = %g m would fit",

@@ -48,6 +48,7 @@ static void choose_lattice(struct sampler *g, struct region *region)
         shifted = true;
     }
     if (!shifted) return;
+    g->scene->off_lattice = true;
     char place[LOCATION_TEXT];
     scene_location(s, region->line, place);
     diag_warn(g->diag,

@@ -69,8 +69,8 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The same for a case with other physics. Particles are sorted again, since the grid may differ; a motion must
- * continue from the present position of its wall; dissipation is counted from this time. */
+/* The same for a case with other physics. Particles are sorted again, since the grid may differ; a motion
+ * must continue from the present position of its wall; dissipation is counted from this time. */
 enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -39,8 +39,8 @@ static enum err fork_walls(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they are; the
- * motion of a clamp must continue from their present displacement. */
+/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they are;
+ * the motion of a clamp must continue from their present displacement. */
 static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
 {
     struct particles *const p = &s->kind[KIND_SOLID];

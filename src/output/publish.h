@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Swaps a finished file with the one of the final name, in a thread of its own, since syncing takes some
- * milliseconds. The file is synced before the swap and the folder after it, so that both files survive a power
- * failure. */
+ * milliseconds. The file is synced before the swap and the folder after it, so that both files survive a
+ * power failure. */
 #ifndef SPHFSI_OUTPUT_PUBLISH_H
 #define SPHFSI_OUTPUT_PUBLISH_H
 

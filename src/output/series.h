@@ -18,8 +18,8 @@ enum err series_create(struct series *s, const char *folder, const char *name, c
                        struct diag *d) SPHFSI_CHECKED;
 
 /* Continues a file of an earlier run: keeps the rows up to `time` and drops later and incomplete ones. The
- * header must be the same. `first` (or NULL) receives the values of the first row, `last` the time of the last
- * row kept, or -1. */
+ * header must be the same. `first` (or NULL) receives the values of the first row, `last` the time of the
+ * last row kept, or -1. */
 enum err series_resume(struct series *s, const char *folder, const char *name, const char *header,
                        double time, double *first, double *last, struct diag *d) SPHFSI_CHECKED;
 

@@ -182,8 +182,8 @@ static int64_t file_bytes(const char *path)
     return stat(path, &info) == 0 ? (int64_t)info.st_size : 0;
 }
 
-/* Reserves the disk space that the spare can need: after a failed write HDF5 crashes at the end of the program.
- * HDF5 truncates the file to its real size when it closes it. */
+/* Reserves the disk space that the spare can need: after a failed write HDF5 crashes at the end of the
+ * program. HDF5 truncates the file to its real size when it closes it. */
 static bool reserve_space(const struct snapshots *w, int64_t points)
 {
 #if _POSIX_ADVISORY_INFO > 0
@@ -199,8 +199,8 @@ static bool reserve_space(const struct snapshots *w, int64_t points)
 #endif
 }
 
-/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they are missing
- * there; then appends a snapshot of `s`, unless that is NULL. */
+/* Copies the first `steps` snapshots of the named file (negative: all) to the spare, as far as they are
+ * missing there; then appends a snapshot of `s`, unless that is NULL. */
 static bool fill_spare(const struct snapshots *w, int64_t steps, struct simulation *s)
 {
     const int64_t points = s ? count_points(s) : 0, most = s ? count_capacity(s) : 0;
@@ -273,8 +273,8 @@ enum err snapshots_create(struct snapshots *w, const char *folder, const struct 
     return path_join(w->spare, folder, "fields.vtkhdf.spare", d);
 }
 
-/* Counts the snapshots of the named file, and those up to `time`; `last`: the time of the last of these. errno
- * is ENOMEM if memory is missing. */
+/* Counts the snapshots of the named file, and those up to `time`; `last`: the time of the last of these.
+ * errno is ENOMEM if memory is missing. */
 static bool count_snapshots(const struct snapshots *w, double time, int64_t *all, int64_t *keep,
                             double *last)
 {

@@ -8,8 +8,9 @@
 #include "output/snapshot_file.h"
 #include "output/publish.h"
 
-/* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the spare file,
- * then the two swap names (output/publish.h). The spare is one snapshot older and is brought up to date first. */
+/* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the spare
+ * file, then the two swap names (output/publish.h). The spare is one snapshot older and is brought up to
+ * date first. */
 struct snapshots {
     char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;
@@ -18,15 +19,16 @@ struct snapshots {
     struct publishing publishing;
 };
 
-/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or -1. */
+/* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or
+ * -1. */
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, struct diag *d) SPHFSI_CHECKED;
 enum err snapshots_resume(struct snapshots *w, const char *folder, const struct scene *scene,
                           const char *version, double time, double *last, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Appends a snapshot. It is in the named file when snapshots_wait or the next snapshots_write returns: a thread
- * waits for the disk meanwhile. */
+/* Appends a snapshot. It is in the named file when snapshots_wait or the next snapshots_write returns: a
+ * thread waits for the disk meanwhile. */
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 enum err snapshots_wait(struct snapshots *w, struct diag *d) SPHFSI_CHECKED;
 

@@ -83,7 +83,8 @@ struct snapshot_layout snapshot_file_layout(const struct scene *scene)
 /* --- one dataset --- */
 
 /* Rows of a chunk: those of a snapshot, or of one of its equal parts if it exceeds POINT_CHUNK_MOST. Chunks
- * that two snapshots share would be compressed twice, so a number of parts that divides the rows is sought. */
+ * that two snapshots share would be compressed twice, so a number of parts that divides the rows is sought.
+ */
 static int64_t chunk_rows(const struct column *c, int64_t n)
 {
     if (c->growth == BY_STEP) return STEP_CHUNK;
@@ -519,8 +520,8 @@ int64_t snapshot_file_point_bytes(const struct snapshot_layout *layout)
     return bytes;
 }
 
-/* The rows, and the last chunk of each dataset a second time, since HDF5 moves it when it grows. METADATA_BYTES
- * covers datasets that grow by one row per snapshot. */
+/* The rows, and the last chunk of each dataset a second time, since HDF5 moves it when it grows.
+ * METADATA_BYTES covers datasets that grow by one row per snapshot. */
 int64_t snapshot_file_bytes(const struct snapshot_layout *layout, int64_t n)
 {
     return snapshot_file_point_bytes(layout) * (n + 1 + chunk_rows(&columns[D_POINTS], n)) +

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * For snapshot_file.c: compresses chunks in the format of HDF5's filters. HDF5 itself would use one thread. */
+ * For snapshot_file.c: compresses chunks in the format of HDF5's filters. HDF5 itself would use one thread.
+ */
 #ifndef SPHFSI_OUTPUT_SNAPSHOT_PACK_H
 #define SPHFSI_OUTPUT_SNAPSHOT_PACK_H
 

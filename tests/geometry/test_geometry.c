@@ -170,6 +170,7 @@ static void test_a_solid_off_the_lattice_keeps_its_corner(void)
 {
     must_read(gate, "x0=20.3 mm");
     TEST_ASSERT_NOT_NULL(strstr(warnings, "its own lattice begins there"));
+    TEST_ASSERT_TRUE(scene.off_lattice);
     TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20.8e-3, scene.points[KIND_SOLID].x[0]);
     TEST_ASSERT_TRUE(nearest() > 0.69);
@@ -185,6 +186,15 @@ static void test_off_lattice_edges_are_told(void)
                              "at 0 and 0.0055 m would fit\n",
                              warnings);
     TEST_ASSERT_EQUAL_INT64(11 * 10, total());
+    TEST_ASSERT_TRUE(scene.off_lattice);
+    must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = polygon 0, 0; 5.3 mm, 0; 5.3 mm, 5 mm; 0, 5 mm\n",
+              NULL);
+    TEST_ASSERT_TRUE(scene.off_lattice);
+    must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 5.5 mm, 5 mm\n",
+              NULL);
+    TEST_ASSERT_FALSE(scene.off_lattice);
 }
 
 static void test_thin_walls_and_slits_are_told(void)
