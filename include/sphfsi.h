@@ -110,8 +110,8 @@ SPHFSI_API const char *sphfsi_version(void);
 /** Sentence of the last failure in this thread; "" before the first. Valid until the next one. */
 SPHFSI_API const char *sphfsi_error(void);
 
-/** Exit status that stands for a result: 0; 1 wrong input; 2 everything else, but INTERRUPT, which
- * is 128 and the number of the signal. */
+/** Exit status for a result: 0; 1 wrong input; 2 everything else, except INTERRUPT, which
+ * is 128 plus the number of the signal. */
 SPHFSI_API int sphfsi_exit_status(enum sphfsi_status status, int signal_number);
 
 /** The name most similar to a misspelt word, for messages; NULL if none is similar. */

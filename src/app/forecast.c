@@ -123,7 +123,7 @@ static bool cache_find(uint64_t key, struct unit_costs *c)
     return found;
 }
 
-/* A line is one write; a file that has grown out of hand is begun anew. */
+/* Appends a line with one write(); a file above CACHE_BYTES is replaced. */
 static void cache_keep(uint64_t key, const struct unit_costs *c)
 {
     char path[PATH_BYTES], line[64 + 32 * (3 + PHASE_COUNT)];

@@ -187,7 +187,7 @@ static int read_number(const char *option, const char *text, double low, double 
                     option, text);
 }
 
-/* Wall time: a number with s, min or h behind it. */
+/* Wall time: a number followed by s, min or h. */
 static int read_duration(const char *text, double *seconds)
 {
     static const struct {

@@ -253,21 +253,21 @@ static int describe(const struct scene *s, enum kind kind, int body, char *text,
         snprintf(text, size, "%s %s: %.4g x %.4g m, %lld particles", kind_names[kind],
                  body_name(s, kind, body), n ? b.x1 - b.x0 : 0, n ? b.y1 - b.y0 : 0, (long long)n);
     char *const rest = text + at;
-    const size_t room = size - (size_t)at;
-    if (kind == KIND_FLUID) return snprintf(rest, room, "; %g kg/m^3, c0 %.4g m/s", s->rho0, s->c0);
+    const size_t left = size - (size_t)at;
+    if (kind == KIND_FLUID) return snprintf(rest, left, "; %g kg/m^3, c0 %.4g m/s", s->rho0, s->c0);
     if (kind == KIND_WALL) {
         const char *const motion = s->wall[body].motion;
-        return snprintf(rest, room, motion[0] ? "; moved by %s" : "; at rest", motion);
+        return snprintf(rest, left, motion[0] ? "; moved by %s" : "; at rest", motion);
     }
     const struct scene_solid *const m = &s->solid[body];
     const struct scene_points *const p = &s->points[KIND_SOLID];
-    int64_t held = 0;
-    for (int64_t i = 0; i < p->n; i++) held += p->body[i] == body && p->clamped && p->clamped[i];
+    int64_t clamped = 0;
+    for (int64_t i = 0; i < p->n; i++) clamped += p->body[i] == body && p->clamped && p->clamped[i];
     const int written =
-        snprintf(rest, room, "; %g kg/m^3, E %.4g Pa, nu %g; ", m->density, m->young, m->poisson);
-    if (held == 0) return snprintf(rest + written, room - (size_t)written, "nothing clamped");
-    return snprintf(rest + written, room - (size_t)written, "%lld clamped (hatched)",
-                    (long long)held);
+        snprintf(rest, left, "; %g kg/m^3, E %.4g Pa, nu %g; ", m->density, m->young, m->poisson);
+    if (clamped == 0) return snprintf(rest + written, left - (size_t)written, "nothing clamped");
+    return snprintf(rest + written, left - (size_t)written, "%lld clamped (hatched)",
+                    (long long)clamped);
 }
 
 static void describe_probe(const struct scene_probe *p, char *text, size_t size)

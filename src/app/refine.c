@@ -28,6 +28,13 @@ struct refinement {
 enum measure { FINAL, PEAK, SETTLED, MEASURES };
 static const char *const measure_names[MEASURES] = {"final", "peak", "settled"};
 
+/* Units of the columns of ledger.csv; the first is the time. */
+static const char *const ledger_units[] = {
+#define LEDGER(column, unit, meaning) unit,
+    LEDGER_COLUMNS(LEDGER)
+#undef LEDGER
+};
+
 /* Richardson extrapolation; band: grid convergence index with a factor of 1.25 (Roache 1994; Celik et
  * al. 2008), the order taken as 2 at most. Where the values do not converge monotonically, or slower
  * than with order 0.5, three times the largest difference (after Eca and Hoekstra 2014). */
@@ -120,7 +127,7 @@ static bool has_checkpoint(const char *folder)
     return found;
 }
 
-/* A run that was killed before its first checkpoint starts anew: its few files go. */
+/* Removes the files of a run that was killed before its first checkpoint, so that it can start again. */
 static void remove_partial_run(const char *folder)
 {
     static const char *const names[] = {"probes.csv", "ledger.csv", "fields.vtkhdf",
@@ -243,13 +250,14 @@ static void say_columns(const struct refinement *x, struct json *j, const char *
         char text[2 * SCENE_NAME];
         name += strcspn(name, ",") + 1;
         snprintf(text, sizeof text, "%.*s", (int)strcspn(name, ","), name);
-        const bool energy = strstr(text, "_J_per_m") && value[0][c][FINAL] != 0;
-        if (!ledger || energy) session_say(x->options, "%s", text);
+        const bool print =
+            !ledger || (c + 1 < (int)COUNT_OF(ledger_units) &&
+                        strcmp(ledger_units[c + 1], "J_per_m") == 0 && value[0][c][FINAL] != 0);
+        if (print) session_say(x->options, "%s", text);
         json_open(j, text, '{');
         for (int m = 0; m < MEASURES; m++)
             say_value(x, j, measure_names[m],
-                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]},
-                      !ledger || energy);
+                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]}, print);
         json_close(j, '}');
     }
 }
@@ -303,7 +311,7 @@ static void say_head(const struct refinement *x, struct json *j)
 static void say_foot(const struct refinement *x)
 {
     session_say(x->options,
-                "peak: value of largest size; settled: mean of the last quarter; band: "
+                "peak: value of largest magnitude; settled: mean of the last quarter; band: "
                 "grid convergence index, or 3 times the largest difference without order");
     if (x->off_lattice)
         session_say(

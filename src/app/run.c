@@ -150,7 +150,7 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
         return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
     r->record.snapshots_missed++;
-    diag_warn(why, "the snapshot at %.6g s is left out, the run goes on: %s", time, why->text);
+    diag_warn(why, "the snapshot at %.6g s is left out, the run continues: %s", time, why->text);
     return ERR_OK;
 }
 

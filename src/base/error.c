@@ -4,25 +4,16 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static const struct {
-    int status;
-    const char *meaning;
-} error_rows[] = {
-#define ERROR(name, status, meaning) {status, meaning},
+static const int exit_status[] = {
+#define ERROR(name, status, meaning) status,
 #include "base/errors.def"
 #undef ERROR
 };
 
 int err_status(enum err e)
 {
-    ASSERT((size_t)e < COUNT_OF(error_rows));
-    return error_rows[e].status;
-}
-
-const char *err_meaning(enum err e)
-{
-    ASSERT((size_t)e < COUNT_OF(error_rows));
-    return error_rows[e].meaning;
+    ASSERT((size_t)e < COUNT_OF(exit_status));
+    return exit_status[e];
 }
 
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...)

@@ -11,9 +11,8 @@ enum err {
 #undef ERROR
 };
 
-/* Exit status and one-line meaning of an error, from base/errors.def. */
+/* Exit status of the program for an error, from base/errors.def. */
 int err_status(enum err e);
-const char *err_meaning(enum err e);
 
 /* The first failure, and the receiver of warnings. */
 struct diag {

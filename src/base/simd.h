@@ -32,7 +32,7 @@ typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
 typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* lanes of vdouble */
 
 /* Groups of four lanes. In a sweep each lane of a group is another neighbour j, and each group another
- * particle i, so that sums over j do not depend on the width of a vector. A vector of two doubles is half a
+ * particle i. So sums over j do not depend on the width of a vector. A vector of two doubles is half a
  * group. */
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,

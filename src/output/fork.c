@@ -17,9 +17,9 @@ static enum err check_motion(const struct simulation *s, double at[2], int wall,
     return diag_fail(
         d, ERR_INPUT,
         "fork: [wall %s] would jump at %.6g s from its displacement in the checkpoint, "
-        "(%.6g, %.6g) m, to that of [motion %s], (%.6g, %.6g) m; let the motion begin "
-        "at the displacement in the checkpoint",
-        w->common.name, s->state.time, at[0], at[1], w->motion, to.d[0], to.d[1]);
+        "(%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let the motion begin where the "
+        "checkpoint ends",
+        w->common.name, s->state.time, at[0], at[1], to.d[0], to.d[1], w->motion);
 }
 
 static enum err fork_walls(struct simulation *s, struct diag *d)
@@ -59,10 +59,10 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
         const struct scene_solid *const b = &s->scene->solid[p->body[i]];
         return diag_fail(d, ERR_INPUT,
                          "fork: the clamp of [solid %s] would jump at %.6g s from its displacement "
-                         "in the checkpoint, (%.6g, %.6g) m, to that of [motion %s], (%.6g, %.6g) "
-                         "m; let the motion begin at the displacement in the checkpoint",
-                         b->common.name, s->state.time, ux[i], uy[i], b->clamp_motion, p->ux[i],
-                         p->uy[i]);
+                         "in the checkpoint, (%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let "
+                         "the motion begin where the checkpoint ends",
+                         b->common.name, s->state.time, ux[i], uy[i], p->ux[i], p->uy[i],
+                         b->clamp_motion);
     }
     return ERR_OK;
 }

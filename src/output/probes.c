@@ -131,11 +131,11 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
 /* --- files --- */
 
 /* Appends ",<probe>_<ending>" for each column of a probe. */
-static size_t name_columns(char *header, size_t room, size_t at, const char *name, int quantity)
+static size_t name_columns(char *header, size_t size, size_t at, const char *name, int quantity)
 {
     for (const char *ending = endings[quantity]; *ending;) {
         const int length = (int)strcspn(ending, ",");
-        at += (size_t)snprintf(header + at, room - at, ",%s_%.*s", name, length, ending);
+        at += (size_t)snprintf(header + at, size - at, ",%s_%.*s", name, length, ending);
         ending += length + (ending[length] == ',');
     }
     return at;
@@ -146,16 +146,16 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
                             struct diag *d)
 {
     struct probe_file *const f = &p->file[p->n_files];
-    const size_t room = 8 + (size_t)p->n * 5 * (SCENE_NAME + 24);
-    char *const header = arena_alloc(a, room, 1, "header of probes.csv", d);
+    const size_t size = 8 + (size_t)p->n * 5 * (SCENE_NAME + 24);
+    char *const header = arena_alloc(a, size, 1, "header of probes.csv", d);
     if (!header) return ERR_MEMORY;
-    size_t at = (size_t)snprintf(header, room, "time_s");
+    size_t at = (size_t)snprintf(header, size, "time_s");
     *f = (struct probe_file){.header = header, .columns = 1};
     for (int k = 0; k < p->n; k++) {
         const struct scene_probe *const sp = &scene->probe[k];
         if (only >= 0 ? k != only : sp->interval > 0) continue;
         p->probe[k].file = p->n_files;
-        at = name_columns(header, room, at, sp->common.name, sp->quantity);
+        at = name_columns(header, size, at, sp->common.name, sp->quantity);
         f->columns += p->probe[k].columns;
         f->refresh |= needs_refresh(sp->quantity);
         f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;
