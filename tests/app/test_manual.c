@@ -156,7 +156,7 @@ static void every_template_runs(void)
 static void an_unknown_template_names_the_known(void)
 {
     TEST_ASSERT_NULL(sphfsi_template("dambreak"));
-    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "but dam_break"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is dam_break"));
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "cantilever"));
 }
 

@@ -18,7 +18,7 @@ for name in $names; do
     "$sphfsi" --new "$name" >"$name.cfg" || fail "--new $name"
     "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] || fail "--preview $name"
 done
-refuses 1 "but dam_break" --new dambreak
+refuses 1 "nearest name is dam_break" --new dambreak
 refuses 1 "did you mean \`gravity\`" --preview gate.cfg --set gravty=1,2
 refuses 1 "nearest one is --preview" --previw gate.cfg
 refuses 1 "takes no operand" --keys=all

@@ -119,7 +119,7 @@ static void count_warning(void *context, const char *text)
     (void)context;
     warnings += strstr(text, "step-000000003.ckpt: is not a sound checkpoint: ") != NULL ||
                 strstr(text, "step-000000003.ckpt: has format") != NULL ||
-                strstr(text, "step-000000003.ckpt: was written in big-endian") != NULL;
+                strstr(text, "step-000000003.ckpt: has big-endian byte order") != NULL;
 }
 
 static void store_two(const char *folder)
