@@ -44,8 +44,8 @@ static void *publish_thread(void *publishing)
 
 void publish_begin(struct publishing *p, const char *folder, const char *path, const char *spare)
 {
-    *p = (struct publishing){.folder = folder, .path = path, .spare = spare, .begun = true};
     ASSERT(!p->begun);
+    *p = (struct publishing){.folder = folder, .path = path, .spare = spare, .begun = true};
     /* The new thread inherits a mask that blocks all signals: other threads receive them. */
     sigset_t all, before;
     sigfillset(&all);
