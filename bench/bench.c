@@ -7,6 +7,7 @@
 #include "base/simd.h"
 #include "time/simulation.h"
 #include "output/snapshot.h"
+#include "geometry/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -170,7 +171,7 @@ struct sim {
 static bool sim_open(struct sim *x, const char *text)
 {
     memset(x, 0, sizeof *x);
-    if (scene_parse(&x->scene, text, "bench.cfg", 0, NULL, &x->diag)) {
+    if (scene_load_text(&x->scene, text, "bench.cfg", 0, NULL, &x->diag)) {
         fprintf(stderr, "%s\n", x->diag.text);
         return false;
     }

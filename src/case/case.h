@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Inside of the reader of case files: what its rooms share. Others use case/scene.h.
+ * Inside of the reader of case files: what its files share. Others use case/scene.h.
  *
  * The format. Lines of `key = value`, `[section]` or `[section NAME]`, and comments from # to the end
  * of the line. Keys before the first section are the top of the file. [constants] names free numbers;
@@ -64,13 +64,10 @@ struct reader {
     struct case_section *sections; /* the first one is the top of the file */
     struct constant *constants;    /* constants, and the numbers at the top, which are names too */
     int depth;                     /* of constants that wait for constants */
+    bool cause_named;              /* the message names the constant that is wrong */
 };
 
-/* Room for any path in front of a message. */
-enum { LOCATION_TEXT = 300 };
-/* FILE:LINE, the path cut short if it is very long. */
-void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
-
+/* case/messages.c */
 /* Fails with "FILE:LINE: ..." or "--set ...: ...". */
 enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
 enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
@@ -83,22 +80,29 @@ enum err bad_value(struct reader *r, const struct entry *e, const char *format, 
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
 enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
 
-/* case/values.c: an entry's text to its value in a section's struct. */
+/* case/numbers.c: pieces of a value, constants, numbers. */
+struct slice slice_of(const char *text);
+/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none is left. */
+bool slice_next(struct slice *rest, char separator, struct slice *piece);
+int slice_count(struct slice text, char separator);
+/* Finds all constants, and the numbers at the top, by their names; then evaluates every one. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
-enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
-    SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
+/* The constant of a name: `find` of struct expr_names; `context` is the reader. */
+bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
+/* A number of the dimension `unit` from a piece of an entry's value. */
+enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
+                     double *value) SPHFSI_CHECKED;
+enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
+                        const char *unit) SPHFSI_CHECKED;
 
 /* case/shapes.c: one shape more for a list. */
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
     SPHFSI_CHECKED;
-/* A number of the dimension `unit` from a piece of an entry's value. */
-enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
-                     double *value) SPHFSI_CHECKED;
-/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
- * is left. */
-bool slice_next(struct slice *rest, char separator, struct slice *piece);
-int slice_count(struct slice text, char separator);
+
+/* case/values.c: an entry's text to its value in a section's struct. */
+enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
+    SPHFSI_CHECKED;
 
 /* case/check.c: what concerns several values at once. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
@@ -109,8 +113,5 @@ enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
 /* case/motion.c */
 enum err motion_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
-
-/* A file name as the case file gives it, seen from the working directory; false: too long. */
-bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
 
 #endif

@@ -6,18 +6,6 @@
 
 static const char blanks[] = " \t,";
 
-bool scene_snapshot_has(const struct scene *s, const char *field)
-{
-    const size_t length = strlen(field);
-    const char *word = s->output.snapshot_fields;
-    if (strcmp(word, "all") == 0) return true;
-    for (size_t n; *(word += strspn(word, blanks)); word += n) {
-        n = strcspn(word, blanks);
-        if (n == length && strncmp(word, field, n) == 0) return true;
-    }
-    return false;
-}
-
 enum err case_check_output(struct reader *r)
 {
     static const char *const names[] = {

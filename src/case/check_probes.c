@@ -6,19 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const enum probe_target targets[PROBE_QUANTITIES] = {
-#define QUANTITY(NAME, name, target, columns, meaning) TARGET_##target,
-#include "case/quantities.def"
-#undef QUANTITY
-};
-
-enum probe_target scene_probe_target(const struct scene_probe *probe)
-{
-    const enum probe_target target = targets[probe->quantity];
-    if (target != TARGET_ANY_POINT) return target;
-    return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
-}
-
 static enum err no_section(struct reader *r, const struct scene_probe *p, bool walls_too)
 {
     struct nearest near = {0};
@@ -45,7 +32,7 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
 {
     char quantity[SCENE_NAME];
     param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
-    const enum probe_target target = targets[p->quantity];
+    const enum probe_target target = scene_probe_target(p);
     if (*p->body && target != TARGET_BODY)
         return bad_line(r, p->common.line,
                         "[probe %s] measures %s of the fluid, at a fixed place; `body` is to go",

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Recursive descent to a small stack program; constant parts are folded while they are read, so a
  * value without x and y is a program of one number. */
+#include "case/expr.h"
 #include "case/expr_ops.h"
 #include "case/scene.h"
 

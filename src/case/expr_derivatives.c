@@ -3,6 +3,7 @@
  * two derivatives along. */
 #include <math.h>
 
+#include "case/expr.h"
 #include "case/expr_ops.h"
 #include "case/scene.h"
 

@@ -3,7 +3,7 @@
 #ifndef SPHFSI_CASE_EXPR_OPS_H
 #define SPHFSI_CASE_EXPR_OPS_H
 
-#include "case/expr.h"
+#include "base/base.h"
 
 enum op_code {
     OP_NUMBER,

@@ -1,69 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * From a case file to a scene: defaults, values in the order of the file, checks, sampling. */
+ * From a case file to a scene: defaults, values in the order of the file, checks. */
 #include "case/case.h"
 
 #include <errno.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-/* --- messages --- */
-
-void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT])
-{
-    if (line == 0) {
-        snprintf(place, LOCATION_TEXT, "--set");
-        return;
-    }
-    const size_t length = strlen(s->path), most = 270;
-    const bool cut = length > most;
-    snprintf(place, LOCATION_TEXT, "%s%.270s:%d", cut ? "..." : "",
-             s->path + (cut ? length - most : 0), line);
-}
-
-enum err bad_line(struct reader *r, int line, const char *format, ...)
-{
-    char text[700], place[LOCATION_TEXT];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    scene_location(r->scene, line, place);
-    return diag_fail(r->diag, ERR_INPUT, "%s: %s", place, text);
-}
-
-enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
-{
-    char text[700];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    if (!e->set) return bad_line(r, e->line, "%s", text);
-    return diag_fail(r->diag, ERR_INPUT, "--set %.100s: %s", e->set, text);
-}
-
-enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
-{
-    char text[600];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    const bool cut = strlen(e->value) > 60;
-    return bad_entry(r, e, "%s = %.60s%s: %s", e->key, e->value, cut ? "..." : "", text);
-}
-
-bool scene_file(const struct scene *s, const char *name, char *path, size_t size)
-{
-    const char *slash = strrchr(s->path, '/');
-    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - s->path) + 1;
-    const int n = snprintf(path, size, "%.*s%s", folder, s->path, name);
-    return n >= 0 && (size_t)n < size;
-}
 
 /* --- sections --- */
 
@@ -327,11 +271,10 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     for (int k = 0; k < r->n_sections; k++) TRY(read_section(r, k));
     TRY(check_needed(r));
     TRY(case_check(r));
-    TRY(motion_load(r->scene, r->diag));
-    return scene_sample(r->scene, r->diag);
+    return motion_load(r->scene, r->diag);
 }
 
-/* --- the reader's face --- */
+/* --- of a text, of a file --- */
 
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d)
@@ -390,72 +333,4 @@ enum err scene_read(struct scene *s, const char *path, int n_sets, const char *c
     if (!err) err = scene_parse(s, text, path, n_sets, sets, d);
     free(text);
     return err;
-}
-
-void scene_free(struct scene *s)
-{
-    arena_free(&s->arena);
-    memset(s, 0, sizeof *s);
-}
-
-int scene_find_motion(const struct scene *s, const char *name)
-{
-    for (int k = 0; k < s->n_motion; k++)
-        if (strcmp(s->motion[k].common.name, name) == 0) return k;
-    return -1;
-}
-
-int scene_find_solid(const struct scene *s, const char *name)
-{
-    for (int k = 0; k < s->n_solid; k++)
-        if (strcmp(s->solid[k].common.name, name) == 0) return k;
-    return -1;
-}
-
-double scene_solid_dp(const struct scene *s, int solid)
-{
-    return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
-}
-
-int scene_light_solid(const struct scene *s)
-{
-    int lightest = -1;
-    double least = s->n_fluid > 0 ? 0.5 * s->fluid[0].density : 0;
-    for (int k = 0; k < s->n_solid; k++) {
-        if (s->solid[k].density >= least) continue;
-        least = s->solid[k].density;
-        lightest = k;
-    }
-    return lightest;
-}
-
-bool scene_is_bonded(const struct scene *s, int solid)
-{
-    for (int k = 0; k < s->n_solid; k++) {
-        const char *const to = s->solid[k].joined;
-        if (to[0] && (k == solid || scene_find_solid(s, to) == solid)) return true;
-    }
-    return false;
-}
-
-int scene_find_wall(const struct scene *s, const char *name)
-{
-    for (int k = 0; k < s->n_wall; k++)
-        if (strcmp(s->wall[k].common.name, name) == 0) return k;
-    return -1;
-}
-
-bool scene_pair(const char *text, char name[2][SCENE_TEXT])
-{
-    const char *comma = strchr(text, ',');
-    if (!comma || strchr(comma + 1, ',')) return false;
-    const char *const from[2] = {text, comma + 1}, *const end[2] = {comma, text + strlen(text)};
-    for (int k = 0; k < 2; k++) {
-        const char *a = from[k], *b = end[k];
-        while (a < b && (*a == ' ' || *a == '\t')) a++;
-        while (b > a && (b[-1] == ' ' || b[-1] == '\t')) b--;
-        if (a == b) return false;
-        snprintf(name[k], SCENE_TEXT, "%.*s", (int)(b - a), a);
-    }
-    return true;
 }

@@ -161,7 +161,7 @@ struct scene {
     bool off_lattice; /* a shape does not fit the lattice: its size depends on dp */
 };
 
-/* Reads and checks a case file. `sets` are the --set arguments ("key=value" or "section.key=value";
+/* Reads and checks a case file; the points are sampled by geometry/sampling.h. `sets` are the --set arguments ("key=value" or "section.key=value";
  * a named section is section NAME: "solid gate.young=1e6" or "gate.young=1e6"). On success the
  * caller frees with scene_free; on failure nothing remains to be freed. */
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
@@ -170,10 +170,6 @@ enum err scene_read(struct scene *s, const char *path, int n_sets, const char *c
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *s);
-
-/* Samples all shapes into s->points and fixes h, c0, rho0 and the domain (geometry/sampling.c). Called by
- * scene_read and scene_parse after the sections have been read. */
-enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
 
 /* Whether opposite sides of the domain along an axis are joined. */
 SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
@@ -231,5 +227,11 @@ enum probe_target scene_probe_target(const struct scene_probe *probe);
 
 /* The two names of `a, b`; false: it is something else. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
+
+/* FILE:LINE, the path cut short if it is very long; line 0: --set. */
+enum { LOCATION_TEXT = 300 };
+void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
+/* A file name as the case file gives it, seen from the working directory; false: too long. */
+bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
 
 #endif

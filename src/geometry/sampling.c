@@ -3,6 +3,7 @@
  * 1e-6 dp of an edge counts as lying above and to the right of it, whatever the round-off, so
  * shapes that share an edge neither miss nor double a particle. */
 #include "geometry/sampling.h"
+#include "geometry/load.h"
 
 #include "case/case.h"
 

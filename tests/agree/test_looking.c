@@ -4,6 +4,7 @@
 #include "rig.h"
 
 #include "unity.h"
+#include "geometry/load.h"
 
 #include <math.h>
 #include <string.h>
@@ -94,7 +95,7 @@ static void test_absurd_ratio_of_steps_is_refused(void)
     struct scene scene;
     struct simulation sim;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&scene, plate, "plate.cfg", 0, NULL, &d),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, plate, "plate.cfg", 0, NULL, &d),
                                   d.text);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, "times into the fluid's"), d.text);

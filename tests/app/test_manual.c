@@ -4,6 +4,7 @@
 #include "app/manual.h"
 #include "case/params.h"
 #include "app/preview.h"
+#include "geometry/load.h"
 #include "rig.h"
 #include "tiny.h"
 #include "unity.h"
@@ -98,7 +99,7 @@ static void example_is_accepted(const struct param *p)
     if (is(p, "probe", "point") || is(p, "probe", "to"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);
     diag.code = ERR_OK;
-    const enum err e = scene_parse(&scene, text, "examples.cfg", sets[1] ? 2 : 1, sets, &diag);
+    const enum err e = scene_load_text(&scene, text, "examples.cfg", sets[1] ? 2 : 1, sets, &diag);
     char why[2048];
     snprintf(why, sizeof why, "%s: %s", set, diag.text);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, why);
@@ -127,10 +128,10 @@ static void a_copy_without_its_clamp_is_warned_of(void)
         "[solid right]\nlike = left\nshape = box 0.1, 0, 0.12, 0.1\n";
     const char *const mended = "right.clamp=box 0.1, 0, 0.12, 8 mm";
     struct scene scene;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, posts, "posts.cfg", 0, NULL, &diag));
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, posts, "posts.cfg", 1, &mended, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, posts, "posts.cfg", 1, &mended, &diag));
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(1, warnings);
 }

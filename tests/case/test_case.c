@@ -2,6 +2,7 @@
  * What a good case file means: defaults, constants, --set, inheritance, the effective case. */
 #include "case/expr.h"
 #include "case/params.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <dirent.h>
@@ -26,7 +27,7 @@ static void parse(const char *text, int n_sets, const char *const *sets)
 {
     diag = (struct diag){0};
     scene_free(&scene);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&scene, text, "x.cfg", n_sets, sets, &diag),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, "x.cfg", n_sets, sets, &diag),
                                   diag.text);
 }
 
@@ -217,7 +218,7 @@ static void same_points(const struct scene_points *a, const struct scene_points 
 static void round_trip(void)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, effective, &diag), diag.text);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load(&again, effective, 0, NULL, &diag), diag.text);
     for (int id = 0; id < SECTION_COUNT; id++) {
         const int n = section_count(&scene, (enum section_id)id);
         TEST_ASSERT_EQUAL_INT(n, section_count(&again, (enum section_id)id));
@@ -260,7 +261,7 @@ static int cases_of_folder(const char *name)
         char path[300];
         snprintf(path, sizeof path, "%s/%.250s", name, e->d_name);
         scene_free(&scene);
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&scene, path, 0, NULL, &diag), diag.text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load(&scene, path, 0, NULL, &diag), diag.text);
         round_trip();
         n++;
     }
@@ -287,7 +288,7 @@ static void test_files_are_found_from_the_effective_case(void)
           0, NULL);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_write(&scene, "tests/test_case.tmp", &diag),
                                   diag.text);
-    const enum err err = scene_read(&again, "tests/test_case.tmp", 0, NULL, &diag);
+    const enum err err = scene_load(&again, "tests/test_case.tmp", 0, NULL, &diag);
     remove("tests/test_case.tmp");
     remove("test_case_motion.tmp");
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, err, diag.text);

@@ -2,6 +2,7 @@
  * Bad case files, and the sentence that each of them is answered with (or how it begins). */
 #include "case/params.h"
 #include "case/scene.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -335,7 +336,7 @@ static void test_each_is_refused_with_its_sentence(void)
         struct scene s;
         struct diag d = {0};
         const enum err err =
-            scene_parse(&s, bad[k].text, "bad.cfg", bad[k].set != NULL, &bad[k].set, &d);
+            scene_load_text(&s, bad[k].text, "bad.cfg", bad[k].set != NULL, &bad[k].set, &d);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, err, bad[k].text);
         d.text[strlen(bad[k].message)] = '\0';
         TEST_ASSERT_EQUAL_STRING_MESSAGE(bad[k].message, d.text, bad[k].text);
@@ -384,7 +385,7 @@ static void test_each_key_refuses_a_wrong_value_by_name(void)
                  why);
         struct scene s;
         struct diag d = {0};
-        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_parse(&s, text, "bad.cfg", 0, NULL, &d),
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d),
                                       text);
         TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(message, d.text, strlen(message), text);
         tried++;
@@ -402,7 +403,7 @@ static void read_bytes(const char *bytes, size_t n, const char *message)
     fclose(file);
     struct scene s;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, path, 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, path, 0, NULL, &d));
     remove(path);
     TEST_ASSERT_EQUAL_STRING(message, d.text);
 }
@@ -417,7 +418,7 @@ static void test_a_file_that_is_not_there(void)
 {
     struct scene s;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, "no/such.cfg", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, "no/such.cfg", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING("no/such.cfg: cannot be opened: No such file or directory", d.text);
 }
 
@@ -425,7 +426,7 @@ static void test_a_folder_is_no_file(void)
 {
     struct scene s;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_read(&s, ".", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, ".", 0, NULL, &d));
     TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 

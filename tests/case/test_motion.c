@@ -2,6 +2,7 @@
  * Prescribed motion: at rest before and after, velocity and acceleration the derivatives of the
  * displacement in between. */
 #include "case/scene.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <math.h>
@@ -20,7 +21,7 @@ static enum err read(const char *motion)
     char text[2048];
     snprintf(text, sizeof text, "%s%s", HEAD, motion);
     diag = (struct diag){0};
-    return scene_parse(&scene, text, "motion.cfg", 0, NULL, &diag);
+    return scene_load_text(&scene, text, "motion.cfg", 0, NULL, &diag);
 }
 
 static void must_read(const char *motion)

@@ -3,6 +3,7 @@
  * break, a patch of fluid under tension, an accelerated and a rolling tank. */
 #include "rig.h"
 #include "unity.h"
+#include "geometry/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -22,7 +23,7 @@ void tearDown(void)
 
 static void open(const char *path, int n_sets, const char *const *sets)
 {
-    enum err e = scene_read(&scene, path, n_sets, sets, &diag);
+    enum err e = scene_load(&scene, path, n_sets, sets, &diag);
     if (!e) e = simulation_create(&sim, &scene, &diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, diag.text);
 }

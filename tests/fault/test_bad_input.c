@@ -2,6 +2,7 @@
  * The reader under hostile input: damaged text and failing memory. Nothing may crash, leak or hang;
  * a failure always leaves a sentence. */
 #include "case/scene.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <stdio.h>
@@ -38,7 +39,7 @@ static enum err try(const char *text, int n_sets, const char *const *sets)
 {
     struct scene s;
     struct diag d = {0};
-    const enum err err = scene_parse(&s, text, "x.cfg", n_sets, sets, &d);
+    const enum err err = scene_load_text(&s, text, "x.cfg", n_sets, sets, &d);
     if (err) {
         TEST_ASSERT_EQUAL_INT(err, d.code);
         TEST_ASSERT_TRUE_MESSAGE(strlen(d.text) > 10, text);
@@ -53,7 +54,7 @@ static void test_the_text_itself_is_good(void)
 {
     struct scene s;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_parse(&s, good, "x.cfg", 0, NULL, &d), d.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&s, good, "x.cfg", 0, NULL, &d), d.text);
     scene_free(&s);
 }
 

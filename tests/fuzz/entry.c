@@ -3,6 +3,7 @@
 #include "fuzz.h"
 
 #include "case/scene.h"
+#include "geometry/load.h"
 
 #include <math.h>
 

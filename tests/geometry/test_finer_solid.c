@@ -2,6 +2,7 @@
  * A solid finer than the fluid: sampling, its forces, the fluid's force on it, momentum. */
 #include "rig.h"
 #include "unity.h"
+#include "geometry/load.h"
 
 #include <math.h>
 #include <string.h>
@@ -121,7 +122,7 @@ static void test_bad_input(void)
     for (int k = 0; k < 2; k++) {
         struct scene scene;
         struct diag d = {0};
-        TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_parse(&scene, tank, "t.cfg", 1, &wrong[k], &d));
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, tank, "t.cfg", 1, &wrong[k], &d));
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, "from a third of the dp at the top"), d.text);
     }
 }

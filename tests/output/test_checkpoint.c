@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
 #include "output/checkpoint.h"
+#include "geometry/load.h"
 #include "fuzz.h"
 #include "tiny.h"
 #include "unity.h"
@@ -19,7 +20,7 @@ static char path[PATH_BYTES];
 static void open_with(int n, const char *const *sets)
 {
     diag = (struct diag){.code = ERR_OK};
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&first, &scene, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&second, &scene, &diag));
 }

@@ -8,6 +8,7 @@
 
 #include "tiny.h"
 #include "unity.h"
+#include "geometry/load.h"
 
 static struct scene scene;
 static struct arena arena;
@@ -44,7 +45,7 @@ static enum err open_with(const char *lines, const char *header)
 {
     char text[1000];
     snprintf(text, sizeof text, "%s%s", head, lines);
-    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_parse(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
+    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_load_text(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
                               diag.text);
     return references_open(&references, &scene, 1, &header, &arena, &diag);
 }

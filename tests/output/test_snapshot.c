@@ -2,6 +2,7 @@
  * Snapshots: appended, dropped by a restart, kept when the copy in the making is damaged, held open
  * or cannot be written. Other readers of the file: test_snapshot_reader.py. */
 #include "output/snapshot.h"
+#include "geometry/load.h"
 #include "tiny.h"
 #include "unity.h"
 
@@ -20,7 +21,7 @@ static struct snapshots writer;
 void setUp(void)
 {
     diag = (struct diag){.code = ERR_OK};
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
 }
 
@@ -199,7 +200,7 @@ static void open_with(const char *const *sets, int n)
 {
     tearDown();
     diag = (struct diag){.code = ERR_OK};
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", n, sets, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
 }
 

@@ -4,6 +4,7 @@
 #include "output/snapshot_pack.h"
 
 #include "output/snapshot_file.h"
+#include "geometry/load.h"
 #include "tiny.h"
 #include "unity.h"
 
@@ -192,7 +193,7 @@ static void snapshots_come_back(const char *compression, int threads)
     struct diag diag = {.code = ERR_OK};
     struct scene scene;
     TEST_ASSERT_EQUAL_INT(ERR_OK,
-                          scene_parse(&scene, tiny_case, "tiny.cfg", 1, &compression, &diag));
+                          scene_load_text(&scene, tiny_case, "tiny.cfg", 1, &compression, &diag));
     thread_use(threads);
     /* Chunks for 60 points: of 64 rows, so that snapshots share them and have several. */
     TEST_ASSERT_TRUE(snapshot_file_create(file, &scene, "1.2.3", 60, -1));
@@ -222,7 +223,7 @@ static void files_packed_otherwise_go_on(void)
 {
     struct diag diag = {.code = ERR_OK};
     struct scene scene;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_parse(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
     TEST_ASSERT_TRUE(snapshot_file_create(file, &scene, "1.2.3", 60, -1));
     const struct snapshot_layout layout = snapshot_file_layout(&scene);
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);

@@ -3,6 +3,7 @@
  * double, and with pairs in float. */
 #include "rig.h"
 #include "solid/packed.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <math.h>
@@ -354,7 +355,7 @@ static void test_bodies_need_neighbours(void)
     struct simulation sim;
     struct diag diag = {0};
     const enum err e =
-        scene_parse(&scene, FOIL "shape = box 0.1, 0.1, 0.11, 0.11\n", "t.cfg", 0, NULL, &diag);
+        scene_load_text(&scene, FOIL "shape = box 0.1, 0.1, 0.11, 0.11\n", "t.cfg", 0, NULL, &diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, diag.text);
     const enum err refused = simulation_create(&sim, &scene, &diag);
     scene_free(&scene);

@@ -5,6 +5,7 @@
 #include "output/checkpoint.h"
 #include "case/expr.h"
 #include "case/scene.h"
+#include "geometry/load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -33,7 +34,7 @@ int fuzz_case(const uint8_t *data, size_t size)
     struct scene s;
     struct diag d = {.code = ERR_OK};
     char *text = text_of(data, size);
-    const enum err e = scene_parse(&s, text, "x.cfg", 0, NULL, &d);
+    const enum err e = scene_load_text(&s, text, "x.cfg", 0, NULL, &d);
     judge(e, &d);
     if (e && s.arena.blocks) abort();
     if (!e) scene_free(&s);
@@ -84,7 +85,7 @@ int fuzz_motion(const uint8_t *data, size_t size)
     char text[sizeof table_case + 64];
     snprintf(text, sizeof text, "%s/proc/self/fd/%d\n", table_case, fd);
     struct diag d = {.code = ERR_OK};
-    const enum err e = scene_parse(&s, text, "x.cfg", 0, NULL, &d);
+    const enum err e = scene_load_text(&s, text, "x.cfg", 0, NULL, &d);
     judge(e, &d);
     if (e) return 0;
     for (int k = -1; k < 12; k++) {
@@ -108,7 +109,7 @@ static struct scene small_scene;
 static void open_small(struct simulation *s)
 {
     struct diag d = {.code = ERR_OK};
-    if (small_scene.top.dp == 0 && scene_parse(&small_scene, small_case, "x.cfg", 0, NULL, &d))
+    if (small_scene.top.dp == 0 && scene_load_text(&small_scene, small_case, "x.cfg", 0, NULL, &d))
         abort();
     if (simulation_create(s, &small_scene, &d)) abort();
 }

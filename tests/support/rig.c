@@ -2,6 +2,7 @@
 #include "rig.h"
 
 #include "fluid/eos.h"
+#include "geometry/load.h"
 #include "unity.h"
 
 #include <stdarg.h>
@@ -22,7 +23,7 @@ void rig_open(struct rig *r, const char *text, ...)
     }
     va_end(args);
     rig_close(r);
-    enum err e = scene_parse(&r->scene, text, "rig.cfg", n, sets, &r->diag);
+    enum err e = scene_load_text(&r->scene, text, "rig.cfg", n, sets, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->scene_open = true;
     e = simulation_create(&r->sim, &r->scene, &r->diag);
@@ -60,7 +61,7 @@ void rig_refuses(const char *text, const char *why)
     struct scene scene;
     struct simulation sim;
     struct diag d = {0};
-    enum err e = scene_parse(&scene, text, "t.cfg", 0, NULL, &d);
+    enum err e = scene_load_text(&scene, text, "t.cfg", 0, NULL, &d);
     if (e == ERR_OK) {
         e = simulation_create(&sim, &scene, &d);
         scene_free(&scene);

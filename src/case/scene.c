@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT
+ * What is looked up in a scene: sections by their names, places for messages, files beside the case. */
+#include "case/scene.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void scene_free(struct scene *s)
+{
+    arena_free(&s->arena);
+    memset(s, 0, sizeof *s);
+}
+
+int scene_find_motion(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_motion; k++)
+        if (strcmp(s->motion[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+int scene_find_solid(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_solid; k++)
+        if (strcmp(s->solid[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+double scene_solid_dp(const struct scene *s, int solid)
+{
+    return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
+}
+
+int scene_light_solid(const struct scene *s)
+{
+    int lightest = -1;
+    double least = s->n_fluid > 0 ? 0.5 * s->fluid[0].density : 0;
+    for (int k = 0; k < s->n_solid; k++) {
+        if (s->solid[k].density >= least) continue;
+        least = s->solid[k].density;
+        lightest = k;
+    }
+    return lightest;
+}
+
+bool scene_is_bonded(const struct scene *s, int solid)
+{
+    for (int k = 0; k < s->n_solid; k++) {
+        const char *const to = s->solid[k].joined;
+        if (to[0] && (k == solid || scene_find_solid(s, to) == solid)) return true;
+    }
+    return false;
+}
+
+int scene_find_wall(const struct scene *s, const char *name)
+{
+    for (int k = 0; k < s->n_wall; k++)
+        if (strcmp(s->wall[k].common.name, name) == 0) return k;
+    return -1;
+}
+
+bool scene_pair(const char *text, char name[2][SCENE_TEXT])
+{
+    const char *comma = strchr(text, ',');
+    if (!comma || strchr(comma + 1, ',')) return false;
+    const char *const from[2] = {text, comma + 1}, *const end[2] = {comma, text + strlen(text)};
+    for (int k = 0; k < 2; k++) {
+        const char *a = from[k], *b = end[k];
+        while (a < b && (*a == ' ' || *a == '\t')) a++;
+        while (b > a && (b[-1] == ' ' || b[-1] == '\t')) b--;
+        if (a == b) return false;
+        snprintf(name[k], SCENE_TEXT, "%.*s", (int)(b - a), a);
+    }
+    return true;
+}
+
+/* --- probes and snapshots --- */
+
+static const enum probe_target targets[PROBE_QUANTITIES] = {
+#define QUANTITY(NAME, name, target, columns, meaning) TARGET_##target,
+#include "case/quantities.def"
+#undef QUANTITY
+};
+
+enum probe_target scene_probe_target(const struct scene_probe *probe)
+{
+    const enum probe_target target = targets[probe->quantity];
+    if (target != TARGET_ANY_POINT) return target;
+    return probe->body[0] ? TARGET_SOLID_POINT : TARGET_FLUID_POINT;
+}
+
+bool scene_snapshot_has(const struct scene *s, const char *field)
+{
+    const size_t length = strlen(field);
+    const char *word = s->output.snapshot_fields;
+    if (strcmp(word, "all") == 0) return true;
+    for (size_t n; *(word += strspn(word, " \t,")); word += n) {
+        n = strcspn(word, " \t,");
+        if (n == length && strncmp(word, field, n) == 0) return true;
+    }
+    return false;
+}
+
+/* --- places and files --- */
+
+void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT])
+{
+    if (line == 0) {
+        snprintf(place, LOCATION_TEXT, "--set");
+        return;
+    }
+    const size_t length = strlen(s->path), most = 270;
+    const bool cut = length > most;
+    snprintf(place, LOCATION_TEXT, "%s%.270s:%d", cut ? "..." : "",
+             s->path + (cut ? length - most : 0), line);
+}
+
+bool scene_file(const struct scene *s, const char *name, char *path, size_t size)
+{
+    const char *slash = strrchr(s->path, '/');
+    const int folder = name[0] == '/' || !slash ? 0 : (int)(slash - s->path) + 1;
+    const int n = snprintf(path, size, "%.*s%s", folder, s->path, name);
+    return n >= 0 && (size_t)n < size;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ * From a case to a scene with its particles. */
+#ifndef SPHFSI_GEOMETRY_LOAD_H
+#define SPHFSI_GEOMETRY_LOAD_H
+
+#include "case/scene.h"
+
+/* scene_read and scene_parse with scene_sample behind them. On success the caller frees with scene_free;
+ * on failure nothing remains to be freed. */
+enum err scene_load(struct scene *s, const char *path, int n_sets, const char *const *sets,
+                    struct diag *d) SPHFSI_CHECKED;
+enum err scene_load_text(struct scene *s, const char *text, const char *path, int n_sets,
+                         const char *const *sets, struct diag *d) SPHFSI_CHECKED;
+
+/* Samples all shapes into s->points and fixes h and the domain in effect (geometry/sampling.c). */
+enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+
+#endif
