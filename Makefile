@@ -89,7 +89,7 @@ COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude -I
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
 DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
-                    { test -z "$$(git status --porcelain -- src include Makefile CMakeLists.txt)" || \
+                    { test -z "$$(git status --porcelain -- src include data cases/templates Makefile CMakeLists.txt)" || \
                       echo -dirty; })
 DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
@@ -98,7 +98,10 @@ FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 LIB     := $(B)/libsphfsi.a
 # One of a build folder of its own (B=...) must not take the place of ./sphfsi.
 PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
-LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/*.c)))
+LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/*.c))) \
+           $(B)/src/app/embedded.o
+# Texts that the program carries.
+EMBEDDED := $(sort $(wildcard cases/templates/*.cfg data/*))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 # Tests of one folder of src/ each, and of the tools.
@@ -122,16 +125,25 @@ debug sanitize serial:
 	@$(MAKE) --no-print-directory CONFIG=$@ all
 
 # --- rules ---
-# Rebuild when compiler or flags change, and the files that name the version when that does.
+# Rebuild when compiler or flags change, the files that name the version when that does, and the embedded
+# texts when their list does.
 STAMP_TEXT-flags   := $(COMPILE) $(LDFLAGS) $(shell $(CC) -dumpversion 2>/dev/null)
 STAMP_TEXT-version := $(FULL_VERSION)
-$(B)/flags $(B)/version: FORCE
+STAMP_TEXT-embedded := $(EMBEDDED)
+$(B)/flags $(B)/version $(B)/embedded: FORCE
 	@mkdir -p $(@D); echo '$(STAMP_TEXT-$(@F))' | cmp -s - $@ || echo '$(STAMP_TEXT-$(@F))' >$@
 $(patsubst %.c,$(B)/%.o,$(shell grep -ls SPHFSI_VERSION src/*/*.c)): $(B)/version
 
 $(B)/%.o: %.c $(B)/flags
 	@mkdir -p $(@D); $(if $(V),,echo '  CC  $<')
 	$(Q)$(COMPILE) $(EXTRA) -DSPHFSI_VERSION='"$(FULL_VERSION)"' -MMD -MP -c -o $@ $<
+
+$(B)/src/app/embedded.c: tools/embed.sh $(EMBEDDED) $(B)/embedded
+	@mkdir -p $(@D)
+	$(Q)sh tools/embed.sh $@ $(EMBEDDED)
+
+$(B)/src/app/embedded.o: $(B)/src/app/embedded.c $(B)/flags
+	$(Q)$(COMPILE) -MMD -MP -c -o $@ $<
 
 $(LIB): $(LIB_OBJ)
 	$(Q)rm -f $@ && $(AR) qcs $@ $^

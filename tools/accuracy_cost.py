@@ -171,7 +171,7 @@ def main():
     args = arguments()
     args.data = args.data or args.study.with_name("results.json")
     ours = args.data.resolve() == STUDY.with_name("results.json")
-    evidence = ROOT / "src" / "app" / "evidence.def" if ours else None
+    evidence = ROOT / "data" / "evidence.csv" if ours else None
     if args.report:
         return study_report.write(args.data, args.out, evidence)
     study = read_study(args.study)

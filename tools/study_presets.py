@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Presets and the front that they follow from, and the list of evidence that the program is compiled with."""
+"""Presets and the front that they follow from, and the file of evidence that the program carries."""
+import csv
+import io
 
 from runfiles import np
 from study_points import SCENES
@@ -121,18 +123,17 @@ def preset_table(study):
 
 
 def write_evidence(study, path):
-    """What the program says of its presets: the same numbers as a list that it is compiled with."""
-    rows = []
+    """What the program says of its presets: the same numbers as a file that it carries."""
+    text = io.StringIO(f"# Written by make accuracy: errors of the presets in the study of program "
+                       f"{', '.join(study.head['versions'])}; percent of the exact or finest result.\n")
+    text.seek(0, io.SEEK_END)
+    rows = csv.writer(text, lineterminator="\n")
+    rows.writerow("scene accuracy case error resolution what percent".split())
     for preset, scene, case, p in preset_points(study):
         entry, error = study.cases[case], study.error(p)
         if error is not None:
-            rows.append(f'EVIDENCE({scene.upper()}, {preset.upper()}, "{entry.get("title", case)}", '
-                        f'"{main_error(entry)}", {across(entry, p):.3g}, "{entry.get("what", "across")}", '
-                        f"{100 * error:.3g})")
-    head = ("/* Written by make accuracy: errors of the presets in the study of program "
-            f"{', '.join(study.head['versions'])}.\n * EVIDENCE(scene, accuracy, case, error, resolution, "
-            "what it counts, percent) */\n")
-    text = head + "\n".join(rows) + "\n"
-    if not path.exists() or path.read_text(encoding="utf-8") != text:
-        path.write_text(text, encoding="utf-8")
-        print(f"written {path}; make compiles it into the program")
+            rows.writerow([scene, preset, entry.get("title", case), main_error(entry),
+                           f"{across(entry, p):.3g}", entry.get("what", "across"), f"{100 * error:.3g}"])
+    if not path.exists() or path.read_text(encoding="utf-8") != text.getvalue():
+        path.write_text(text.getvalue(), encoding="utf-8")
+        print(f"written {path}; make puts it into the program")

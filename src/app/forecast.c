@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/forecast.h"
 
+#include "app/evidence.h"
 #include "base/files.h"
 #include "case/params.h"
 #include "time/timestep.h"
@@ -335,20 +336,6 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
 
 /* --- the error --- */
 
-static const struct evidence {
-    enum scene_kind kind;
-    int accuracy;
-    const char *name, *error;
-    double resolution;
-    const char *what;
-    double percent;
-} evidence[] = {
-#define EVIDENCE(scene, accuracy, name, error, resolution, what, percent) \
-    {SCENE_##scene, ACCURACY_##accuracy, name, error, resolution, what, percent},
-#include "app/evidence.def"
-#undef EVIDENCE
-};
-
 void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
 {
     const enum scene_kind kind = s->n_fluid && s->n_solid ? SCENE_COUPLED
@@ -357,20 +344,19 @@ void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
     char accuracy[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
     session_say(o, "expected error at accuracy = %s, from the study in docs/accuracy.md", accuracy);
-    const char *before = "";
-    char line[512] = "";
+    char before[EVIDENCE_TEXT] = "", line[512] = "";
     size_t at = 0;
-    for (size_t k = 0; k < COUNT_OF(evidence); k++) {
-        const struct evidence *const row = &evidence[k];
-        if (row->kind != kind || row->accuracy != s->top.accuracy) continue;
-        if (strcmp(before, row->name) != 0) {
+    struct evidence row;
+    for (const char *rest = evidence_first(); evidence_next(&rest, &row);) {
+        if (row.kind != kind || strcmp(row.accuracy, accuracy) != 0) continue;
+        if (strcmp(before, row.name) != 0) {
             if (at > 0) session_say(o, "%s", line);
-            at = (size_t)snprintf(line, sizeof line, "  %s, %s:", row->name, row->error);
-            before = row->name;
+            at = (size_t)snprintf(line, sizeof line, "  %s, %s:", row.name, row.error);
+            snprintf(before, sizeof before, "%s", row.name);
         }
         if (at < sizeof line - 100)
             at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;",
-                                   row->percent, row->resolution, row->what);
+                                   row.percent, row.resolution, row.what);
     }
     session_say(o, "%s", at > 0 ? line : "  the study has no scene of this kind");
 }

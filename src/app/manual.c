@@ -2,20 +2,13 @@
  * The reference of keys, from the same tables as the reader of cases. */
 #include "app/manual.h"
 
+#include "app/embedded.h"
 #include "case/effects.h"
 #include "case/params.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static const struct {
-    const char *section, *key, *value;
-} examples[] = {
-#define EXAMPLE(section, key, value) {#section, #key, value},
-#include "app/examples.def"
-#undef EXAMPLE
-};
 
 static const char *const section_meanings[][2] = {
     {"top", "Keys before the first section."},
@@ -57,14 +50,27 @@ static void default_of(const struct param *p, char *text, size_t size)
     }
 }
 
+/* Whether a line is `key = ...`. */
+static bool gives(const char *line, const char *key)
+{
+    const size_t length = strlen(key);
+    return strncmp(line, key, length) == 0 && strncmp(line + length, " = ", 3) == 0;
+}
+
 void manual_example(const struct param *p, char *text, size_t size)
 {
-    for (size_t k = 0; k < COUNT_OF(examples); k++)
-        if (strcmp(examples[k].section, section_table[p->section].word) == 0 &&
-            strcmp(examples[k].key, p->key) == 0) {
-            snprintf(text, size, "%s", examples[k].value);
-            return;
-        }
+    const char *const word = section_table[p->section].word;
+    const size_t length = strlen(word);
+    bool inside = p->section == SECTION_top;
+    for (const char *line = embedded_text("data/key_examples.cfg"), *next; line; line = next) {
+        const int end = (int)strcspn(line, "\n");
+        next = line[end] ? line + end + 1 : NULL;
+        if (line[0] == '[') inside = strncmp(line + 1, word, length) == 0 && line[length + 1] == ']';
+        if (!inside || !gives(line, p->key)) continue;
+        const int value = (int)strlen(p->key) + 3;
+        snprintf(text, size, "%.*s", end - value, line + value);
+        return;
+    }
     default_of(p, text, size);
 }
 

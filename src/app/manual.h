@@ -9,7 +9,7 @@
  * line through the message callback. */
 void manual_keys(const struct sphfsi_options *o);
 
-/* Writes the example of a key to `text`: from app/examples.def, or its default; "" if it has none. */
+/* Writes the example of a key to `text`: from data/key_examples.cfg, or its default; "" if it has none. */
 struct param;
 void manual_example(const struct param *p, char *text, size_t size);
 

@@ -1,25 +1,24 @@
 /* SPDX-License-Identifier: MIT
- * Templates of cases. */
+ * Templates of cases: the files of cases/templates. */
+#include "app/embedded.h"
 #include "app/manual.h"
 
-#include <string.h>
-
-static const struct {
-    const char *name, *text;
-} templates[] = {
-#define TEMPLATE(name, meaning, text) {#name, text},
-#include "app/templates.def"
-#undef TEMPLATE
-};
+static bool is_template(const struct embedded_file *file)
+{
+    static const char folder[] = "cases/templates/";
+    return strncmp(file->name, folder, sizeof folder - 1) == 0;
+}
 
 const char *manual_template_name(int k)
 {
-    return k < (int)COUNT_OF(templates) ? templates[k].name : NULL;
+    for (const struct embedded_file *file = embedded_files; file->name; file++)
+        if (is_template(file) && k-- == 0) return file->stem;
+    return NULL;
 }
 
 const char *manual_template(const char *name)
 {
-    for (size_t k = 0; k < COUNT_OF(templates); k++)
-        if (strcmp(templates[k].name, name) == 0) return templates[k].text;
+    for (const struct embedded_file *file = embedded_files; file->name; file++)
+        if (is_template(file) && strcmp(file->stem, name) == 0) return file->text;
     return NULL;
 }

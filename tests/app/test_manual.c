@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * What the program says of itself is true: examples are accepted, templates run, sources fit the scene. */
 #include "case/effects.h"
+#include "app/evidence.h"
 #include "app/manual.h"
 #include "case/params.h"
 #include "app/preview.h"
@@ -154,11 +155,51 @@ static void every_template_runs(void)
     }
 }
 
+/* --new prints the file, byte by byte. */
+static void every_template_is_its_file(void)
+{
+    for (int k = 0; manual_template_name(k); k++) {
+        static char text[1 << 14];
+        char path[128];
+        snprintf(path, sizeof path, "cases/templates/%s.cfg", manual_template_name(k));
+        FILE *const file = fopen(path, "r");
+        TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+        text[fread(text, 1, sizeof text - 1, file)] = '\0';
+        fclose(file);
+        TEST_ASSERT_EQUAL_STRING(text, sphfsi_template(manual_template_name(k)));
+    }
+}
+
 static void an_unknown_template_names_the_known(void)
 {
     TEST_ASSERT_NULL(sphfsi_template("dambreak"));
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "nearest name is dam_break"));
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "cantilever"));
+}
+
+/* --- what the study measured --- */
+
+static void evidence_is_read_row_by_row(void)
+{
+    struct evidence row;
+    int n = 0, kinds = 0;
+    for (const char *rest = evidence_first(); evidence_next(&rest, &row); n++) {
+        TEST_ASSERT_TRUE_MESSAGE(row.name[0] && row.error[0] && row.what[0], row.name);
+        TEST_ASSERT_TRUE_MESSAGE(row.resolution > 1 && row.percent > 0, row.name);
+        TEST_ASSERT_TRUE_MESSAGE(strcmp(row.accuracy, "draft") == 0 ||
+                                     strcmp(row.accuracy, "standard") == 0 ||
+                                     strcmp(row.accuracy, "fine") == 0,
+                                 row.accuracy);
+        kinds |= 1 << row.kind;
+    }
+    TEST_ASSERT_GREATER_THAN(10, n);
+    TEST_ASSERT_EQUAL_INT(7, kinds);
+    const char *const line = "coupled,fine,\"A, b\",tip,4,across,0.5\n", *rest = line;
+    TEST_ASSERT_TRUE(evidence_next(&rest, &row));
+    TEST_ASSERT_EQUAL_STRING("A, b", row.name);
+    TEST_ASSERT_EQUAL_STRING("tip", row.error);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, row.percent);
+    TEST_ASSERT_FALSE(evidence_next(&rest, &row));
 }
 
 /* --- messages --- */
@@ -244,7 +285,9 @@ int main(void)
     RUN_TEST(every_example_is_accepted);
     RUN_TEST(a_copy_without_its_clamp_is_warned_of);
     RUN_TEST(every_template_runs);
+    RUN_TEST(every_template_is_its_file);
     RUN_TEST(an_unknown_template_names_the_known);
+    RUN_TEST(evidence_is_read_row_by_row);
     RUN_TEST(sources_fit_the_scene);
     RUN_TEST(every_key_is_listed);
     RUN_TEST(preview_shows_the_scene);

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ * Text files that the program carries: cases/templates and data, put into C by tools/embed.sh when it is built. */
+#ifndef SPHFSI_APP_EMBEDDED_H
+#define SPHFSI_APP_EMBEDDED_H
+
+#include "base/base.h"
+
+#include <string.h>
+
+struct embedded_file {
+    const char *name; /* from the top of the sources */
+    const char *stem; /* without folder and ending */
+    const char *text;
+};
+extern const struct embedded_file embedded_files[]; /* the last one has no name */
+
+/* The text of a file, or NULL. */
+SPHFSI_INLINE const char *embedded_text(const char *name)
+{
+    for (const struct embedded_file *file = embedded_files; file->name; file++)
+        if (strcmp(file->name, name) == 0) return file->text;
+    return NULL;
+}
+
+#endif

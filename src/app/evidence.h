@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ * What the accuracy study measured: data/evidence.csv, which `make accuracy` writes. */
+#ifndef SPHFSI_APP_EVIDENCE_H
+#define SPHFSI_APP_EVIDENCE_H
+
+#include "case/scene.h"
+
+enum { EVIDENCE_TEXT = 96 };
+
+struct evidence {
+    enum scene_kind kind;
+    char accuracy[EVIDENCE_TEXT]; /* draft, standard, fine */
+    char name[EVIDENCE_TEXT], error[EVIDENCE_TEXT];
+    char what[EVIDENCE_TEXT]; /* that `resolution` counts */
+    double resolution, percent;
+};
+
+/* The first row; then reads the row at `rest` and steps behind it: false at the end. */
+const char *evidence_first(void);
+bool evidence_next(const char **rest, struct evidence *row);
+
+#endif
