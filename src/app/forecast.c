@@ -57,7 +57,6 @@ static uint64_t cache_key(const struct simulation *s)
                          c->top.integrator,
                          c->top.precision,
                          s->solid.sweeps ? s->solid.sweeps->lanes : 0,
-                         c->numerics.kernel,
                          c->numerics.suction};
     h = hash_bytes(h, words, sizeof words);
     const double numbers[] = {c->numerics.h_over_dp, c->numerics.skin};

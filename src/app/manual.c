@@ -29,22 +29,22 @@ static bool pure(const struct param *p) { return !p->unit || strcmp(p->unit, "1"
 /* The default as in a case file; "" if there is none. */
 static void default_of(const struct param *p, char *text, size_t size)
 {
-    const double *const v = p->number_default;
+    const double value = p->number.value;
     const char *const space = pure(p) ? "" : " ", *const unit = pure(p) ? "" : p->unit;
     text[0] = '\0';
     switch (p->type) {
     case PARAM_REAL:
-        if (!isnan(v[0]))
-            snprintf(text, size, "%g%s%s", v[0], v[0] == 0 ? "" : space, v[0] == 0 ? "" : unit);
+        if (!isnan(value))
+            snprintf(text, size, "%g%s%s", value, value == 0 ? "" : space, value == 0 ? "" : unit);
         break;
-    case PARAM_INTEGER: snprintf(text, size, "%d", (int)v[0]); break;
+    case PARAM_INTEGER: snprintf(text, size, "%d", (int)value); break;
     case PARAM_CHOICE: {
         char name[SCENE_NAME];
-        param_choice_name(p, (int)v[0], name);
+        param_choice_name(p, (int)value, name);
         snprintf(text, size, "%s", name);
         break;
     }
-    case PARAM_VECTOR: snprintf(text, size, "%g, %g", v[0], v[1]); break;
+    case PARAM_VECTOR: snprintf(text, size, "%g, %g", p->vector_default[0], p->vector_default[1]); break;
     case PARAM_TEXT: snprintf(text, size, "%s", p->text_default); break;
     default: break;
     }
@@ -98,8 +98,8 @@ static void range_of(const struct param *p, char *text, size_t size)
 {
     text[0] = '\0';
     if (p->type == PARAM_REAL || p->type == PARAM_INTEGER) {
-        snprintf(text, size, "%s %g, %s %g", p->low_open ? ">" : "≥", p->low,
-                 p->high_open ? "<" : "≤", p->high);
+        snprintf(text, size, "%s %g, %s %g", p->low.open ? ">" : "≥", p->low.value,
+                 p->high.open ? "<" : "≤", p->high.value);
     } else if (p->type == PARAM_CHOICE) {
         size_t at = 0;
         for (const char *c = p->choices; *c && at + 8 < size; c++)
@@ -128,7 +128,7 @@ static void say_key(const struct param *p, const struct sphfsi_options *o)
     in_cell(p->meaning, meaning, sizeof meaning);
     const char *const tick = fallback[0] ? "`" : "";
     session_say(o, "| `%s` | %s | %s | %s%s%s | %s | %s | %s%s%s%s%s |", p->key, type,
-                pure(p) ? "" : p->unit, tick, p->needed ? "**needed**" : fallback, tick, range,
+                pure(p) ? "" : p->unit, tick, p->number.needed ? "**needed**" : fallback, tick, range,
                 meaning, example[0] ? "`" : "", example[0] ? p->key : "", example[0] ? " = " : "",
                 example, example[0] ? "`" : "");
 }

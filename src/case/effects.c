@@ -32,6 +32,7 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
               }))
 #define LATER false
 #define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
+#define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
 
 /* The first contact that a wall takes part in; -1: none. */
 static int first_with_wall(const struct scene *s)
@@ -43,6 +44,15 @@ static int first_with_wall(const struct scene *s)
                 : scene_find_solid(s, name[0]) < 0 || scene_find_solid(s, name[1]) < 0)
             return k;
     }
+    return -1;
+}
+
+/* The first probe of the force on a wall; -1: none. */
+static int first_wall_force(const struct scene *s)
+{
+    for (int k = 0; k < s->n_probe; k++)
+        if (s->probe[k].quantity == PROBE_FORCE && scene_find_solid(s, s->probe[k].body) < 0)
+            return k;
     return -1;
 }
 

@@ -13,31 +13,25 @@ const struct section_info section_table[SECTION_COUNT] = {
 #include "case/params.def"
 };
 
-/* In the table a bound is its value; whether it is open shows in how it is spelled. */
-#define NEEDED NAN
-#define OVER(v) (v)
-#define UNDER(v) (v)
+/* Fill a struct param_default, a struct param_bound. */
+#define NEEDED (double)NAN, true
+#define ABSENT (double)NAN
+#define OVER(v) v, true
+#define UNDER(v) v, true
 #define ROW(section_, type_, key_, meaning_)                                                 \
     .section = SECTION_##section_, .type = PARAM_##type_, .key = #key_, .meaning = meaning_, \
     .offset = offsetof(struct scene_##section_, key_)
 
 const struct param param_table[PARAM_COUNT] = {
-#define REAL(section, key, def, lo, hi, unit_, meaning)          \
-    {ROW(section, REAL, key, meaning),                           \
-     .unit = unit_,                                              \
-     .number_default = {(double)(def)},                          \
-     .low = lo,                                                  \
-     .high = hi,                                                 \
-     .needed = sizeof #def == sizeof "NEEDED" && #def[0] == 'N', \
-     .low_open = #lo[0] == 'O',                                  \
-     .high_open = #hi[0] == 'U'},
+#define REAL(section, key, def, lo, hi, unit_, meaning) \
+    {ROW(section, REAL, key, meaning), .unit = unit_, .number = {def}, .low = {lo}, .high = {hi}},
 #define INTEGER(section, key, def, lo, hi, meaning) \
-    {ROW(section, INTEGER, key, meaning), .number_default = {def}, .low = lo, .high = hi},
+    {ROW(section, INTEGER, key, meaning), .number = {def}, .low = {lo}, .high = {hi}},
 #define CHOICE(section, key, def, names, meaning) \
-    {ROW(section, CHOICE, key, meaning), .choices = names, .number_default = {def}},
+    {ROW(section, CHOICE, key, meaning), .choices = names, .number = {def}},
 #define TEXT(section, key, def, meaning) {ROW(section, TEXT, key, meaning), .text_default = def},
 #define VECTOR(section, key, dx, dy, unit_, meaning) \
-    {ROW(section, VECTOR, key, meaning), .unit = unit_, .number_default = {dx, dy}},
+    {ROW(section, VECTOR, key, meaning), .unit = unit_, .vector_default = {dx, dy}},
 #define FIELD_EXPR(section, key, count_, unit_, meaning) \
     {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
 #define TIME_EXPR(section, key, unit_, meaning) \
@@ -80,6 +74,21 @@ const struct param *param_find(enum section_id section, const char *key)
         const struct param *p = &param_table[k];
         if (p->section == section && strcmp(p->key, key) == 0) return p;
     }
+    return NULL;
+}
+
+const char *param_retired(enum section_id section, const char *key)
+{
+    static const struct {
+        enum section_id section;
+        const char *key, *why;
+    } retired[] = {
+        {SECTION_numerics, "idle", "all its values computed the same"},
+        {SECTION_numerics, "kernel", "all its values computed the same"},
+    };
+    for (size_t k = 0; k < COUNT_OF(retired); k++)
+        if (retired[k].section == section && strcmp(retired[k].key, key) == 0)
+            return retired[k].why;
     return NULL;
 }
 
@@ -129,12 +138,12 @@ bool param_is_default(const struct param *p, const void *section)
     switch (p->type) {
     case PARAM_REAL:
         memcpy(number, value, sizeof *number);
-        return number[0] == p->number_default[0] || isnan(number[0]);
+        return number[0] == p->number.value || isnan(number[0]);
     case PARAM_VECTOR:
         memcpy(number, value, sizeof number);
-        return number[0] == p->number_default[0] && number[1] == p->number_default[1];
+        return number[0] == p->vector_default[0] && number[1] == p->vector_default[1];
     case PARAM_INTEGER:
-    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number_default[0];
+    case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number.value;
     case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];

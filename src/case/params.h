@@ -37,6 +37,16 @@ enum param_type {
     PARAM_NUMBERS
 };
 
+struct param_default {
+    double value;
+    bool needed; /* none: the case must give the key */
+};
+
+struct param_bound {
+    double value;
+    bool open; /* the bound itself is excluded */
+};
+
 struct param {
     enum section_id section;
     enum param_type type;
@@ -44,10 +54,9 @@ struct param {
     const char *unit;         /* NULL where the type has none */
     const char *choices;      /* "a|b|c" of a CHOICE */
     const char *text_default; /* of a TEXT */
-    double number_default[2]; /* one for REAL, INTEGER and CHOICE (index), two for VECTOR */
-    bool needed;
-    double low, high;
-    bool low_open, high_open; /* the bound itself is excluded */
+    struct param_default number; /* of a REAL, INTEGER, CHOICE (index) */
+    double vector_default[2];
+    struct param_bound low, high; /* of a REAL, INTEGER */
     int count;                /* expressions of a FIELD_EXPR or TIME_EXPR */
     size_t offset;            /* in the section's struct */
 };
@@ -75,6 +84,9 @@ void *section_at(const struct scene *s, enum section_id id, int index);
 
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
+
+/* Why a key of an older release no longer does anything; NULL: it is none of those. */
+const char *param_retired(enum section_id section, const char *key);
 
 /* Whether a section has the value that the key has when it is left out. */
 bool param_is_default(const struct param *p, const void *section);

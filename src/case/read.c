@@ -18,10 +18,10 @@ static void set_defaults(void *section, enum section_id id)
         if (p->section != id) continue;
         char *const place = (char *)section + p->offset;
         switch (p->type) {
-        case PARAM_REAL: memcpy(place, p->number_default, sizeof(double)); break;
-        case PARAM_VECTOR: memcpy(place, p->number_default, 2 * sizeof(double)); break;
+        case PARAM_REAL: memcpy(place, &p->number.value, sizeof(double)); break;
+        case PARAM_VECTOR: memcpy(place, p->vector_default, 2 * sizeof(double)); break;
         case PARAM_INTEGER:
-        case PARAM_CHOICE: *(int *)(void *)place = (int)p->number_default[0]; break;
+        case PARAM_CHOICE: *(int *)(void *)place = (int)p->number.value; break;
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
         case PARAM_FIELD_EXPR:
         case PARAM_TIME_EXPR:
@@ -61,7 +61,7 @@ static const struct preset {
 static int top_choice(const struct reader *r, const char *key)
 {
     const struct param *const p = param_find(SECTION_top, key);
-    int found = (int)p->number_default[0];
+    int found = (int)p->number.value;
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *const e = &r->entries[k];
         char name[SCENE_NAME];
@@ -172,6 +172,18 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 
+/* A key of an older release is passed over with a note. */
+static bool note_retired(struct reader *r, const struct entry *e, int id)
+{
+    const char *const why = param_retired((enum section_id)id, e->key);
+    char place[LOCATION_TEXT];
+    if (!why) return false;
+    scene_location(r->scene, e->line, place);
+    diag_warn(r->diag, "%s: `%s` in [%s] is no longer used, since %s; leave it out", place,
+              e->key, section_table[id].word, why);
+    return true;
+}
+
 /* An inherited pressure gives way to a surface that is given, and the other way round. */
 static void drop_rivals(struct reader *r, int section)
 {
@@ -217,6 +229,7 @@ static enum err read_section(struct reader *r, int section)
         const struct entry *e = &r->entries[k];
         if (e->section != section) continue;
         const struct param *p = param_find((enum section_id)cs->id, e->key);
+        if (!p && note_retired(r, e, cs->id)) continue;
         if (!p) return unknown_key(r, e, cs->id);
         const struct entry **before = &given[p - param_table];
         if (*before && p->type != PARAM_SHAPES)
@@ -241,7 +254,7 @@ static enum err check_needed(struct reader *r)
         const char *section = section_at(r->scene, (enum section_id)cs->id, cs->index);
         for (int j = 0; j < PARAM_COUNT; j++) {
             const struct param *p = &param_table[j];
-            if ((int)p->section != cs->id || !p->needed) continue;
+            if ((int)p->section != cs->id || !p->number.needed) continue;
             double value;
             memcpy(&value, section + p->offset, sizeof value);
             if (!isnan(value)) continue;

@@ -35,16 +35,13 @@ struct scene_expr {
     struct expr *e[2];
 };
 
-/* One struct for each section of case/params.def: struct scene_top, struct scene_fluid, ... Each carries
- * the name behind its section word and the line it starts at. */
+/* The name behind the section's word and the line it starts at. */
 struct scene_section_common {
     char name[SCENE_NAME];
     int line;
-#define SECTION(section, named) \
-    }                           \
-    ;                           \
-    struct scene_##section {    \
-        struct scene_section_common common;
+};
+
+/* One struct for each section of case/params.def, with a member for each of its keys. */
 #define REAL(section, key, def, lo, hi, unit, meaning) double key;
 #define INTEGER(section, key, def, lo, hi, meaning) int key;
 #define CHOICE(section, key, def, names, meaning) int key;
@@ -54,8 +51,105 @@ struct scene_section_common {
 #define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
 #define SHAPES(section, key, meaning) struct shape_list key;
 #define NUMBERS(section, key, unit, meaning) struct number_list key;
+#define PARAMS_OF(section) ONLY_##section /* 0 where it is not defined */
+#define PARAMS_KEEP
+
+#define ONLY_top 1
+struct scene_top {
+    struct scene_section_common common;
 #include "case/params.def"
 };
+#undef ONLY_top
+
+#define ONLY_numerics 1
+struct scene_numerics {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_numerics
+
+#define ONLY_domain 1
+struct scene_domain {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_domain
+
+#define ONLY_output 1
+struct scene_output {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_output
+
+#define ONLY_fluid 1
+struct scene_fluid {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_fluid
+
+#define ONLY_wall 1
+struct scene_wall {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_wall
+
+#define ONLY_solid 1
+struct scene_solid {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_solid
+
+#define ONLY_contact 1
+struct scene_contact {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_contact
+
+#define ONLY_load 1
+struct scene_load {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_load
+
+#define ONLY_motion 1
+struct scene_motion {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_motion
+
+#define ONLY_probe 1
+struct scene_probe {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_probe
+
+#define ONLY_reference 1
+struct scene_reference {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_reference
+
+#undef PARAMS_OF
+#undef PARAMS_KEEP
+#undef SECTION
+#undef REAL
+#undef INTEGER
+#undef CHOICE
+#undef TEXT
+#undef VECTOR
+#undef FIELD_EXPR
+#undef TIME_EXPR
+#undef SHAPES
+#undef NUMBERS
 
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
 enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
@@ -70,9 +164,7 @@ enum sides { SIDES_BOTH, SIDES_ONE };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
 enum slip { SLIP_FREE, SLIP_NONE };
 enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
-enum idle { IDLE_SKIP, IDLE_WORK };
 enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
-enum kernel_choice { KERNEL_STAMPED, KERNEL_GENERIC };
 enum shifting_speed { SHIFTING_OWN, SHIFTING_LARGEST };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS, DIFFUSION_ANTUONO };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
@@ -138,6 +230,12 @@ struct scene_given {
     int line; /* 0: by --set */
 };
 
+/* Set by tests, between reading a case and creating its simulation; neither changes a bit. */
+struct test_switches {
+    bool generic_kernel; /* the fluid's kernel that decides at run time, where a stamped one fits */
+    bool work_on_idle;   /* visit dry walls, place and sort resting ones */
+};
+
 /* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
 struct scene {
     char path[4096];    /* of the case file */
@@ -152,6 +250,7 @@ struct scene {
     struct scene_constant *constant;
     int n_given;
     struct scene_given *given;
+    struct test_switches test;
     struct motion_table *motion_data; /* [n_motion] */
     struct motion_hook *motion_hook;  /* [n_motion]; NULL: none */
     struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */

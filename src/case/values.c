@@ -9,13 +9,13 @@
 static enum err check_range(struct reader *r, const struct entry *e, const struct param *p,
                             double value)
 {
-    const bool low = p->low_open ? value > p->low : value >= p->low;
-    const bool high = p->high_open ? value < p->high : value <= p->high;
+    const bool low = p->low.open ? value > p->low.value : value >= p->low.value;
+    const bool high = p->high.open ? value < p->high.value : value <= p->high.value;
     if (low && high) return ERR_OK;
     const char *unit = p->unit && strcmp(p->unit, "1") != 0 ? p->unit : "";
     return bad_value(r, e, "out of range: it must be %s %g%s%s and %s %g%s%s",
-                     p->low_open ? "above" : "at least", p->low, *unit ? " " : "", unit,
-                     p->high_open ? "below" : "at most", p->high, *unit ? " " : "", unit);
+                     p->low.open ? "above" : "at least", p->low.value, *unit ? " " : "", unit,
+                     p->high.open ? "below" : "at most", p->high.value, *unit ? " " : "", unit);
 }
 
 static enum err read_integer(struct reader *r, const struct entry *e, const struct param *p,

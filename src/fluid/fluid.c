@@ -93,9 +93,9 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     memset(f, 0, sizeof *f);
     f->k = constants_of(s);
     f->effects = effects;
-    f->idle_is_work = s->numerics.idle == IDLE_WORK;
+    f->idle_is_work = s->test.work_on_idle;
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
-                  s->numerics.kernel == KERNEL_GENERIC);
+                  s->test.generic_kernel);
     f->threads = thread_count();
     for (int k = 0; k < KIND_COUNT; k++) f->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(f, a, cells_clusters(c, kinds[KIND_FLUID].capacity), d));

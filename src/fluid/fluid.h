@@ -133,7 +133,7 @@ struct neighbour_scratch {
 struct fluid {
     struct fluid_constants k;
     effect_set effects;
-    bool idle_is_work;          /* numerics.idle = work: dry walls visited, resting ones placed */
+    bool idle_is_work;          /* dry walls visited, resting ones placed; set by tests */
     double *volume[KIND_COUNT]; /* [sections] of a dummy at rest over that of a fluid particle */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct packed_fields packed[KIND_COUNT];

@@ -14,7 +14,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
                             const struct particles *walls, struct diag *d)
 {
     memset(m, 0, sizeof *m);
-    m->idle_is_work = s->numerics.idle == IDLE_WORK;
+    m->idle_is_work = s->test.work_on_idle;
     m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
     if (!m->body) return ERR_MEMORY;
     for (int k = 0; k < s->n_wall; k++) {

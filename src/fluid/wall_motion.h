@@ -19,7 +19,7 @@ struct wall_motion {
     int n;
     struct moving_wall *body;
     bool moved;        /* any wall, since the last sorting */
-    bool idle_is_work; /* numerics.idle = work: nothing is left alone */
+    bool idle_is_work; /* nothing is left alone; set by tests */
 };
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,

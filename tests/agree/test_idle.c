@@ -23,9 +23,11 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-static uint64_t run(const char *idle, const char *integrator, double time)
+static uint64_t run(bool work_on_idle, const char *integrator, double time)
 {
-    rig_open(&rig, scene, idle, integrator, NULL);
+    rig_switches.work_on_idle = work_on_idle;
+    rig_open(&rig, scene, integrator, NULL);
+    rig_switches.work_on_idle = false;
     rig_run(&rig, time);
     return simulation_hash(&rig.sim);
 }
@@ -34,11 +36,11 @@ static void compare(const char *integrator)
 {
     const double times[] = {0.025, 0.055};
     for (int k = 0; k < 2; k++) {
-        const uint64_t skipped = run("numerics.idle=skip", integrator, times[k]);
+        const uint64_t skipped = run(false, integrator, times[k]);
         const struct cell_list *const walls = &rig.sim.cells.kind[KIND_WALL];
         TEST_ASSERT_TRUE(2 * rig.sim.fluid.n_near_fluid[KIND_WALL] < walls->n_active);
         TEST_ASSERT_TRUE(rig.sim.state.sorts > 10);
-        const uint64_t worked = run("numerics.idle=work", integrator, times[k]);
+        const uint64_t worked = run(true, integrator, times[k]);
         TEST_ASSERT_EQUAL_INT32(walls->n_active, rig.sim.fluid.n_near_fluid[KIND_WALL]);
         TEST_ASSERT_EQUAL_HEX64(worked, skipped);
     }

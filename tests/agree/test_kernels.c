@@ -36,12 +36,14 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-static uint64_t run(int set, const char *precision, const char *kernel)
+static uint64_t run(int set, const char *precision, bool generic)
 {
     char alpha[64], delta[64];
     snprintf(alpha, sizeof alpha, "water.artificial_viscosity=%s", sets[set].alpha);
     snprintf(delta, sizeof delta, "water.density_diffusion=%s", sets[set].delta);
-    rig_open(&rig, scene, precision, kernel, alpha, delta, sets[set].set, sets[set].another, NULL);
+    rig_switches.generic_kernel = generic;
+    rig_open(&rig, scene, precision, alpha, delta, sets[set].set, sets[set].another, NULL);
+    rig_switches.generic_kernel = false;
     rig_steps(&rig, 40, 1);
     return simulation_hash(&rig.sim);
 }
@@ -49,9 +51,9 @@ static uint64_t run(int set, const char *precision, const char *kernel)
 static void compare(const char *precision)
 {
     for (int k = 0; k < (int)COUNT_OF(sets); k++) {
-        const uint64_t generic = run(k, precision, "numerics.kernel=generic");
+        const uint64_t generic = run(k, precision, true);
         TEST_ASSERT_EQUAL_HEX32(ANY_EFFECTS, rig.sim.fluid.sweeps->effects);
-        const uint64_t stamped = run(k, precision, "numerics.kernel=stamped");
+        const uint64_t stamped = run(k, precision, false);
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(sets[k].effects, rig.sim.fluid.sweeps->effects,
                                         sets[k].name);
         TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.sweeps->name, sets[k].name,

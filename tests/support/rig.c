@@ -11,6 +11,8 @@
 
 enum { MAX_SETS = 16 };
 
+struct test_switches rig_switches;
+
 void rig_open(struct rig *r, const char *text, ...)
 {
     const char *sets[MAX_SETS];
@@ -26,6 +28,7 @@ void rig_open(struct rig *r, const char *text, ...)
     enum err e = scene_load_text(&r->scene, text, "rig.cfg", n, sets, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->scene_open = true;
+    r->scene.test = rig_switches;
     e = simulation_create(&r->sim, &r->scene, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->sim_open = true;

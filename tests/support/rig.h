@@ -14,6 +14,9 @@ struct rig {
     bool scene_open, sim_open;
 };
 
+/* Taken over by every simulation that rig_open creates. */
+extern struct test_switches rig_switches;
+
 /* Parses the case with the --set arguments that follow, up to NULL, and creates the simulation; the
  * test fails with the sentence if either does. A rig in use is closed first. */
 void rig_open(struct rig *r, const char *text, ...) __attribute__((sentinel));
