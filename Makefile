@@ -89,7 +89,8 @@ COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude -I
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
 DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
-                    { test -z "$$(git status --porcelain -- src include data cases/templates Makefile CMakeLists.txt)" || \
+                    { test -z "$$(git status --porcelain -- src include data cases/templates \
+                                    Makefile CMakeLists.txt)" || \
                       echo -dirty; })
 DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Text files that the program carries: cases/templates and data, put into C by tools/embed.sh when it is built. */
+ * Text files that the program carries: cases/templates and data, put into C by tools/embed.sh. */
 #ifndef SPHFSI_APP_EMBEDDED_H
 #define SPHFSI_APP_EMBEDDED_H
 

@@ -354,8 +354,8 @@ void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
             snprintf(before, sizeof before, "%s", row.name);
         }
         if (at < sizeof line - 100)
-            at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;",
-                                   row.percent, row.resolution, row.what);
+            at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;", row.percent,
+                                   row.resolution, row.what);
     }
     session_say(o, "%s", at > 0 ? line : "  the study has no scene of this kind");
 }

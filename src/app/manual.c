@@ -44,7 +44,9 @@ static void default_of(const struct param *p, char *text, size_t size)
         snprintf(text, size, "%s", name);
         break;
     }
-    case PARAM_VECTOR: snprintf(text, size, "%g, %g", p->vector_default[0], p->vector_default[1]); break;
+    case PARAM_VECTOR:
+        snprintf(text, size, "%g, %g", p->vector_default[0], p->vector_default[1]);
+        break;
     case PARAM_TEXT: snprintf(text, size, "%s", p->text_default); break;
     default: break;
     }
@@ -65,7 +67,8 @@ void manual_example(const struct param *p, char *text, size_t size)
     for (const char *line = embedded_text("data/key_examples.cfg"), *next; line; line = next) {
         const int end = (int)strcspn(line, "\n");
         next = line[end] ? line + end + 1 : NULL;
-        if (line[0] == '[') inside = strncmp(line + 1, word, length) == 0 && line[length + 1] == ']';
+        if (line[0] == '[')
+            inside = strncmp(line + 1, word, length) == 0 && line[length + 1] == ']';
         if (!inside || !gives(line, p->key)) continue;
         const int value = (int)strlen(p->key) + 3;
         snprintf(text, size, "%.*s", end - value, line + value);
@@ -128,9 +131,9 @@ static void say_key(const struct param *p, const struct sphfsi_options *o)
     in_cell(p->meaning, meaning, sizeof meaning);
     const char *const tick = fallback[0] ? "`" : "";
     session_say(o, "| `%s` | %s | %s | %s%s%s | %s | %s | %s%s%s%s%s |", p->key, type,
-                pure(p) ? "" : p->unit, tick, p->number.needed ? "**needed**" : fallback, tick, range,
-                meaning, example[0] ? "`" : "", example[0] ? p->key : "", example[0] ? " = " : "",
-                example, example[0] ? "`" : "");
+                pure(p) ? "" : p->unit, tick, p->number.needed ? "**needed**" : fallback, tick,
+                range, meaning, example[0] ? "`" : "", example[0] ? p->key : "",
+                example[0] ? " = " : "", example, example[0] ? "`" : "");
 }
 
 static void say_section(enum section_id id, const struct sphfsi_options *o)

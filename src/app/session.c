@@ -90,8 +90,8 @@ enum err session_read(struct session *x, const struct sphfsi_options *o, struct 
     TRY(check_options(o, d));
     if (o->threads > 0) thread_use(o->threads);
     if (o->case_text)
-        TRY(scene_load_text(&x->scene, o->case_text, o->case_path ? o->case_path : "case", o->n_sets,
-                        o->sets, d));
+        TRY(scene_load_text(&x->scene, o->case_text, o->case_path ? o->case_path : "case",
+                            o->n_sets, o->sets, d));
     else
         TRY(scene_load(&x->scene, o->case_path, o->n_sets, o->sets, d));
     const enum err e = settle_times(&x->scene, o->until, d);

@@ -173,7 +173,7 @@ enum err case_all_constants(struct reader *r)
 /* --- numbers with units --- */
 
 enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
-                          const char *unit)
+                        const char *unit)
 {
     if (dim_fits(dim, unit)) return ERR_OK;
     char have[DIM_TEXT], want[DIM_TEXT];

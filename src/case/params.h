@@ -51,14 +51,14 @@ struct param {
     enum section_id section;
     enum param_type type;
     const char *key, *meaning;
-    const char *unit;         /* NULL where the type has none */
-    const char *choices;      /* "a|b|c" of a CHOICE */
-    const char *text_default; /* of a TEXT */
+    const char *unit;            /* NULL where the type has none */
+    const char *choices;         /* "a|b|c" of a CHOICE */
+    const char *text_default;    /* of a TEXT */
     struct param_default number; /* of a REAL, INTEGER, CHOICE (index) */
     double vector_default[2];
     struct param_bound low, high; /* of a REAL, INTEGER */
-    int count;                /* expressions of a FIELD_EXPR or TIME_EXPR */
-    size_t offset;            /* in the section's struct */
+    int count;                    /* expressions of a FIELD_EXPR or TIME_EXPR */
+    size_t offset;                /* in the section's struct */
 };
 /* The number of keys in all. */
 enum {

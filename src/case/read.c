@@ -179,8 +179,8 @@ static bool note_retired(struct reader *r, const struct entry *e, int id)
     char place[LOCATION_TEXT];
     if (!why) return false;
     scene_location(r->scene, e->line, place);
-    diag_warn(r->diag, "%s: `%s` in [%s] is no longer used, since %s; leave it out", place,
-              e->key, section_table[id].word, why);
+    diag_warn(r->diag, "%s: `%s` in [%s] is no longer used, since %s; leave it out", place, e->key,
+              section_table[id].word, why);
     return true;
 }
 

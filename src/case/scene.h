@@ -260,9 +260,9 @@ struct scene {
     bool off_lattice; /* a shape does not fit the lattice: its size depends on dp */
 };
 
-/* Reads and checks a case file; the points are sampled by geometry/sampling.h. `sets` are the --set arguments ("key=value" or "section.key=value";
- * a named section is section NAME: "solid gate.young=1e6" or "gate.young=1e6"). On success the
- * caller frees with scene_free; on failure nothing remains to be freed. */
+/* Reads and checks a case file; geometry/load.h samples its points as well. `sets` are the --set arguments
+ * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
+ * "gate.young=1e6"). On success the caller frees with scene_free; on failure nothing remains to be freed. */
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d) SPHFSI_CHECKED;
 /* The same from text in memory; `path` names it in messages and anchors relative file names. */

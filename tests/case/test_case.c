@@ -27,7 +27,8 @@ static void parse(const char *text, int n_sets, const char *const *sets)
 {
     diag = (struct diag){0};
     scene_free(&scene);
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, "x.cfg", n_sets, sets, &diag),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
+                                  scene_load_text(&scene, text, "x.cfg", n_sets, sets, &diag),
                                   diag.text);
 }
 

@@ -45,7 +45,8 @@ static enum err open_with(const char *lines, const char *header)
 {
     char text[1000];
     snprintf(text, sizeof text, "%s%s", head, lines);
-    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK, scene_load_text(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
+    TEST_ASSERT_EQUAL_MESSAGE(ERR_OK,
+                              scene_load_text(&scene, text, tiny_path("a.cfg"), 0, NULL, &diag),
                               diag.text);
     return references_open(&references, &scene, 1, &header, &arena, &diag);
 }
