@@ -110,6 +110,10 @@ SPHFSI_API const char *sphfsi_version(void);
 /** Sentence of the last failure in this thread; "" before the first. Valid until the next one. */
 SPHFSI_API const char *sphfsi_error(void);
 
+/** Further sentences of that failure, each ended by a newline: a case is read to its end, and all that is
+ * wrong with it is said, up to 20 problems, sorted by line. "" if there are none. */
+SPHFSI_API const char *sphfsi_more_errors(void);
+
 /** Exit status for a result: 0; 1 wrong input; 2 everything else, except INTERRUPT, which
  * is 128 plus the number of the signal. */
 SPHFSI_API int sphfsi_exit_status(enum sphfsi_status status, int signal_number);

@@ -39,16 +39,20 @@ struct sphfsi_simulation {
 };
 
 static _Thread_local char last_error[sizeof((struct diag *)0)->text];
+static _Thread_local char more_errors[sizeof((struct diag *)0)->more];
 
 static enum sphfsi_status result(const struct diag *d, enum err e)
 {
     if (e) snprintf(last_error, sizeof last_error, "%s", d->text);
+    if (e) snprintf(more_errors, sizeof more_errors, "%s", d->more);
     return (enum sphfsi_status)e;
 }
 
 const char *sphfsi_version(void) { return SPHFSI_VERSION; }
 
 const char *sphfsi_error(void) { return last_error; }
+
+const char *sphfsi_more_errors(void) { return more_errors; }
 
 int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
 {

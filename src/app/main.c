@@ -348,6 +348,14 @@ static int report_is_out(void)
     return 0;
 }
 
+/* The failure, and what else is wrong with the case, a line each. */
+static void print_errors(void)
+{
+    fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
+    for (const char *line = sphfsi_more_errors(); *line; line += strcspn(line, "\n") + 1)
+        fprintf(stderr, "sphfsi: %.*s\n", (int)strcspn(line, "\n"), line);
+}
+
 static int execute(struct command *c)
 {
     c->terminal = isatty(STDERR_FILENO);
@@ -357,7 +365,7 @@ static int execute(struct command *c)
     c->options.requests = &requests;
     const enum sphfsi_status status = carry_out(c);
     clear_line(c);
-    if (status) fprintf(stderr, "sphfsi: %s\n", sphfsi_error());
+    if (status) print_errors();
     const int report = c->mode != RUN && c->mode != REFINE;
     if (!status && report && !report_is_out()) return 2;
     return sphfsi_exit_status(status, requests.stop);

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static const int exit_status[] = {
 #define ERROR(name, status, meaning) status,
@@ -38,4 +39,12 @@ void diag_warn(struct diag *d, const char *format, ...)
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     d->warn(d->warn_context, text);
+}
+
+void diag_more(struct diag *d, const char *text)
+{
+    const size_t used = strlen(d->more), length = strlen(text);
+    if (used + length + 2 > sizeof d->more) return;
+    memcpy(d->more + used, text, length);
+    memcpy(d->more + used + length, "\n", 2);
 }

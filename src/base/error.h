@@ -21,11 +21,14 @@ struct diag {
     /* Receives warnings, one sentence each; NULL: warnings are dropped. */
     void (*warn)(void *context, const char *text);
     void *warn_context;
+    char more[8192]; /* further failures of the same input, a sentence a line */
 };
 
 /* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO, ...)`. */
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
 void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
+/* Adds a sentence to `more`; one that does not fit is left out. */
+void diag_more(struct diag *d, const char *text);
 
 /* Returns from the caller if the call fails. */
 #define TRY(call)                     \

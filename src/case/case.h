@@ -30,6 +30,8 @@ enum {
     CASE_MAX_LINES = 20000,
     CASE_MAX_CONSTANTS = 512,
     CASE_MAX_POINTS = 4096, /* of a polygon; numbers of a list */
+    CASE_MAX_PROBLEMS = 20, /* reported of one case */
+    PROBLEM_TEXT = 1024,
 };
 
 /* One `key = value`. */
@@ -45,13 +47,19 @@ struct case_section {
     int id; /* enum section_id or SECTION_constants */
     const char *name;
     int line;
-    int index; /* among those of its kind */
+    int index;       /* among those of its kind */
+    bool incomplete; /* a line of it could not be understood, or what it is like is not known */
 };
 
 struct constant {
     const struct entry *entry;
     enum { CONSTANT_TEXT, CONSTANT_BUSY, CONSTANT_DONE } state;
     struct quantity q;
+};
+
+struct problem {
+    int line; /* 0: of --set */
+    char text[PROBLEM_TEXT];
 };
 
 struct reader {
@@ -65,16 +73,26 @@ struct reader {
     struct constant *constants;    /* constants, and the numbers at the top, which are names too */
     int depth;                     /* of constants that wait for constants */
     bool cause_named;              /* the message names the constant that is wrong */
+    bool in_lost_section;          /* behind a header that could not be understood */
+    bool lost;                     /* lines or sections that could not be understood are left out */
+    int n_problems;                /* those beyond the array are counted only */
+    struct problem problems[CASE_MAX_PROBLEMS];
 };
 
-/* case/messages.c */
-/* Fails with "FILE:LINE: ..." or "--set ...: ...". */
+/* --- case/messages.c: problems are noted, so that the reader can go on and report all of them --- */
+
+/* Notes "FILE:LINE: ..." or "--set ...: ..."; returns ERR_INPUT. */
 enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
 enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
-/* Fails with "FILE:LINE: key = value: ...". */
+/* Notes "FILE:LINE: key = value: ...". */
 enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
+
+/* ERR_OK in the place of bad input that has been noted, as long as more may be noted. */
+enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
+/* The problems noted so far, sorted by line, as the failure in the diag; ERR_OK: there are none. */
+enum err case_report(struct reader *r) SPHFSI_CHECKED;
 
 /* case/lines.c: text to sections and entries; --set arguments on top of them. */
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
@@ -90,6 +108,8 @@ enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
+/* Notes why an expression has no value, unless that follows from what is noted already. */
+enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why);
 /* A number of the dimension `unit` from a piece of an entry's value. */
 enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
                      double *value) SPHFSI_CHECKED;
@@ -104,6 +124,8 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
 enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
     SPHFSI_CHECKED;
 
+/* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
+enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: what concerns several values at once. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 /* case/check_output.c */

@@ -88,36 +88,43 @@ static enum err differ(struct reader *r, const struct scene_fluid *f, const char
                     f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
 }
 
+/* Of one fluid against the first one. */
+static enum err check_fluid(struct reader *r, const struct scene_fluid *f, double c0)
+{
+    const struct scene *s = r->scene;
+    const struct scene_fluid *const first = &s->fluid[0];
+    const struct {
+        const char *key;
+        double mine, its;
+    } same[] = {
+        {"density", f->density, first->density},
+        {"sound_speed", c0, s->c0},
+        {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
+        {"tensile_control", f->tensile_control, first->tensile_control},
+        {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
+        {"shifting", f->shifting, first->shifting},
+        {"shifting_speed", f->shifting_speed, first->shifting_speed},
+        {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
+        {"density_diffusion", f->density_diffusion, first->density_diffusion},
+        {"diffusion_form", f->diffusion_form, first->diffusion_form},
+    };
+    for (size_t j = 0; j < COUNT_OF(same); j++)
+        if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
+            TRY(case_go_on(r, differ(r, f, same[j].key, same[j].mine, same[j].its)));
+    return ERR_OK;
+}
+
 static enum err check_fluids(struct reader *r)
 {
     struct scene *s = r->scene;
-    for (int k = 0; k < s->n_fluid; k++) {
-        const struct scene_fluid *f = &s->fluid[k], *first = &s->fluid[0];
-        double c0;
-        TRY(sound_speed(r, f, &c0));
-        if (k == 0) {
-            s->c0 = c0;
-            s->rho0 = f->density;
-            warn_of_shift(r, f);
-        }
-        const struct {
-            const char *key;
-            double mine, its;
-        } same[] = {
-            {"density", f->density, first->density},
-            {"sound_speed", c0, s->c0},
-            {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
-            {"tensile_control", f->tensile_control, first->tensile_control},
-            {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
-            {"shifting", f->shifting, first->shifting},
-            {"shifting_speed", f->shifting_speed, first->shifting_speed},
-            {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
-            {"density_diffusion", f->density_diffusion, first->density_diffusion},
-            {"diffusion_form", f->diffusion_form, first->diffusion_form},
-        };
-        for (size_t j = 0; j < COUNT_OF(same); j++)
-            if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
-                return differ(r, f, same[j].key, same[j].mine, same[j].its);
+    double c0;
+    if (s->n_fluid == 0) return ERR_OK;
+    TRY(sound_speed(r, &s->fluid[0], &s->c0));
+    s->rho0 = s->fluid[0].density;
+    warn_of_shift(r, &s->fluid[0]);
+    for (int k = 1; k < s->n_fluid; k++) {
+        const enum err err = sound_speed(r, &s->fluid[k], &c0);
+        TRY(case_go_on(r, err ? err : check_fluid(r, &s->fluid[k], c0)));
     }
     return ERR_OK;
 }
@@ -228,48 +235,60 @@ static enum err check_motion_expressions(struct reader *r, const struct scene_mo
     return ERR_OK;
 }
 
-static enum err check_motions(struct reader *r)
+/* The sections that name a motion. */
+static enum err check_moved(struct reader *r)
 {
     const struct scene *s = r->scene;
     for (int k = 0; k < s->n_wall; k++)
         if (*s->wall[k].motion && scene_find_motion(s, s->wall[k].motion) < 0)
-            return no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion, SECTION_motion);
+            TRY(case_go_on(r, no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion,
+                                      SECTION_motion)));
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *b = &s->solid[k];
         if (!*b->clamp_motion) continue;
         if (scene_find_motion(s, b->clamp_motion) < 0)
-            return no_such(r, b->common.line, "clamp_motion", b->clamp_motion, SECTION_motion);
-        if (b->clamp.n == 0)
-            return bad_line(r, b->common.line, "[solid %s] has a `clamp_motion` but no `clamp`",
-                            b->common.name);
+            TRY(case_go_on(r, no_such(r, b->common.line, "clamp_motion", b->clamp_motion,
+                                      SECTION_motion)));
+        else if (b->clamp.n == 0)
+            TRY(case_go_on(r, bad_line(r, b->common.line,
+                                       "[solid %s] has a `clamp_motion` but no `clamp`",
+                                       b->common.name)));
     }
-    for (int k = 0; k < s->n_motion; k++) {
-        const struct scene_motion *m = &s->motion[k];
-        const int line = m->common.line;
-        bool used = false;
-        for (int w = 0; w < s->n_wall; w++) used |= strcmp(s->wall[w].motion, m->common.name) == 0;
-        for (int b = 0; b < s->n_solid; b++)
-            used |= strcmp(s->solid[b].clamp_motion, m->common.name) == 0;
-        if (!used) warn(r, line, "[motion %s] moves no wall and no clamp", m->common.name);
-        if (!(m->start < m->stop))
-            return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
-                            m->common.name, m->start, m->stop);
-        TRY(check_motion_keys(r, m));
-        if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
-        if (m->kind == MOTION_SINE && m->period == 0)
-            return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
-        if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)
-            return bad_line(r, line, "[motion %s] angle_amplitude needs `period`", m->common.name);
-        if (m->kind == MOTION_ROTATION && m->angle_amplitude == 0 && m->angle.n == 0 && !*m->file)
-            return bad_line(
-                r, line, "[motion %s] kind = rotation needs `angle`, `angle_amplitude` or `file`",
-                m->common.name);
-        if (m->kind == MOTION_TABLE && !*m->file)
-            return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
-        if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)
-            return bad_line(r, line, "[motion %s] kind = polynomial needs `poly_x` or `poly_y`",
-                            m->common.name);
-    }
+    return ERR_OK;
+}
+
+static bool is_used(const struct scene *s, const char *motion)
+{
+    for (int k = 0; k < s->n_wall; k++)
+        if (strcmp(s->wall[k].motion, motion) == 0) return true;
+    for (int k = 0; k < s->n_solid; k++)
+        if (strcmp(s->solid[k].clamp_motion, motion) == 0) return true;
+    return false;
+}
+
+static enum err check_motion(struct reader *r, const struct scene_motion *m)
+{
+    const int line = m->common.line;
+    if (!is_used(r->scene, m->common.name))
+        warn(r, line, "[motion %s] moves no wall and no clamp", m->common.name);
+    if (!(m->start < m->stop))
+        return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
+                        m->common.name, m->start, m->stop);
+    TRY(check_motion_keys(r, m));
+    if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
+    if (m->kind == MOTION_SINE && m->period == 0)
+        return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
+    if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)
+        return bad_line(r, line, "[motion %s] angle_amplitude needs `period`", m->common.name);
+    if (m->kind == MOTION_ROTATION && m->angle_amplitude == 0 && m->angle.n == 0 && !*m->file)
+        return bad_line(r, line,
+                        "[motion %s] kind = rotation needs `angle`, `angle_amplitude` or `file`",
+                        m->common.name);
+    if (m->kind == MOTION_TABLE && !*m->file)
+        return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
+    if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)
+        return bad_line(r, line, "[motion %s] kind = polynomial needs `poly_x` or `poly_y`",
+                        m->common.name);
     return ERR_OK;
 }
 
@@ -309,21 +328,18 @@ static enum err check_spacing(struct reader *r, int solid)
         s->n_fluid ? "" : ", or finer without fluid");
 }
 
-static enum err check_joined(struct reader *r)
+static enum err check_joined(struct reader *r, int solid)
 {
     const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_solid; k++) {
-        const struct scene_solid *a = &s->solid[k];
-        TRY(check_spacing(r, k));
-        if (!*a->joined) continue;
-        const int other = scene_find_solid(s, a->joined);
-        if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
-        if (other == k)
-            return bad_line(r, a->common.line, "[solid %s] joined = %s: a body is one with itself",
-                            a->common.name, a->joined);
-        TRY(check_joint(r, a, &s->solid[other]));
-    }
-    return ERR_OK;
+    const struct scene_solid *const a = &s->solid[solid];
+    TRY(check_spacing(r, solid));
+    if (!*a->joined) return ERR_OK;
+    const int other = scene_find_solid(s, a->joined);
+    if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
+    if (other == solid)
+        return bad_line(r, a->common.line, "[solid %s] joined = %s: a body is one with itself",
+                        a->common.name, a->joined);
+    return check_joint(r, a, &s->solid[other]);
 }
 
 /* A surface particle has room for so many partners. */
@@ -341,89 +357,74 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
 }
 
 /* Two different bodies, one of them a solid. */
-static enum err check_contacts(struct reader *r)
+static enum err check_contact(struct reader *r, const struct scene_contact *c)
 {
     const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_contact; k++) {
-        const struct scene_contact *c = &s->contact[k];
-        const int line = c->common.line;
-        char name[2][SCENE_TEXT];
-        if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
-            return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
-                            c->common.name);
-        TRY(check_gap(r, c));
-        if (!*c->between) continue;
-        if (!scene_pair(c->between, name))
-            return bad_line(r, line, "between = %.100s: two names with a comma between them",
-                            c->between);
-        bool solid = false;
-        for (int j = 0; j < 2; j++) {
-            solid |= scene_find_solid(s, name[j]) >= 0;
-            if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
-                return no_such(r, line, "between", name[j], SECTION_solid);
-        }
-        if (!solid)
-            return bad_line(r, line,
-                            "between = %.100s: walls do not move each other; one of the two "
-                            "must be a solid",
-                            c->between);
-        if (strcmp(name[0], name[1]) == 0)
-            return bad_line(r, line, "between = %.100s: a body does not touch itself", c->between);
+    const int line = c->common.line;
+    char name[2][SCENE_TEXT];
+    if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
+        return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
+                        c->common.name);
+    TRY(check_gap(r, c));
+    if (!*c->between) return ERR_OK;
+    if (!scene_pair(c->between, name))
+        return bad_line(r, line, "between = %.100s: two names with a comma between them",
+                        c->between);
+    bool solid = false;
+    for (int j = 0; j < 2; j++) {
+        solid |= scene_find_solid(s, name[j]) >= 0;
+        if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
+            return no_such(r, line, "between", name[j], SECTION_solid);
     }
+    if (!solid)
+        return bad_line(r, line,
+                        "between = %.100s: walls do not move each other; one of the two must be a "
+                        "solid",
+                        c->between);
+    if (strcmp(name[0], name[1]) == 0)
+        return bad_line(r, line, "between = %.100s: a body does not touch itself", c->between);
     return ERR_OK;
 }
 
-static enum err check_loads(struct reader *r)
+static enum err check_load(struct reader *r, const struct scene_load *l)
 {
-    const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_load; k++) {
-        const struct scene_load *l = &s->load[k];
-        const int line = l->common.line;
-        if (!*l->body)
-            return bad_line(r, line, "[load %s] needs `body`, the solid it acts on",
-                            l->common.name);
-        if (scene_find_solid(s, l->body) < 0)
-            return no_such(r, line, "body", l->body, SECTION_solid);
-        if (l->shape.n == 0)
-            return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
-                            l->common.name);
-        if (!l->force.e[0] == !l->traction.e[0])
-            return bad_line(r, line, "[load %s] needs one of `force` and `traction`",
-                            l->common.name);
-    }
+    const int line = l->common.line;
+    if (!*l->body)
+        return bad_line(r, line, "[load %s] needs `body`, the solid it acts on", l->common.name);
+    if (scene_find_solid(r->scene, l->body) < 0)
+        return no_such(r, line, "body", l->body, SECTION_solid);
+    if (l->shape.n == 0)
+        return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
+                        l->common.name);
+    if (!l->force.e[0] == !l->traction.e[0])
+        return bad_line(r, line, "[load %s] needs one of `force` and `traction`", l->common.name);
     return ERR_OK;
 }
 
 /* A reference names a column: <probe>_<quantity>_<unit>. */
-static enum err check_references(struct reader *r)
+static enum err check_reference(struct reader *r, const struct scene_reference *ref)
 {
     const struct scene *s = r->scene;
-    for (int k = 0; k < s->n_reference; k++) {
-        const struct scene_reference *ref = &s->reference[k];
-        const int line = ref->common.line;
-        const bool formula = ref->formula.e[0] != NULL;
-        if (!*ref->probe || (!*ref->file && !formula))
-            return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
-                            *ref->probe ? "file` or `formula" : "probe");
-        if (*ref->file && formula)
-            return bad_line(r, line, "[reference %s] has both `file` and `formula`; one is to go",
-                            ref->common.name);
-        if (!(ref->from < ref->until))
-            return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
-                            ref->common.name, ref->from, ref->until);
-        bool found = false;
-        for (int p = 0; p < s->n_probe; p++) {
-            const char *name = s->probe[p].common.name;
-            const size_t length = strlen(name);
-            found |= strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_';
-        }
-        if (!found)
-            return bad_line(r, line,
-                            "[reference %s] probe = %.80s: no probe has such a column; a "
-                            "column is PROBE_QUANTITY_UNIT, such as M1_dx_m",
-                            ref->common.name, ref->probe);
+    const int line = ref->common.line;
+    const bool formula = ref->formula.e[0] != NULL;
+    if (!*ref->probe || (!*ref->file && !formula))
+        return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
+                        *ref->probe ? "file` or `formula" : "probe");
+    if (*ref->file && formula)
+        return bad_line(r, line, "[reference %s] has both `file` and `formula`; leave one out",
+                        ref->common.name);
+    if (!(ref->from < ref->until))
+        return bad_line(r, line, "[reference %s] from = %g s must come before until = %g s",
+                        ref->common.name, ref->from, ref->until);
+    for (int p = 0; p < s->n_probe; p++) {
+        const char *name = s->probe[p].common.name;
+        const size_t length = strlen(name);
+        if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
     }
-    return ERR_OK;
+    return bad_line(r, line,
+                    "[reference %s] probe = %.80s: no probe has such a column; a column is "
+                    "PROBE_QUANTITY_UNIT, such as M1_dx_m",
+                    ref->common.name, ref->probe);
 }
 
 /* Named for nothing; without fluid or solid case/rules.def refuses it. */
@@ -451,15 +452,18 @@ enum err case_check(struct reader *r)
     choose_cfl(s);
     if (s->n_fluid == 0 && s->n_solid == 0)
         return bad_line(r, 1,
-                        "nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section");
-    TRY(check_fluids(r));
-    TRY(check_motions(r));
-    TRY(check_joined(r));
-    TRY(case_check_output(r));
+                        "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
+                        "section");
+    TRY(case_go_on(r, check_fluids(r)));
+    TRY(check_moved(r));
+    for (int k = 0; k < s->n_motion; k++) TRY(case_go_on(r, check_motion(r, &s->motion[k])));
+    for (int k = 0; k < s->n_solid; k++) TRY(case_go_on(r, check_joined(r, k)));
+    TRY(case_go_on(r, case_check_output(r)));
     TRY(case_check_probes(r));
-    TRY(check_contacts(r));
-    TRY(check_loads(r));
-    TRY(check_references(r));
+    for (int k = 0; k < s->n_contact; k++) TRY(case_go_on(r, check_contact(r, &s->contact[k])));
+    for (int k = 0; k < s->n_load; k++) TRY(case_go_on(r, check_load(r, &s->load[k])));
+    for (int k = 0; k < s->n_reference; k++)
+        TRY(case_go_on(r, check_reference(r, &s->reference[k])));
     check_interface(r);
-    return effects_check(s, r->diag);
+    return case_check_effects(r);
 }

@@ -48,19 +48,19 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
     return ERR_OK;
 }
 
+static enum err check_probe(struct reader *r, const struct scene_probe *p)
+{
+    switch (scene_probe_target(p)) {
+    case TARGET_BODY: TRY(check_body(r, p, true)); return check_fluid(r, p);
+    case TARGET_SOLID:
+    case TARGET_SOLID_POINT: return check_body(r, p, false);
+    default: return check_fluid(r, p);
+    }
+}
+
 enum err case_check_probes(struct reader *r)
 {
-    for (int k = 0; k < r->scene->n_probe; k++) {
-        const struct scene_probe *p = &r->scene->probe[k];
-        switch (scene_probe_target(p)) {
-        case TARGET_BODY:
-            TRY(check_body(r, p, true));
-            TRY(check_fluid(r, p));
-            break;
-        case TARGET_SOLID:
-        case TARGET_SOLID_POINT: TRY(check_body(r, p, false)); break;
-        default: TRY(check_fluid(r, p));
-        }
-    }
+    for (int k = 0; k < r->scene->n_probe; k++)
+        TRY(case_go_on(r, check_probe(r, &r->scene->probe[k])));
     return ERR_OK;
 }

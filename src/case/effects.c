@@ -127,76 +127,11 @@ const struct phase_info phase_table[PHASE_COUNT] = {
 #undef PHASE
 };
 
-/* --- rules --- */
-
-struct rule {
-    enum effect effect, other;
-    bool excludes;
-    const char *reason;
-};
-
-static const struct rule rules[] = {
-#define NEEDS(effect, other, reason) {EFFECT_##effect, EFFECT_##other, false, reason},
-#define EXCLUDES(effect, other, reason) {EFFECT_##effect, EFFECT_##other, true, reason},
-#include "case/rules.def"
-};
-
-/* A key that belongs to an effect. */
-struct owned {
-    enum section_id section;
-    const char *key;
-    enum effect effect;
-};
-
-static const struct owned owned[] = {
-#define OWNED(section, key, effect) {SECTION_##section, #key, EFFECT_##effect},
-#include "case/rules.def"
-};
-
-static enum err check_rule(const struct scene *s, const struct rule *rule, struct diag *d)
-{
-    struct effect_caller by, other;
-    if (!effect_called(s, rule->effect, &by)) return ERR_OK;
-    if (effect_called(s, rule->other, &other) != rule->excludes) return ERR_OK;
-    char text[EFFECT_CALLER_TEXT], place[EFFECT_CALLER_TEXT];
-    effect_caller_text(s, &by, text);
-    const char *const name = effect_table[rule->effect].name;
-    const char *const its = effect_table[rule->other].name;
-    if (!rule->excludes)
-        return diag_fail(d, ERR_INPUT, "%s, %s calls for %s, which needs %s (%s): %s", s->path,
-                         text, name, its, effect_table[rule->other].key, rule->reason);
-    effect_caller_text(s, &other, place);
-    return diag_fail(d, ERR_INPUT, "%s, %s calls for %s, which excludes %s, called for by %s: %s",
-                     s->path, text, name, its, place, rule->reason);
-}
-
-static enum err check_owned(const struct scene *s, const struct owned *row, struct diag *d)
-{
-    const struct param *const p = param_find(row->section, row->key);
-    struct effect_caller by;
-    if (effect_called(s, row->effect, &by)) return ERR_OK;
-    for (int k = 0; k < section_count(s, row->section); k++) {
-        if (param_is_default(p, section_at(s, row->section, k))) continue;
-        char text[EFFECT_CALLER_TEXT];
-        by = (struct effect_caller){row->section, k, row->key};
-        effect_caller_text(s, &by, text);
-        return diag_fail(d, ERR_INPUT,
-                         "%s, %s is of %s, which the scene does not have: %s calls "
-                         "for it",
-                         s->path, text, effect_table[row->effect].name,
-                         effect_table[row->effect].key);
-    }
-    return ERR_OK;
-}
-
-enum err effects_check(const struct scene *s, struct diag *d)
+const char *effect_left_out(const struct scene *s)
 {
     struct effect_caller by;
     for (int k = 0; k < EFFECT_COUNT; k++)
         if (effect_bits[k] == 0 && effect_called(s, (enum effect)k, &by))
-            return diag_fail(d, ERR_INPUT, "%s calls for %s, which this build is without", s->path,
-                             effect_table[k].name);
-    for (size_t k = 0; k < COUNT_OF(rules); k++) TRY(check_rule(s, &rules[k], d));
-    for (size_t k = 0; k < COUNT_OF(owned); k++) TRY(check_owned(s, &owned[k], d));
-    return ERR_OK;
+            return effect_table[k].name;
+    return NULL;
 }

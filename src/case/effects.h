@@ -61,8 +61,8 @@ enum { EFFECT_CALLER_TEXT = 300 };
 void effect_caller_text(const struct scene *s, const struct effect_caller *by,
                         char text[EFFECT_CALLER_TEXT]);
 
-/* Refuses what case/rules.def says does not go together. */
-enum err effects_check(const struct scene *s, struct diag *d) SPHFSI_CHECKED;
+/* The name of an effect that a scene calls for and that is left out of this build, or NULL. */
+const char *effect_left_out(const struct scene *s);
 
 /* The set that a scene calls for. MULTIRATE is decided by the simulation, which knows the bounds. */
 effect_set effects_of_scene(const struct scene *s);

@@ -99,7 +99,7 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     }
     if (index == SCENE_MAX_SECTIONS)
         return bad_line(r, line, "more than %d [%s] sections", SCENE_MAX_SECTIONS, word);
-    r->sections[r->n_sections++] = (struct case_section){id, name, line, index};
+    r->sections[r->n_sections++] = (struct case_section){id, name, line, index, false};
     return ERR_OK;
 }
 
@@ -132,7 +132,8 @@ static enum err read_entry(struct reader *r, int line, char *text)
     const char *why;
     const char *const value = cut_value(equals + 1, &why);
     if (why) return bad_line(r, line, "%s %s", key, why);
-    r->entries[r->n_entries++] = (struct entry){r->n_sections - 1, line, NULL, key, value};
+    if (!r->in_lost_section)
+        r->entries[r->n_entries++] = (struct entry){r->n_sections - 1, line, NULL, key, value};
     return ERR_OK;
 }
 
@@ -143,7 +144,10 @@ static enum err read_line(struct reader *r, int line, char *text)
             return bad_line(r, line, "control byte %d; a case file is plain text", *c);
     text = trim(text);
     if (!*text || *text == '#') return ERR_OK;
-    return *text == '[' ? read_header(r, line, text) : read_entry(r, line, text);
+    if (*text != '[') return read_entry(r, line, text);
+    const enum err err = read_header(r, line, text);
+    r->in_lost_section = err != ERR_OK;
+    return err;
 }
 
 enum err case_split(struct reader *r, const char *text)
@@ -160,12 +164,14 @@ enum err case_split(struct reader *r, const char *text)
     if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
     memcpy(copy, text, bytes);
     if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
-    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0};
+    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0, false};
     int line = 1;
     for (char *next; copy; copy = next, line++) {
         next = strchr(copy, '\n');
         if (next) *next++ = '\0';
-        TRY(read_line(r, line, copy));
+        const enum err err = read_line(r, line, copy);
+        if (err) r->lost = r->sections[r->n_sections - 1].incomplete = true;
+        TRY(case_go_on(r, err));
     }
     return ERR_OK;
 }
@@ -299,6 +305,6 @@ enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
     memcpy(more, r->sections, (size_t)r->n_sections * sizeof *more);
     r->entries = entries;
     r->sections = more;
-    for (int k = 0; k < n_sets; k++) TRY(apply_set(r, sets[k]));
+    for (int k = 0; k < n_sets; k++) TRY(case_go_on(r, apply_set(r, sets[k])));
     return ERR_OK;
 }

@@ -1,31 +1,47 @@
 /* SPDX-License-Identifier: MIT
- * What is wrong with a case file, in one sentence that begins with the place. */
+ * What is wrong with a case file: one sentence each, which begins with the place, sorted by line. */
 #include "case/case.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
+/* Notes a problem, whose text begins with the place, once: numbers at the top are read as constants, too. */
+static enum err note(struct reader *r, int line, const char *text)
+{
+    for (int k = 0; k < r->n_problems && k < CASE_MAX_PROBLEMS; k++)
+        if (strcmp(r->problems[k].text, text) == 0) return ERR_INPUT;
+    if (r->n_problems < CASE_MAX_PROBLEMS) {
+        struct problem *const p = &r->problems[r->n_problems];
+        p->line = line;
+        snprintf(p->text, sizeof p->text, "%s", text);
+    }
+    r->n_problems++;
+    return ERR_INPUT;
+}
+
 enum err bad_line(struct reader *r, int line, const char *format, ...)
 {
-    char text[700], place[LOCATION_TEXT];
+    char text[700], place[LOCATION_TEXT], all[PROBLEM_TEXT];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     scene_location(r->scene, line, place);
-    return diag_fail(r->diag, ERR_INPUT, "%s: %s", place, text);
+    snprintf(all, sizeof all, "%s: %s", place, text);
+    return note(r, line, all);
 }
 
 enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
 {
-    char text[700];
+    char text[700], all[PROBLEM_TEXT];
     va_list args;
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
     if (!e->set) return bad_line(r, e->line, "%s", text);
-    return diag_fail(r->diag, ERR_INPUT, "--set %.100s: %s", e->set, text);
+    snprintf(all, sizeof all, "--set %.100s: %s", e->set, text);
+    return note(r, 0, all);
 }
 
 enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
@@ -37,4 +53,36 @@ enum err bad_value(struct reader *r, const struct entry *e, const char *format, 
     va_end(args);
     const bool cut = strlen(e->value) > 60;
     return bad_entry(r, e, "%s = %.60s%s: %s", e->key, e->value, cut ? "..." : "", text);
+}
+
+enum err case_go_on(const struct reader *r, enum err e)
+{
+    return e == ERR_INPUT && r->n_problems > 0 && r->n_problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
+}
+
+/* By line; problems of one line stay in the order in which they were found. */
+static void sort_problems(struct reader *r, int n)
+{
+    for (int k = 1; k < n; k++) {
+        const struct problem p = r->problems[k];
+        int j = k;
+        for (; j > 0 && r->problems[j - 1].line > p.line; j--) r->problems[j] = r->problems[j - 1];
+        r->problems[j] = p;
+    }
+}
+
+enum err case_report(struct reader *r)
+{
+    const int n = r->n_problems < CASE_MAX_PROBLEMS ? r->n_problems : CASE_MAX_PROBLEMS;
+    if (n == 0) return ERR_OK;
+    sort_problems(r, n);
+    diag_fail(r->diag, ERR_INPUT, "%s", r->problems[0].text);
+    for (int k = 1; k < n; k++) diag_more(r->diag, r->problems[k].text);
+    if (n == CASE_MAX_PROBLEMS) {
+        char text[PROBLEM_TEXT];
+        snprintf(text, sizeof text, "%.900s: reading stopped after %d problems; there may be more",
+                 r->scene->path, n);
+        diag_more(r->diag, text);
+    }
+    return ERR_INPUT;
 }

@@ -74,7 +74,7 @@ enum err case_collect_constants(struct reader *r)
     if (!r->constants) return ERR_MEMORY;
     for (int k = 0; k < r->n_entries; k++)
         if (r->sections[r->entries[k].section].id == SECTION_constants)
-            TRY(collect_constant(r, &r->entries[k]));
+            TRY(case_go_on(r, collect_constant(r, &r->entries[k])));
     for (int k = 0; k < r->n_entries; k++) {
         const struct entry *e = &r->entries[k];
         if (r->sections[e->section].id != SECTION_top) continue;
@@ -103,7 +103,6 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
     const struct expr_names names = {r, case_name, EXPR_FIXED};
     char inner[EXPR_WHY];
     c->state = CONSTANT_BUSY;
-    if (r->depth == 0) r->cause_named = false;
     r->depth++;
     const bool good = expr_value(slice_of(c->entry->value), &names, &c->q, inner);
     r->depth--;
@@ -138,11 +137,20 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
         *q = c->q;
         return true;
     }
+    /* It may have been in what could not be understood. */
+    r->cause_named |= r->lost;
     if (near.name)
         snprintf(why, EXPR_WHY, "unknown name `%s`; did you mean `%s`?", name, near.name);
     else
         snprintf(why, EXPR_WHY, "unknown name `%s`; define it in [constants]", name);
     return false;
+}
+
+/* What follows from a problem that is reported already is not reported again. */
+enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why)
+{
+    if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
+    return bad_value(r, e, "%s", why);
 }
 
 enum err case_all_constants(struct reader *r)
@@ -157,7 +165,11 @@ enum err case_all_constants(struct reader *r)
         struct quantity q = {0};
         char why[EXPR_WHY];
         /* Once more from its text, so that the message names what is wrong right here. */
-        if (!expr_value(slice_of(e->value), &names, &q, why)) return bad_value(r, e, "%s", why);
+        r->cause_named = false;
+        if (!expr_value(slice_of(e->value), &names, &q, why)) {
+            TRY(case_go_on(r, case_bad_expression(r, e, why)));
+            continue;
+        }
         if (r->sections[e->section].id != SECTION_constants) continue;
         struct scene_constant *c = &s->constant[s->n_constants++];
         snprintf(c->name, sizeof c->name, "%s", e->key);
@@ -188,7 +200,8 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
     const struct expr_names names = {r, case_name, EXPR_FIXED};
     struct quantity q = {0};
     char why[EXPR_WHY];
-    if (!expr_value(text, &names, &q, why)) return bad_value(r, e, "%s", why);
+    r->cause_named = false;
+    if (!expr_value(text, &names, &q, why)) return case_bad_expression(r, e, why);
     TRY(case_check_dim(r, e, &q.dim, unit));
     *value = q.value;
     return ERR_OK;

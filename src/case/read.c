@@ -149,6 +149,7 @@ static enum err inherit(struct reader *r, int section)
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
         return ERR_OK;
     }
+    if (r->lost) return ERR_INPUT; /* it may have been in what could not be understood */
     if (near.name)
         return bad_value(r, e, "no earlier [%s] of that name; did you mean `%s`?",
                          section_table[to->id].word, near.name);
@@ -216,11 +217,18 @@ static void warn_of_lost_clamp(struct reader *r, int section, const struct entry
     }
 }
 
+static enum err given_twice(struct reader *r, const struct entry *e, int line)
+{
+    return bad_entry(r, e, "%s is given already, in line %d", e->key, line);
+}
+
 static enum err read_section(struct reader *r, int section)
 {
     const struct case_section *cs = &r->sections[section];
     if (cs->id == SECTION_constants) return ERR_OK;
-    TRY(inherit(r, section));
+    const enum err inherited_well = inherit(r, section);
+    TRY(case_go_on(r, inherited_well));
+    if (inherited_well) r->sections[section].incomplete = true;
     drop_rivals(r, section);
     const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
     void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
@@ -230,19 +238,36 @@ static enum err read_section(struct reader *r, int section)
         if (e->section != section) continue;
         const struct param *p = param_find((enum section_id)cs->id, e->key);
         if (!p && note_retired(r, e, cs->id)) continue;
-        if (!p) return unknown_key(r, e, cs->id);
+        if (!p) {
+            r->sections[section].incomplete = true;
+            TRY(case_go_on(r, unknown_key(r, e, cs->id)));
+            continue;
+        }
         const struct entry **before = &given[p - param_table];
-        if (*before && p->type != PARAM_SHAPES)
-            return bad_entry(r, e, "%s is given already, in line %d", e->key, (*before)->line);
+        if (*before && p->type != PARAM_SHAPES) {
+            TRY(case_go_on(r, given_twice(r, e, (*before)->line)));
+            continue;
+        }
         *before = e;
         r->scene->given[r->scene->n_given++] =
             (struct scene_given){cs->id, cs->index, p->key, e->line};
         if (inherited && strcmp(e->key, "like") == 0) continue;
-        TRY(case_value(r, e, p, target));
+        TRY(case_go_on(r, case_value(r, e, p, target)));
     }
     const struct param *const like = param_find((enum section_id)cs->id, "like");
     if (like) warn_of_lost_clamp(r, section, given[like - param_table]);
     return ERR_OK;
+}
+
+static enum err lacks(struct reader *r, const struct case_section *cs, const struct param *p)
+{
+    char unit[40] = "";
+    if (strcmp(p->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", p->unit);
+    if (cs->id == SECTION_top)
+        return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", p->key, p->meaning,
+                        unit);
+    return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word, cs->name,
+                    p->key, p->meaning, unit);
 }
 
 /* Values that must be given, and were not, are still NaN. */
@@ -257,14 +282,11 @@ static enum err check_needed(struct reader *r)
             if ((int)p->section != cs->id || !p->number.needed) continue;
             double value;
             memcpy(&value, section + p->offset, sizeof value);
-            if (!isnan(value)) continue;
-            char unit[40] = "";
-            if (strcmp(p->unit, "1") != 0) snprintf(unit, sizeof unit, " (%s)", p->unit);
-            if (cs->id == SECTION_top)
-                return bad_line(r, 1, "`%s` is missing at the top of the file: %s%s", p->key,
-                                p->meaning, unit);
-            return bad_line(r, cs->line, "[%s %s] lacks `%s`: %s%s", section_table[cs->id].word,
-                            cs->name, p->key, p->meaning, unit);
+            /* What has a wrong value, or an unknown name that may be it, is not missing. */
+            if (!isnan(value) || cs->incomplete ||
+                scene_given(r->scene, (enum section_id)cs->id, cs->index, p->key))
+                continue;
+            TRY(case_go_on(r, lacks(r, cs, p)));
         }
     }
     return ERR_OK;
@@ -281,9 +303,12 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
                                   sizeof *r->scene->given, "case file", r->diag);
     if (!r->scene->given) return ERR_MEMORY;
-    for (int k = 0; k < r->n_sections; k++) TRY(read_section(r, k));
+    for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
     TRY(check_needed(r));
+    /* What concerns several values is looked at only where each of them is sound. */
+    if (r->n_problems > 0) return ERR_INPUT;
     TRY(case_check(r));
+    if (r->n_problems > 0) return ERR_INPUT;
     return motion_load(r->scene, r->diag);
 }
 
@@ -298,7 +323,11 @@ enum err scene_parse(struct scene *s, const char *text, const char *path, int n_
                          sizeof s->path - 1);
     memcpy(s->path, path, strlen(path) + 1);
     struct reader r = {.scene = s, .diag = d};
-    const enum err err = read_all(&r, text, n_sets, sets);
+    enum err err = read_all(&r, text, n_sets, sets);
+    if (err == ERR_OK || err == ERR_INPUT) {
+        const enum err noted = case_report(&r);
+        if (noted) err = noted;
+    }
     arena_free(&r.temp);
     if (err) scene_free(s);
     return err;

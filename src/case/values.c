@@ -124,10 +124,11 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
                                      p->type == PARAM_TIME_EXPR ? EXPR_IN_TIME : EXPR_IN_SPACE};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
+        r->cause_named = false;
         struct dim dim = {0};
         const enum err err =
             expr_compile(&field->e[k], piece, &names, &dim, &r->scene->arena, why, r->diag);
-        if (err == ERR_INPUT) return bad_value(r, e, "%s", why);
+        if (err == ERR_INPUT) return case_bad_expression(r, e, why);
         if (err) return err;
         TRY(case_check_dim(r, e, &dim, p->unit));
     }

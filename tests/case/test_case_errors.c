@@ -51,7 +51,7 @@ static const struct {
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\n", NULL,
      "bad.cfg:3: [solid a] lacks `poisson`: Poisson ratio nu"},
     {TOP, NULL,
-     "bad.cfg:1: nothing to simulate: neither a [fluid NAME] nor a [solid NAME] section"},
+     "bad.cfg:1: nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] section"},
     {"dp = 0.5 MPa\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 0.5 MPa: a pressure (Pa) where a length (m) is expected"},
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 mm\npoisson = 0.3\n",
@@ -257,35 +257,34 @@ static const struct {
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
     {TOP FLUID "[wall w]\nshape = box 0, -5 mm, 20 mm, 0\nslip = none\n", NULL,
-     "bad.cfg, line 8: [wall w] slip calls for NO_SLIP, which needs LAMINAR "
+     "bad.cfg:8: [wall w] slip calls for NO_SLIP, which needs LAMINAR "
      "(fluid.laminar_viscosity > "
      "0): fluid sticks to a surface by its laminar viscosity"},
     {TOP SOLID "slip = none\n", NULL,
-     "bad.cfg, line 8: [solid a] slip calls for NO_SLIP, which needs LAMINAR"},
+     "bad.cfg:8: [solid a] slip calls for NO_SLIP, which needs LAMINAR"},
     {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
-     "bad.cfg, line 7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET, "
-     "called for "
-     "by line 3: integrator: its two-step form takes friction in the middle"},
+     "bad.cfg:7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET "
+     ""
+     "(called for by `integrator` in line 3): its two-step form takes friction in the middle"},
     {TOP FLUID, "w.diffusion_form=fourtakas",
-     "bad.cfg, --set: [fluid w] diffusion_form is of DIFFUSION, which the scene does not have: "
-     "fluid.density_diffusion > 0 calls for it"},
+     "--set: [fluid w] diffusion_form does nothing without DIFFUSION: leave it out, or call for "
+     "that by fluid.density_diffusion > 0"},
     {TOP SOLID "hourglass = 0\nhourglass_form = printed\n", NULL,
-     "bad.cfg, line 9: [solid a] hourglass_form is of HOURGLASS, which the scene does not have: "
-     "solid.hourglass > 0 calls for it"},
+     "bad.cfg:9: [solid a] hourglass_form does nothing without HOURGLASS: leave it out, or call "
+     "for that by solid.hourglass > 0"},
     {TOP SOLID "artificial_viscosity = 0\nviscosity_form = printed\n", NULL,
-     "bad.cfg, line 9: [solid a] viscosity_form is of SOLID_VISCOSITY, which the scene does not "
-     "have: solid.artificial_viscosity > 0 calls for it"},
+     "bad.cfg:9: [solid a] viscosity_form does nothing without SOLID_VISCOSITY: leave it out, "
+     "or call for that by solid.artificial_viscosity > 0"},
     {TOP FLUID, "numerics.interface=held",
-     "bad.cfg, --set: [numerics] interface is of COUPLING, which the scene does not have: a "
-     "[fluid] "
-     "and a [solid] section calls for it"},
+     "--set: [numerics] interface does nothing without COUPLING: leave it out, or call for that by "
+     "a [fluid] and a [solid] section"},
     {TOP SOLID "[numerics]\ninterface = held\n", NULL,
-     "bad.cfg, line 9: [numerics] interface is of COUPLING, which the scene does not have: "},
+     "bad.cfg:9: [numerics] interface does nothing without COUPLING: leave it out"},
     {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
                "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",
      NULL,
-     "bad.cfg, line 8: [contact c] calls for CONTACT, which excludes PERIODIC, called for by line "
-     "16: [domain] periodic: contact does not reach through the sides"},
+     "bad.cfg:8: [contact c] calls for CONTACT, which excludes PERIODIC (called for by [domain] "
+     "periodic in line 16): contact does not reach through the sides"},
     {TOP FLUID "[contact c]\n", NULL,
      "bad.cfg:6: [contact c] needs a [solid] and something that it may touch"},
     {TOP FLUID "[load l]\nshape = box 0, 0, 1 mm, 1 mm\nforce = 1, 0\n", NULL, "bad.cfg:6: "},
@@ -298,7 +297,7 @@ static const struct {
      "be "
      "a whole number of them; 0.02 m would fit"},
     {TOP SOLID "[domain]\nperiodic = x\nlower = 0, 0\nupper = 0.1, 0.1\n", NULL,
-     "bad.cfg, line 9: [domain] periodic calls for PERIODIC, which needs FLUID (a [fluid] "
+     "bad.cfg:9: [domain] periodic calls for PERIODIC, which needs FLUID (a [fluid] "
      "section): "
      "fluid alone goes round through the sides"},
     {TOP SOLID
@@ -387,11 +386,84 @@ static void test_each_key_refuses_a_wrong_value_by_name(void)
         struct diag d = {0};
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d),
                                       text);
-        TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE(message, d.text, strlen(message), text);
+        char said[sizeof d.text + sizeof d.more + 1]; /* what is missing in the case is said, too */
+        snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
+        if (!strstr(said, message)) TEST_ASSERT_EQUAL_STRING_MESSAGE(message, said, text);
         tried++;
     }
     TEST_ASSERT_TRUE(tried > 60);
     printf("found: %d keys, each refuses a wrong value by name\n", tried);
+}
+
+/* --- several problems at once --- */
+
+static void refuses_all(const char *text, int n_sets, const char *const *sets, const char *want)
+{
+    static char said[sizeof((struct diag *)0)->text + sizeof((struct diag *)0)->more];
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", n_sets, sets, &d));
+    snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
+    TEST_ASSERT_EQUAL_STRING(want, said);
+}
+
+/* Sorted by line, each once, and nothing that only follows from another: H and `b` are known to be lost,
+ * poisson may be what is misspelt, young is given. */
+static void test_all_problems_of_a_case_are_reported(void)
+{
+    static const char *const sets[] = {"output.probe_intervall=1"};
+    refuses_all("dp = 1 MPa\nend_time 1 s\n[constant]\nH = 3\n"
+                "[solid a]\nshape = bix 0\nyoung = 1/0\ndensity = H\npoison = 0.3\n"
+                "[solids b]\nyoung = foo\n[solid c]\nlike = b\n",
+                1, sets,
+                "--set output.probe_intervall=1: unknown key `probe_intervall`; did you mean "
+                "`probe_interval`?\n"
+                "bad.cfg:1: dp = 1 MPa: a pressure (Pa) where a length (m) is expected\n"
+                "bad.cfg:2: `end_time 1 s` is neither `key = value` nor `[section]`\n"
+                "bad.cfg:3: unknown section [constant]; did you mean [constants]?\n"
+                "bad.cfg:6: shape = bix 0: `bix` is no shape; known: box, polygon, polyline, "
+                "circle\n"
+                "bad.cfg:7: young = 1/0: division by zero\n"
+                "bad.cfg:9: unknown key `poison` in [solid]; did you mean `poisson`?\n"
+                "bad.cfg:10: unknown section [solids]; did you mean [solid]?\n");
+}
+
+/* A constant that is wrong is reported where it stands, not at each use. */
+static void test_uses_of_a_wrong_constant_are_not_problems(void)
+{
+    refuses_all("dp = 1 mm\nend_time = T\n[constants]\nH = 3 foot\nT = 2*H\n" SOLID, 0, NULL,
+                "bad.cfg:4: H = 3 foot: `foot` behind 3 is no unit (units: m km cm mm um, s min ms "
+                "us, kg g, N, Pa kPa MPa GPa, Hz kHz, rad deg, %)\n");
+}
+
+/* What concerns several values is looked at in every section. */
+static void test_checks_go_on_after_the_first(void)
+{
+    refuses_all(TOP SOLID "joined = zz\n[probe p]\nbody = zz\n[load l]\nbody = a\n"
+                          "[motion m]\nkind = sine\n[contact c]\n[reference r]\n",
+                0, NULL,
+                "bad.cfg:3: joined = zz: no [solid] of that name\n"
+                "bad.cfg:9: body = zz: no [solid] of that name\n"
+                "bad.cfg:11: [load l] needs a `shape`, the region it acts on\n"
+                "bad.cfg:13: [motion m] kind = sine needs `period`\n"
+                "bad.cfg:15: [contact c] needs a [solid] and something that it may touch\n"
+                "bad.cfg:16: [reference r] needs `probe`\n");
+}
+
+static void test_twenty_problems_are_enough(void)
+{
+    char text[2000] = TOP;
+    for (int k = 0; k < 30; k++) sprintf(text + strlen(text), "bad%d\n", k);
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d));
+    int lines = 0;
+    for (const char *c = d.more; *c; c++) lines += *c == '\n';
+    TEST_ASSERT_EQUAL_INT(20, lines);
+    TEST_ASSERT_NOT_NULL(strstr(d.more, "`bad19`"));
+    TEST_ASSERT_NULL(strstr(d.more, "`bad20`"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(d.more, "bad.cfg: reading stopped after 20 problems; there may be more\n"));
 }
 
 static void read_bytes(const char *bytes, size_t n, const char *message)
@@ -435,6 +507,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_each_key_refuses_a_wrong_value_by_name);
     RUN_TEST(test_each_is_refused_with_its_sentence);
+    RUN_TEST(test_all_problems_of_a_case_are_reported);
+    RUN_TEST(test_uses_of_a_wrong_constant_are_not_problems);
+    RUN_TEST(test_checks_go_on_after_the_first);
+    RUN_TEST(test_twenty_problems_are_enough);
     RUN_TEST(test_a_zero_byte_is_refused);
     RUN_TEST(test_a_file_that_is_not_there);
     RUN_TEST(test_a_folder_is_no_file);

@@ -20,6 +20,11 @@ for name in $names; do
 done
 refuses 1 "nearest name is dam_break" --new dambreak
 refuses 1 "did you mean \`gravity\`" --preview gate.cfg --set gravty=1,2
+# All that is wrong with a case is said in one run.
+sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg
+"$sphfsi" wrong.cfg --quiet >out 2>err
+[ $? = 1 ] && [ "$(grep -c '^sphfsi: wrong.cfg:' err)" = 3 ] || fail "three mistakes: $(cat err)"
+[ ! -e runs/wrong ] || fail "a wrong case leaves a folder"
 refuses 1 "nearest one is --preview" --previw gate.cfg
 refuses 1 "takes no operand" --keys=all
 

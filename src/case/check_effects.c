@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ * Which effects go together, from case/rules.def. */
+#include "case/case.h"
+#include "case/effects.h"
+
+#include <stdio.h>
+
+enum { NAME_TEXT = 2 * SCENE_NAME };
+
+struct rule {
+    enum effect effect, other;
+    bool excludes;
+    const char *reason;
+};
+
+static const struct rule rules[] = {
+#define NEEDS(effect, other, reason) {EFFECT_##effect, EFFECT_##other, false, reason},
+#define EXCLUDES(effect, other, reason) {EFFECT_##effect, EFFECT_##other, true, reason},
+#include "case/rules.def"
+};
+
+/* A key that belongs to an effect. */
+struct owned {
+    enum section_id section;
+    const char *key;
+    enum effect effect;
+};
+
+static const struct owned owned[] = {
+#define OWNED(section, key, effect) {SECTION_##section, #key, EFFECT_##effect},
+#include "case/rules.def"
+};
+
+/* The line of a caller; that of the head of the file where it is a default. */
+static int line_of(const struct scene *s, const struct effect_caller *by)
+{
+    const struct scene_section_common *const section = section_at(s, by->section, by->index);
+    const struct scene_given *const given = scene_given(s, by->section, by->index, by->key);
+    return given ? given->line : section->line > 0 ? section->line : 1;
+}
+
+/* "[fluid water] shifting", "integrator". */
+static void name_of(const struct scene *s, const struct effect_caller *by, char name[NAME_TEXT])
+{
+    const struct section_info *const info = &section_table[by->section];
+    const struct scene_section_common *const section = section_at(s, by->section, by->index);
+    if (by->section == SECTION_top)
+        snprintf(name, NAME_TEXT, "`%s`", by->key);
+    else
+        snprintf(name, NAME_TEXT, "[%s%s%s]%s%s", info->word, info->named ? " " : "", section->name,
+                 *by->key ? " " : "", by->key);
+}
+
+static enum err check_rule(struct reader *r, const struct rule *rule)
+{
+    const struct scene *const s = r->scene;
+    struct effect_caller by, other;
+    if (!effect_called(s, rule->effect, &by)) return ERR_OK;
+    if (effect_called(s, rule->other, &other) != rule->excludes) return ERR_OK;
+    char text[NAME_TEXT], its[NAME_TEXT];
+    name_of(s, &by, text);
+    const char *const name = effect_table[rule->effect].name;
+    if (!rule->excludes)
+        return bad_line(r, line_of(s, &by), "%s calls for %s, which needs %s (%s): %s", text, name,
+                        effect_table[rule->other].name, effect_table[rule->other].key,
+                        rule->reason);
+    name_of(s, &other, its);
+    return bad_line(r, line_of(s, &by),
+                    "%s calls for %s, which excludes %s (called for by %s in line %d): %s", text,
+                    name, effect_table[rule->other].name, its, line_of(s, &other), rule->reason);
+}
+
+static enum err check_owned(struct reader *r, const struct owned *row)
+{
+    const struct scene *const s = r->scene;
+    const struct param *const p = param_find(row->section, row->key);
+    struct effect_caller by;
+    if (effect_called(s, row->effect, &by)) return ERR_OK;
+    for (int k = 0; k < section_count(s, row->section); k++) {
+        if (param_is_default(p, section_at(s, row->section, k))) continue;
+        char text[NAME_TEXT];
+        by = (struct effect_caller){row->section, k, row->key};
+        name_of(s, &by, text);
+        TRY(case_go_on(r, bad_line(r, line_of(s, &by),
+                                   "%s does nothing without %s: leave it out, or call for that by "
+                                   "%s",
+                                   text, effect_table[row->effect].name,
+                                   effect_table[row->effect].key)));
+    }
+    return ERR_OK;
+}
+
+enum err case_check_effects(struct reader *r)
+{
+    const char *const left_out = effect_left_out(r->scene);
+    if (left_out)
+        return bad_line(r, 1, "the case calls for %s, which this build is without", left_out);
+    for (size_t k = 0; k < COUNT_OF(rules); k++) TRY(case_go_on(r, check_rule(r, &rules[k])));
+    for (size_t k = 0; k < COUNT_OF(owned); k++) TRY(case_go_on(r, check_owned(r, &owned[k])));
+    return ERR_OK;
+}
