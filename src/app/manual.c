@@ -45,6 +45,7 @@ static void default_of(const struct param *p, char *text, size_t size)
         break;
     }
     case PARAM_VECTOR:
+    case PARAM_TIME_VECTOR:
         snprintf(text, size, "%g, %g", p->vector_default[0], p->vector_default[1]);
         break;
     case PARAM_TEXT: snprintf(text, size, "%s", p->text_default); break;
@@ -85,6 +86,7 @@ static void type_of(const struct param *p, char *text, size_t size)
         [PARAM_CHOICE] = "choice",
         [PARAM_TEXT] = "text",
         [PARAM_VECTOR] = "two numbers",
+        [PARAM_TIME_VECTOR] = "two numbers or expressions in t",
         [PARAM_FIELD_EXPR] = "expression in x, y",
         [PARAM_SHAPES] = "shape, may be repeated",
         [PARAM_NUMBERS] = "numbers",

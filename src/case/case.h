@@ -133,7 +133,19 @@ enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case/check_probes.c */
 enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
-/* case/motion.c */
+/* case/table.c: what a table is of, its columns, and whether it begins with zeros. */
+struct table_kind {
+    const char *what, *columns;
+    bool from_rest;
+};
+/* Reads the file `name` that a key in a line names, as messages spell it. */
+enum err table_load(struct scene *s, struct scene_table *table, const struct table_kind *kind,
+                    const char *name, int line, const char *key, struct diag *d) SPHFSI_CHECKED;
+/* The row at or before a time, but neither before the first one nor the last one. */
+int table_row(const struct scene_table *table, double t);
+
+/* case/motion.c, case/gravity.c: their tables. */
 enum err motion_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
+enum err gravity_load(struct scene *s, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -427,6 +427,25 @@ static enum err check_reference(struct reader *r, const struct scene_reference *
                     ref->common.name, ref->probe);
 }
 
+/* An expression must have a value at the start and at a thousand times until the end. */
+static enum err check_gravity(struct reader *r)
+{
+    enum { TIMES = 1000 };
+    const struct scene_top *const top = &r->scene->top;
+    const struct scene_given *const given = scene_given(r->scene, SECTION_top, 0, "gravity");
+    for (int c = 0; c < 2; c++)
+        for (int n = 0; top->gravity_in_time.e[c] && n <= TIMES; n++) {
+            const double t = top->end_time * n / TIMES;
+            if (isfinite(scene_expr_at(top->gravity_in_time.e[c], t, 0))) continue;
+            const char *const text[] = {c ? "..., " : "", c ? "" : ", ..."};
+            return bad_line(r, given ? given->line : 1,
+                            "gravity = %s%.200s%s: component %d is not finite at t = %g s; it must "
+                            "be at all times up to end_time",
+                            text[0], expr_source(top->gravity_in_time.e[c]), text[1], c + 1, t);
+        }
+    return ERR_OK;
+}
+
 /* Named for nothing; without fluid or solid case/rules.def refuses it. */
 static void check_interface(struct reader *r)
 {
@@ -454,6 +473,7 @@ enum err case_check(struct reader *r)
         return bad_line(r, 1,
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");
+    TRY(case_go_on(r, check_gravity(r)));
     TRY(case_go_on(r, check_fluids(r)));
     TRY(check_moved(r));
     for (int k = 0; k < s->n_motion; k++) TRY(case_go_on(r, check_motion(r, &s->motion[k])));

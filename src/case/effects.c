@@ -32,6 +32,9 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
               }))
 #define LATER false
 #define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
+#define HAS_GRAVITY                                                               \
+    called_by(by, SECTION_top, *s->top.gravity_file ? "gravity_file" : "gravity", \
+              has_gravity(s) ? 0 : -1)
 #define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
 
 /* The first contact that a wall takes part in; -1: none. */
@@ -45,6 +48,13 @@ static int first_with_wall(const struct scene *s)
             return k;
     }
     return -1;
+}
+
+static bool has_gravity(const struct scene *s)
+{
+    const struct scene_expr *const e = &s->top.gravity_in_time;
+    return s->top.gravity[0] != 0 || s->top.gravity[1] != 0 || e->e[0] || e->e[1] ||
+           *s->top.gravity_file;
 }
 
 /* The first probe of the force on a wall; -1: none. */

@@ -420,6 +420,8 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
     return ERR_OK;
 }
 
+bool expr_is_number(const struct expr *e) { return e->n == 1 && e->op[0].code == OP_NUMBER; }
+
 const char *expr_source(const struct expr *e) { return e->source; }
 
 double scene_expr_at(const struct expr *e, double x, double y)

@@ -80,6 +80,9 @@ bool expr_steps(const struct expr *e);
  * never taken for a jump, however steep; where much else goes on in the interval, it may be missed. */
 bool expr_jumps(const struct expr *e, double from, double to, double size, double *at);
 
+/* Whether it is one number, the same everywhere. */
+bool expr_is_number(const struct expr *e);
+
 /* The text it was compiled from. */
 const char *expr_source(const struct expr *e);
 

@@ -5,70 +5,9 @@
 
 #include "case/expr.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-
-enum { MAX_ROWS = 1000000 };
-
-/* --- table files: time, dx, dy in columns, commas or spaces between them --- */
-
-struct table_file {
-    FILE *file;
-    const char *path;
-    int line;
-    struct diag *diag;
-};
-
-/* 1: a row; 0: end of the file; -1: failed, in the diag. Lines that begin with # are comments, and
- * so is a head that begins with a letter. */
-static int read_row(struct table_file *t, double row[3])
-{
-    char text[512];
-    /* What fgets does not write stays 1, so the last zero is the one that it has put. */
-    while (memset(text, 1, sizeof text), fgets(text, sizeof text, t->file)) {
-        t->line++;
-        const size_t length = strlen(text);
-        if (memchr(text + length + 1, 0, sizeof text - length - 1)) {
-            diag_fail(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
-                      t->line);
-            return -1;
-        }
-        const char *at = text + strspn(text, " \t\r\n");
-        const bool head =
-            t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
-        if (length == sizeof text - 1 && text[length - 1] != '\n') {
-            diag_fail(t->diag, ERR_INPUT, "%s:%d: a line of more than %zu characters", t->path,
-                      t->line, sizeof text - 2);
-            return -1;
-        }
-        if (!*at || *at == '#' || head) continue;
-        for (int k = 0; k < 3; k++) {
-            char *end;
-            row[k] = strtod(at, &end);
-            if (end == at || !isfinite(row[k]) || fabs(row[k]) > 1e9) {
-                diag_fail(t->diag, ERR_INPUT,
-                          "%s:%d: three numbers are expected: time (s), dx (m), dy (m)", t->path,
-                          t->line);
-                return -1;
-            }
-            at = end + strspn(end, " \t\r\n");
-            if (*at == ',' || *at == ';') at += 1 + strspn(at + 1, " \t\r\n");
-        }
-        if (!*at) return 1;
-        diag_fail(t->diag, ERR_INPUT,
-                  "%s:%d: more than three columns; time (s), dx (m), dy (m) are "
-                  "expected",
-                  t->path, t->line);
-        return -1;
-    }
-    if (!ferror(t->file)) return 0;
-    diag_fail(t->diag, ERR_INPUT, "%s: cannot be read: %s", t->path, strerror(errno));
-    return -1;
-}
 
 /* Slopes of the monotone cubic (Fritsch and Carlson 1980, with the harmonic mean of Brodlie): no
  * overshoot between rows. Zero at both ends, where the motion starts and ends at rest. */
@@ -82,78 +21,22 @@ static void set_slopes(int n, const double *t, const double *d, double *v)
     }
 }
 
-static enum err fill_table(struct motion_table *table, struct table_file *t, int rows)
-{
-    double row[3];
-    rewind(t->file);
-    t->line = 0;
-    for (table->n = 0; table->n < rows; table->n++) {
-        const int k = table->n;
-        if (read_row(t, row) != 1)
-            return diag_fail(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
-        if (k > 0 && row[0] <= table->t[k - 1])
-            return diag_fail(t->diag, ERR_INPUT, "%s:%d: time %g s does not come after %g s",
-                             t->path, t->line, row[0], table->t[k - 1]);
-        if (k == 0 && (row[0] < 0 || row[1] != 0 || row[2] != 0))
-            return diag_fail(t->diag, ERR_INPUT,
-                             "%s:%d: the first row must be a time of 0 or more "
-                             "and no displacement, `0, 0, 0` as a rule",
-                             t->path, t->line);
-        table->t[k] = row[0];
-        table->dx[k] = row[1];
-        table->dy[k] = row[2];
-    }
-    set_slopes(table->n, table->t, table->dx, table->vx);
-    set_slopes(table->n, table->t, table->dy, table->vy);
-    return ERR_OK;
-}
-
-static enum err read_table(struct scene *s, struct motion_table *table, struct table_file *t)
-{
-    double row[3];
-    int rows = 0, more;
-    while ((more = read_row(t, row)) > 0)
-        if (++rows > MAX_ROWS)
-            return diag_fail(t->diag, ERR_INPUT, "%s: more than %d rows", t->path, MAX_ROWS);
-    if (more < 0) return ERR_INPUT;
-    if (rows < 2)
-        return diag_fail(t->diag, ERR_INPUT, "%s: a motion needs two rows or more; there %s %d",
-                         t->path, rows == 1 ? "is" : "are", rows);
-    double **const columns[] = {&table->t, &table->dx, &table->dy, &table->vx, &table->vy};
-    for (size_t k = 0; k < COUNT_OF(columns); k++) {
-        *columns[k] =
-            arena_alloc(&s->arena, (size_t)rows, sizeof(double), "table of a motion", t->diag);
-        if (!*columns[k]) return ERR_MEMORY;
-    }
-    return fill_table(table, t, rows);
-}
-
 enum err motion_load(struct scene *s, struct diag *d)
 {
+    static const struct table_kind kind = {"a motion", "time (s), dx (m), dy (m)", true};
     s->motion_data =
         arena_alloc(&s->arena, (size_t)s->n_motion, sizeof *s->motion_data, "motions", d);
     if (!s->motion_data) return ERR_MEMORY;
     for (int k = 0; k < s->n_motion; k++) {
         const struct scene_motion *m = &s->motion[k];
+        struct scene_table *const table = &s->motion_data[k];
         const bool tabled = m->kind == MOTION_TABLE || (m->kind == MOTION_ROTATION && *m->file);
         if (!tabled) continue;
-        char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
-        scene_location(s, m->common.line, place);
-        if (!scene_file(s, m->file, path, sizeof path))
-            return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, m->file);
-        /* Opening a pipe would wait for whoever writes to it. */
-        struct stat info;
-        if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-            return diag_fail(d, ERR_INPUT, "%s: [motion %s] file = %s is not a regular file", place,
-                             m->common.name, m->file);
-        FILE *file = fopen(path, "r");
-        if (!file)
-            return diag_fail(d, ERR_INPUT, "%s: [motion %s] file = %s cannot be opened: %s", place,
-                             m->common.name, m->file, strerror(errno));
-        struct table_file t = {file, m->file, 0, d};
-        const enum err err = read_table(s, &s->motion_data[k], &t);
-        fclose(file);
-        if (err) return err;
+        char name[2 * SCENE_NAME];
+        snprintf(name, sizeof name, "[motion %s] file", m->common.name);
+        TRY(table_load(s, table, &kind, m->file, m->common.line, name, d));
+        set_slopes(table->n, table->t, table->x, table->vx);
+        set_slopes(table->n, table->t, table->y, table->vy);
     }
     return ERR_OK;
 }
@@ -187,26 +70,19 @@ static void hermite_at(const double *t, const double *d, const double *v, int k,
     *curvature = (2 * b + 6 * u * c) / (h * h);
 }
 
-static struct motion_state table_at(const struct motion_table *table, double t)
+static struct motion_state table_at(const struct scene_table *table, double t)
 {
     struct motion_state m = {0};
     const int n = table->n;
     if (n == 0 || t <= table->t[0]) return m;
     if (t >= table->t[n - 1]) {
-        m.d[0] = table->dx[n - 1];
-        m.d[1] = table->dy[n - 1];
+        m.d[0] = table->x[n - 1];
+        m.d[1] = table->y[n - 1];
         return m;
     }
-    int low = 0, high = n - 1;
-    while (high - low > 1) {
-        const int middle = low + (high - low) / 2;
-        if (table->t[middle] <= t)
-            low = middle;
-        else
-            high = middle;
-    }
-    hermite_at(table->t, table->dx, table->vx, low, t, &m.d[0], &m.v[0], &m.a[0]);
-    hermite_at(table->t, table->dy, table->vy, low, t, &m.d[1], &m.v[1], &m.a[1]);
+    const int low = table_row(table, t);
+    hermite_at(table->t, table->x, table->vx, low, t, &m.d[0], &m.v[0], &m.a[0]);
+    hermite_at(table->t, table->y, table->vy, low, t, &m.d[1], &m.v[1], &m.a[1]);
     return m;
 }
 
@@ -220,8 +96,8 @@ static void sine_at(const struct scene_motion *motion, double t, double *d, doub
     *a = -w * w * sin(w * t + phase);
 }
 
-static void turning_at(const struct scene_motion *motion, const struct motion_table *table,
-                       double t, struct motion_state *m)
+static void turning_at(const struct scene_motion *motion, const struct scene_table *table, double t,
+                       struct motion_state *m)
 {
     double d, v, a;
     sine_at(motion, t, &d, &v, &a);
@@ -244,7 +120,7 @@ static void expression_at(const struct scene_expr *of, double t, double *d, doub
 }
 
 static struct motion_state moving_at(const struct scene_motion *motion,
-                                     const struct motion_table *table, double t)
+                                     const struct scene_table *table, double t)
 {
     struct motion_state m = {0};
     switch ((enum motion_kind)motion->kind) {

@@ -32,6 +32,9 @@ const struct param param_table[PARAM_COUNT] = {
 #define TEXT(section, key, def, meaning) {ROW(section, TEXT, key, meaning), .text_default = def},
 #define VECTOR(section, key, dx, dy, unit_, meaning) \
     {ROW(section, VECTOR, key, meaning), .unit = unit_, .vector_default = {dx, dy}},
+#define TIME_VECTOR(section_, key_, dx, dy, unit_, meaning)                                \
+    {ROW(section_, TIME_VECTOR, key_, meaning), .unit = unit_, .vector_default = {dx, dy}, \
+     .count = 2, .expr_offset = offsetof(struct scene_##section_, key_##_in_time)},
 #define FIELD_EXPR(section, key, count_, unit_, meaning) \
     {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
 #define TIME_EXPR(section, key, unit_, meaning) \
@@ -130,6 +133,13 @@ void nearest_offer(struct nearest *best, const char *word, const char *candidate
     *best = (struct nearest){candidate, distance};
 }
 
+const struct expr *param_in_time(const struct param *p, const void *section, int component)
+{
+    if (p->type != PARAM_TIME_VECTOR) return NULL;
+    const struct scene_expr *const in_time = (const void *)((const char *)section + p->expr_offset);
+    return in_time->e[component];
+}
+
 bool param_is_default(const struct param *p, const void *section)
 {
     const char *const value = (const char *)section + p->offset;
@@ -140,8 +150,10 @@ bool param_is_default(const struct param *p, const void *section)
         memcpy(number, value, sizeof *number);
         return number[0] == p->number.value || isnan(number[0]);
     case PARAM_VECTOR:
+    case PARAM_TIME_VECTOR:
         memcpy(number, value, sizeof number);
-        return number[0] == p->vector_default[0] && number[1] == p->vector_default[1];
+        return !param_in_time(p, section, 0) && !param_in_time(p, section, 1) &&
+               number[0] == p->vector_default[0] && number[1] == p->vector_default[1];
     case PARAM_INTEGER:
     case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number.value;
     case PARAM_TEXT: return strcmp(value, p->text_default) == 0;

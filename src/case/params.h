@@ -31,6 +31,7 @@ enum param_type {
     PARAM_CHOICE,
     PARAM_TEXT,
     PARAM_VECTOR,
+    PARAM_TIME_VECTOR,
     PARAM_FIELD_EXPR,
     PARAM_TIME_EXPR,
     PARAM_SHAPES,
@@ -57,8 +58,9 @@ struct param {
     struct param_default number; /* of a REAL, INTEGER, CHOICE (index) */
     double vector_default[2];
     struct param_bound low, high; /* of a REAL, INTEGER */
-    int count;                    /* expressions of a FIELD_EXPR or TIME_EXPR */
+    int count;                    /* expressions of a FIELD_EXPR, TIME_EXPR or TIME_VECTOR */
     size_t offset;                /* in the section's struct */
+    size_t expr_offset;           /* of the expressions of a TIME_VECTOR */
 };
 /* The number of keys in all. */
 enum {
@@ -68,6 +70,7 @@ enum {
 #define CHOICE(section, key, def, names, meaning) ONE(section, key)
 #define TEXT(section, key, def, meaning) ONE(section, key)
 #define VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
+#define TIME_VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
 #define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
 #define TIME_EXPR(section, key, unit, meaning) ONE(section, key)
 #define SHAPES(section, key, meaning) ONE(section, key)
@@ -87,6 +90,9 @@ const struct param *param_find(enum section_id section, const char *key);
 
 /* Why a key of an older release no longer does anything; NULL: it is none of those. */
 const char *param_retired(enum section_id section, const char *key);
+
+/* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
+const struct expr *param_in_time(const struct param *p, const void *section, int component);
 
 /* Whether a section has the value that the key has when it is left out. */
 bool param_is_default(const struct param *p, const void *section);

@@ -19,7 +19,8 @@ static void set_defaults(void *section, enum section_id id)
         char *const place = (char *)section + p->offset;
         switch (p->type) {
         case PARAM_REAL: memcpy(place, &p->number.value, sizeof(double)); break;
-        case PARAM_VECTOR: memcpy(place, p->vector_default, 2 * sizeof(double)); break;
+        case PARAM_VECTOR:
+        case PARAM_TIME_VECTOR: memcpy(place, p->vector_default, 2 * sizeof(double)); break;
         case PARAM_INTEGER:
         case PARAM_CHOICE: *(int *)(void *)place = (int)p->number.value; break;
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
@@ -309,6 +310,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     if (r->n_problems > 0) return ERR_INPUT;
     TRY(case_check(r));
     if (r->n_problems > 0) return ERR_INPUT;
+    TRY(gravity_load(r->scene, r->diag));
     return motion_load(r->scene, r->diag);
 }
 

@@ -47,6 +47,9 @@ struct scene_section_common {
 #define CHOICE(section, key, def, names, meaning) int key;
 #define TEXT(section, key, def, meaning) char key[SCENE_TEXT];
 #define VECTOR(section, key, dx, dy, unit, meaning) double key[2];
+#define TIME_VECTOR(section, key, dx, dy, unit, meaning) \
+    double key[2];                                       \
+    struct scene_expr key##_in_time;
 #define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
 #define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
 #define SHAPES(section, key, meaning) struct shape_list key;
@@ -146,6 +149,7 @@ struct scene_reference {
 #undef CHOICE
 #undef TEXT
 #undef VECTOR
+#undef TIME_VECTOR
 #undef FIELD_EXPR
 #undef TIME_EXPR
 #undef SHAPES
@@ -208,11 +212,11 @@ struct scene_points {
     uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
 };
 
-/* Tabulated motion, loaded from its file: n rows. n == 0: none. */
-struct motion_table {
+/* A table, loaded from its file: n rows of a time and two values. n == 0: none. */
+struct scene_table {
     int n;
-    double *t, *dx, *dy;
-    double *vx, *vy; /* slopes at the rows, so that the velocity is continuous */
+    double *t, *x, *y;
+    double *vx, *vy; /* of a motion: slopes at the rows, so that the velocity is continuous */
 };
 
 /* A named constant, evaluated. plain: it was written without a unit. */
@@ -251,9 +255,10 @@ struct scene {
     int n_given;
     struct scene_given *given;
     struct test_switches test;
-    struct motion_table *motion_data; /* [n_motion] */
-    struct motion_hook *motion_hook;  /* [n_motion]; NULL: none */
-    struct scene_points points[3]; /* by enum kind of particles/particles.h: fluid, wall, solid */
+    struct scene_table *motion_data; /* [n_motion] */
+    struct scene_table gravity_data;
+    struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
+    struct scene_points points[3];   /* by enum kind of particles/particles.h: fluid, wall, solid */
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
     double domain_lower[2], domain_upper[2]; /* in effect */
@@ -293,6 +298,11 @@ struct motion_hook { /* a motion that a program with the library prescribes inst
     void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
     void *context;
 };
+/* Gravity at a time, m/s^2: top.gravity, or what stands in its place where it is given as expressions in t,
+ * and the table of top.gravity_file. top.gravity itself is that at t = 0 without the table. */
+void scene_gravity_at(const struct scene *s, double t, double g[2]);
+bool scene_gravity_varies(const struct scene *s);
+
 struct motion_state motion_at(const struct scene *s, int motion_index, double time);
 
 /* Where a motion puts a point that began at (X, Y): x, v and a. */

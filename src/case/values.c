@@ -83,14 +83,19 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
     return ERR_OK;
 }
 
+static enum err check_pair(struct reader *r, const struct entry *e, const struct param *p, int n)
+{
+    if (n == 2) return ERR_OK;
+    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d", p->key,
+                     n == 1 ? "is" : "are", n);
+}
+
 static enum err read_vector(struct reader *r, const struct entry *e, const struct param *p,
                             double value[2])
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
-    if (n != 2)
-        return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d", p->key,
-                         n == 1 ? "is" : "are", n);
+    TRY(check_pair(r, e, p, n));
     for (int k = 0; k < 2 && slice_next(&rest, ',', &piece); k++) {
         TRY(case_number(r, e, piece, p->unit, &value[k]));
         if (!(fabs(value[k]) <= 1e15)) return bad_value(r, e, "out of range: beyond 1e15");
@@ -116,12 +121,13 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
+    if (p->type == PARAM_TIME_VECTOR) TRY(check_pair(r, e, p, n));
     if (n != p->count)
         return bad_value(r, e, "%s expected, with commas between them; there %s %d",
                          p->count == 1 ? "one expression is" : "two expressions are",
                          n == 1 ? "is" : "are", n);
     const struct expr_names names = {r, case_name,
-                                     p->type == PARAM_TIME_EXPR ? EXPR_IN_TIME : EXPR_IN_SPACE};
+                                     p->type == PARAM_FIELD_EXPR ? EXPR_IN_SPACE : EXPR_IN_TIME};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         r->cause_named = false;
@@ -131,6 +137,22 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
         if (err == ERR_INPUT) return case_bad_expression(r, e, why);
         if (err) return err;
         TRY(case_check_dim(r, e, &dim, p->unit));
+    }
+    return ERR_OK;
+}
+
+/* Numbers where they are numbers, expressions where they depend on t. */
+static enum err read_time_vector(struct reader *r, const struct entry *e, const struct param *p,
+                                 void *section)
+{
+    double *const value = (double *)(void *)((char *)section + p->offset);
+    struct scene_expr *const in_time = (void *)((char *)section + p->expr_offset);
+    TRY(read_field(r, e, p, in_time));
+    for (int k = 0; k < 2; k++) {
+        value[k] = scene_expr_at(in_time->e[k], 0, 0);
+        if (!(fabs(value[k]) <= 1e15))
+            return bad_value(r, e, "component %d is not finite or beyond 1e15 at t = 0", k + 1);
+        if (expr_is_number(in_time->e[k])) in_time->e[k] = NULL;
     }
     return ERR_OK;
 }
@@ -146,6 +168,7 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_CHOICE: return read_choice(r, e, p, place);
     case PARAM_TEXT: return read_text(r, e, place);
     case PARAM_VECTOR: return read_vector(r, e, p, place);
+    case PARAM_TIME_VECTOR: return read_time_vector(r, e, p, section);
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR: return read_field(r, e, p, place);
     case PARAM_SHAPES: return case_shape(r, e, place);

@@ -141,16 +141,22 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
         fprintf(out, "%s", name);
         break;
     case PARAM_TEXT:
-        if (strcmp(p->key, "file") == 0)
+        if (strcmp(p->key, "file") == 0 || strcmp(p->key, "gravity_file") == 0)
             relocate(s, value, path, text);
         else
             snprintf(text, sizeof text, "%s", (const char *)value);
         write_text(out, text);
         break;
     case PARAM_VECTOR:
-        write_number(out, number[0], p->unit);
-        fprintf(out, ", ");
-        write_number(out, number[1], p->unit);
+    case PARAM_TIME_VECTOR:
+        for (int k = 0; k < 2; k++) {
+            const struct expr *const e = param_in_time(p, section, k);
+            if (k) fprintf(out, ", ");
+            if (e)
+                fputs(expr_source(e), out);
+            else
+                write_number(out, number[k], p->unit);
+        }
         break;
     case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
     case PARAM_FIELD_EXPR:

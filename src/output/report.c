@@ -46,7 +46,8 @@ static void write_value(struct json *j, const struct param *p, const void *value
         json_text(j, p->key, name);
         break;
     case PARAM_TEXT: json_text(j, p->key, value); break;
-    case PARAM_VECTOR: json_numbers(j, p->key, value, 2); break;
+    case PARAM_VECTOR:
+    case PARAM_TIME_VECTOR: json_numbers(j, p->key, value, 2); break;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR: write_expressions(j, p, value); break;
     case PARAM_SHAPES: write_shapes(j, p->key, value); break;

@@ -238,6 +238,20 @@ static void force_sweeps(const struct chunk *own)
     if (!own->part) barrier_wait(own->s->barrier);
 }
 
+/* By all threads together. */
+static void vary_gravity(const struct solid *s, struct particles *p, double time)
+{
+    double g[2];
+    scene_gravity_at(s->gravity, time, g);
+    const double more[2] = {g[0] - s->gravity->top.gravity[0], g[1] - s->gravity->top.gravity[1]};
+#pragma omp for schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double on = s->gravity->solid[p->body[i]].gravity * p->free[i];
+        p->sx[i] += on * more[0];
+        p->sy[i] += on * more[1];
+    }
+}
+
 /* What acts on the solid from outside, each a pass of its own. */
 static void outer_forces(const struct solid *s, struct particles *p, double time)
 {
@@ -247,6 +261,7 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
 #pragma omp master
         s->contact->seconds += wall_clock() - start;
     }
+    if (s->gravity) vary_gravity(s, p, time);
     if (s->loads) {
 #pragma omp single
         loads_forces(s->loads, s, p, time);
@@ -376,8 +391,8 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
 static bool steps_parts(const struct solid *s, int n)
 {
     enum { WORTH_COPYING = 4 };
-    return s->part && n >= WORTH_COPYING && !s->contact && !s->loads && !s->push[0] &&
-           thread_team() == s->threads;
+    return s->part && n >= WORTH_COPYING && !s->contact && !s->loads && !s->gravity &&
+           !s->push[0] && thread_team() == s->threads;
 }
 
 /* By all threads together. */

@@ -130,7 +130,8 @@ struct solid {
     /* What acts from outside, each NULL where there is none. */
     struct contact *contact;
     struct loads *loads;
-    const double *push[2]; /* accelerations, x and y, m/s^2 */
+    const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
+    const double *push[2];       /* accelerations, x and y, m/s^2 */
     double
         time_since_fluid_eval; /* time since the fluid saw it, at the start of the sub-steps, s */
     double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */

@@ -122,6 +122,7 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     bare.coupled = false;
     bare.contact = NULL;
     bare.loads = NULL;
+    bare.gravity = NULL;
     bare.push[0] = bare.push[1] = NULL;
 
     const size_t bytes = (size_t)p->n * sizeof *p->vx;

@@ -63,6 +63,7 @@ void evaluate_fluid(struct simulation *s, double time)
     s->state.evaluations++;
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
+    if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
     if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) forget_given(&s->kind[KIND_SOLID]);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     if (s->push[KIND_FLUID].at) push_fluid(s, time);
@@ -216,7 +217,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double bound = s->dt_bound[binding];
     const bool pushed = s->push[KIND_SOLID].at != NULL;
     if (pushed) find_push(s, KIND_SOLID, st->time);
-    const int batch = pushed ? 1 : SOLID_BATCH;
+    const int batch = pushed || s->gravity_varies ? 1 : SOLID_BATCH;
     /* Equal steps up to the limit, as in timestep_choose; round-off of the times must not add one. */
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
     const double dt = steps <= EQUAL_STEPS ? left / steps : bound;

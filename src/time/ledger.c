@@ -15,11 +15,11 @@ struct fluid_sums {
 };
 
 SPHFSI_INLINE void sum_particle(struct fluid_sums *s, int r, const struct particles *p, int64_t i,
-                                const struct fluid_constants *k)
+                                const struct fluid_constants *k, const double g[2])
 {
     const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
     s->speed2[r] += square(vx) + square(vy);
-    s->height[r] -= k->gravity[0] * p->x[i] + k->gravity[1] * p->y[i];
+    s->height[r] -= g[0] * p->x[i] + g[1] * p->y[i];
     s->energy[r] += eos_energy(dens, k->c0);
     s->vx[r] += vx;
     s->vy[r] += vy;
@@ -30,13 +30,14 @@ static void add_fluid(const struct simulation *s, struct ledger *row)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
     const struct fluid_constants *const k = &s->fluid.k;
+    const double g[2] = {s->scene->top.gravity[0], s->scene->top.gravity[1]};
     struct fluid_sums sums;
     memset(&sums, 0, sizeof sums);
     int64_t i = 0;
     for (; i + ABREAST <= p->n; i += ABREAST)
 #pragma omp simd
-        for (int r = 0; r < ABREAST; r++) sum_particle(&sums, r, p, i + r, k);
-    for (; i < p->n; i++) sum_particle(&sums, 0, p, i, k);
+        for (int r = 0; r < ABREAST; r++) sum_particle(&sums, r, p, i + r, k, g);
+    for (; i < p->n; i++) sum_particle(&sums, 0, p, i, k, g);
     for (int r = 0; r < ABREAST; r++) {
         row->kinetic += 0.5 * k->mass * sums.speed2[r];
         row->potential += k->mass * sums.height[r];

@@ -14,7 +14,7 @@ struct ledger {
 #define LEDGER_COLUMNS(LEDGER)                                                                    \
     LEDGER(time, "s", "simulated time")                                                           \
     LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                               \
-    LEDGER(potential, "J_per_m", "potential energy in gravity, from the origin")                  \
+    LEDGER(potential, "J_per_m", "potential energy in gravity at t = 0, from the origin")                  \
     LEDGER(internal, "J_per_m", "compression energy of the fluid")                                \
     LEDGER(elastic, "J_per_m", "strain energy of the solid")                                      \
     LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                 \

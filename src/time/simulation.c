@@ -155,15 +155,16 @@ static void find_speed(struct simulation *s)
 static double energy_of(const struct simulation *s, const struct particles *p, int64_t i)
 {
     const struct fluid_constants *const k = &s->fluid.k;
-    return k->mass * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
-                      k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+    const double *const g = s->scene->top.gravity;
+    return k->mass * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] -
+                      g[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
 }
 
 /* What gravity along joined sides gives to fluid that comes in again opposite. */
 static void book_crossings(struct simulation *s)
 {
     for (int axis = 0; axis < 2; axis++)
-        s->state.periodic_energy += s->fluid.k.mass * s->fluid.k.gravity[axis] *
+        s->state.periodic_energy += s->fluid.k.mass * s->scene->top.gravity[axis] *
                                     (double)s->cells.crossings[axis] *
                                     (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
 }
@@ -295,6 +296,7 @@ static enum err create_contact(struct simulation *s, struct diag *d)
 static enum err build(struct simulation *s, struct diag *d)
 {
     simulation_warn_of_scene(s, d);
+    s->gravity_varies = scene_gravity_varies(s->scene);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         TRY(fill_kind(s, (enum kind)kind, id, d));
@@ -310,6 +312,7 @@ static enum err build(struct simulation *s, struct diag *d)
             TRY(loads_create(&s->loads, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID], d));
             s->solid.loads = &s->loads;
         }
+        s->solid.gravity = s->gravity_varies ? s->scene : NULL;
         s->state.solid_stiffening = s->state.solid_slowing = 1;
         timestep_set_solid(s);
     }
@@ -371,6 +374,27 @@ static void add_wall_work(struct simulation *s)
     s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
 }
 
+/* T-70: work of what gravity is beyond its value at t = 0, whose potential energy the ledger has. Over the
+ * last step, by gravity in its middle. */
+static void add_gravity_work(struct simulation *s)
+{
+    double g[2], px = 0, py = 0;
+    scene_gravity_at(s->scene, s->state.time - 0.5 * s->state.dt, g);
+    const struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
+    for (int64_t i = 0; i < fluid->n; i++) {
+        px += s->fluid.k.mass * fluid->vx[i];
+        py += s->fluid.k.mass * fluid->vy[i];
+    }
+    for (int64_t i = 0; i < solid->n; i++) {
+        const double mass = s->scene->solid[solid->body[i]].gravity * solid->free[i] *
+                            s->solid.body[solid->body[i]].mass;
+        px += mass * solid->vx[i];
+        py += mass * solid->vy[i];
+    }
+    s->state.wall_work += s->state.dt * ((g[0] - s->scene->top.gravity[0]) * px +
+                                         (g[1] - s->scene->top.gravity[1]) * py);
+}
+
 /* Size of the impulse that fluid and structure have exchanged in the last step. */
 static void add_exchange(struct simulation *s)
 {
@@ -403,6 +427,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     if (!(s->effects & FX_FLUID)) {
         solid_only_step(s, t_limit);
         take_work(s);
+        if (s->gravity_varies) add_gravity_work(s);
         if (s->effects & FX_MOTION) move_walls(s, s->state.time);
         find_speed(s);
         show_strain(s);
@@ -426,6 +451,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
     take_work(s);
+    if (s->gravity_varies) add_gravity_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
     if (!e && guards_strain_due(s)) timestep_recheck_solid(s);
     clock = phase_add(s, PHASE_update, clock);

@@ -73,6 +73,7 @@ struct simulation {
     double skin_left;   /* what two particles may go together before a sorting can be due, m */
     bool evaluated;     /* rates, pressures and the fluid's force belong to the present state */
     bool crowded;       /* cells hold more than the sweeps can take: nothing is evaluated */
+    bool gravity_varies; /* with time */
     struct guard guard;
     struct push push[KIND_COUNT]; /* of fluid and solid */
 };

@@ -109,12 +109,15 @@ static void example_is_accepted(const struct param *p)
 
 static void every_example_is_accepted(void)
 {
-    FILE *const table = fopen("lift.csv", "w"); /* which the motion's example names */
-    TEST_ASSERT_NOT_NULL(table);
-    fputs("0, 0, 0\n1, 0, 0.1\n", table);
-    fclose(table);
+    static const char *const tables[] = {"lift.csv", "shake.csv"}; /* which examples name */
+    for (size_t k = 0; k < COUNT_OF(tables); k++) {
+        FILE *const table = fopen(tables[k], "w");
+        TEST_ASSERT_NOT_NULL(table);
+        fputs("0, 0, 0\n1, 0, 0.1\n", table);
+        fclose(table);
+    }
     for (int k = 0; k < PARAM_COUNT; k++) example_is_accepted(&param_table[k]);
-    remove("lift.csv");
+    for (size_t k = 0; k < COUNT_OF(tables); k++) remove(tables[k]);
 }
 
 /* --- traps --- */

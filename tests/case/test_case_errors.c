@@ -111,6 +111,12 @@ static const struct {
     {TOP "[constants]\nunused = 1/0\n" SOLID, NULL, "bad.cfg:4: unused = 1/0: division by zero"},
     {TOP "gravity = 9.81\n" SOLID, NULL,
      "bad.cfg:3: gravity = 9.81: two components are expected, `gravity = X, Y`; there is 1"},
+    {TOP "gravity = 0, 1/(t - 0.5)\n" SOLID, NULL,
+     "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be at "
+     "all "
+     "times up to end_time"},
+    {TOP "gravity_file = none.csv\n" SOLID, NULL,
+     "bad.cfg:3: gravity_file = none.csv cannot be opened: No such file or directory"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
@@ -355,6 +361,7 @@ static const char *wrong(const struct param *p, const char **value)
         snprintf(why, sizeof why, "unknown choice; known: %s", p->choices);
         return why;
     case PARAM_VECTOR:
+    case PARAM_TIME_VECTOR:
         *value = "1";
         snprintf(why, sizeof why, "two components are expected, `%s = X, Y`; there is 1", p->key);
         return why;

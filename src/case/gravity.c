@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * Gravity as it follows from time (T-70): two numbers, expressions in t, and a table that is added to them. */
+#include "case/case.h"
+
+bool scene_gravity_varies(const struct scene *s)
+{
+    const struct scene_expr *const e = &s->top.gravity_in_time;
+    return e->e[0] || e->e[1] || s->gravity_data.n > 0;
+}
+
+void scene_gravity_at(const struct scene *s, double t, double g[2])
+{
+    const struct scene_table *const table = &s->gravity_data;
+    for (int c = 0; c < 2; c++) {
+        const struct expr *const e = s->top.gravity_in_time.e[c];
+        g[c] = e ? scene_expr_at(e, t, 0) : s->top.gravity[c];
+    }
+    if (table->n == 0) return;
+    const int k = table_row(table, t);
+    const double share = (t - table->t[k]) / (table->t[k + 1] - table->t[k]);
+    const double u = min2(max2(share, 0), 1); /* beyond its ends the table stays as it is there */
+    g[0] += table->x[k] + u * (table->x[k + 1] - table->x[k]);
+    g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
+}
+
+enum err gravity_load(struct scene *s, struct diag *d)
+{
+    static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
+                                           false};
+    const struct scene_given *const given = scene_given(s, SECTION_top, 0, "gravity_file");
+    if (!*s->top.gravity_file) return ERR_OK;
+    return table_load(s, &s->gravity_data, &kind, s->top.gravity_file, given ? given->line : 0,
+                      "gravity_file", d);
+}

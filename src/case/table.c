@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT
+ * Tables of a case: rows of a time and two values. */
+#include "case/case.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { MAX_ROWS = 1000000 };
+
+/* Commas or blanks stand between the columns. */
+
+struct table_file {
+    FILE *file;
+    const char *path;
+    int line;
+    const struct table_kind *kind;
+    struct diag *diag;
+};
+
+/* 1: a row; 0: end of the file; -1: failed, in the diag. Lines that begin with # are comments, and
+ * so is a head that begins with a letter. */
+static int read_row(struct table_file *t, double row[3])
+{
+    char text[512];
+    /* What fgets does not write stays 1, so the last zero is the one that it has put. */
+    while (memset(text, 1, sizeof text), fgets(text, sizeof text, t->file)) {
+        t->line++;
+        const size_t length = strlen(text);
+        if (memchr(text + length + 1, 0, sizeof text - length - 1)) {
+            diag_fail(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
+                      t->line);
+            return -1;
+        }
+        const char *at = text + strspn(text, " \t\r\n");
+        const bool head =
+            t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
+        if (length == sizeof text - 1 && text[length - 1] != '\n') {
+            diag_fail(t->diag, ERR_INPUT, "%s:%d: a line of more than %zu characters", t->path,
+                      t->line, sizeof text - 2);
+            return -1;
+        }
+        if (!*at || *at == '#' || head) continue;
+        for (int k = 0; k < 3; k++) {
+            char *end;
+            row[k] = strtod(at, &end);
+            if (end == at || !isfinite(row[k]) || fabs(row[k]) > 1e9) {
+                diag_fail(t->diag, ERR_INPUT, "%s:%d: three numbers are expected: %s", t->path,
+                          t->line, t->kind->columns);
+                return -1;
+            }
+            at = end + strspn(end, " \t\r\n");
+            if (*at == ',' || *at == ';') at += 1 + strspn(at + 1, " \t\r\n");
+        }
+        if (!*at) return 1;
+        diag_fail(t->diag, ERR_INPUT, "%s:%d: more than three columns; %s are expected", t->path,
+                  t->line, t->kind->columns);
+        return -1;
+    }
+    if (!ferror(t->file)) return 0;
+    diag_fail(t->diag, ERR_INPUT, "%s: cannot be read: %s", t->path, strerror(errno));
+    return -1;
+}
+
+static enum err fill_table(struct scene_table *table, struct table_file *t, int rows)
+{
+    double row[3];
+    rewind(t->file);
+    t->line = 0;
+    for (table->n = 0; table->n < rows; table->n++) {
+        const int k = table->n;
+        if (read_row(t, row) != 1)
+            return diag_fail(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
+        if (k > 0 && row[0] <= table->t[k - 1])
+            return diag_fail(t->diag, ERR_INPUT, "%s:%d: time %g s does not come after %g s",
+                             t->path, t->line, row[0], table->t[k - 1]);
+        if (k == 0 && t->kind->from_rest && (row[0] < 0 || row[1] != 0 || row[2] != 0))
+            return diag_fail(t->diag, ERR_INPUT,
+                             "%s:%d: the first row must be a time of 0 or more "
+                             "and no displacement, `0, 0, 0` as a rule",
+                             t->path, t->line);
+        table->t[k] = row[0];
+        table->x[k] = row[1];
+        table->y[k] = row[2];
+    }
+    return ERR_OK;
+}
+
+static enum err read_table(struct scene *s, struct scene_table *table, struct table_file *t)
+{
+    double row[3];
+    int rows = 0, more;
+    while ((more = read_row(t, row)) > 0)
+        if (++rows > MAX_ROWS)
+            return diag_fail(t->diag, ERR_INPUT, "%s: more than %d rows", t->path, MAX_ROWS);
+    if (more < 0) return ERR_INPUT;
+    if (rows < 2)
+        return diag_fail(t->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d", t->path,
+                         t->kind->what, rows == 1 ? "is" : "are", rows);
+    double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
+    for (size_t k = 0; k < COUNT_OF(columns); k++) {
+        *columns[k] = arena_alloc(&s->arena, (size_t)rows, sizeof(double), "table", t->diag);
+        if (!*columns[k]) return ERR_MEMORY;
+    }
+    return fill_table(table, t, rows);
+}
+
+enum err table_load(struct scene *s, struct scene_table *table, const struct table_kind *kind,
+                    const char *name, int line, const char *key, struct diag *d)
+{
+    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
+    scene_location(s, line, place);
+    if (!scene_file(s, name, path, sizeof path))
+        return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
+    /* Opening a pipe would wait for whoever writes to it. */
+    struct stat info;
+    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+        return diag_fail(d, ERR_INPUT, "%s: %s = %s is not a regular file", place, key, name);
+    FILE *file = fopen(path, "r");
+    if (!file)
+        return diag_fail(d, ERR_INPUT, "%s: %s = %s cannot be opened: %s", place, key, name,
+                         strerror(errno));
+    struct table_file t = {file, name, 0, kind, d};
+    const enum err err = read_table(s, table, &t);
+    fclose(file);
+    return err;
+}
+
+int table_row(const struct scene_table *table, double t)
+{
+    int low = 0, high = table->n - 1;
+    while (high - low > 1) {
+        const int middle = low + (high - low) / 2;
+        if (table->t[middle] <= t)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}

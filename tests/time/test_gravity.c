@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT
+ * Gravity that varies with time: bodies and fluid that nothing holds follow it, the energy that it gives is
+ * booked, and one that is written as an expression but does not vary keeps the bits of a number. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define HEAD "dp = 1 cm\nend_time = 1\ngravity = 3*cos(5*t), -9.81 + 20*t\n"
+static const char solid[] = HEAD "[solid a]\nshape = box 0, 0, 0.06, 0.04\ndensity = 1100\n"
+                                 "young = 1e6\npoisson = 0.4\n";
+static const char fluid[] = HEAD "[fluid w]\nshape = box 0, 0, 0.06, 0.04\nsound_speed = 20\n"
+                                 "[domain]\nlower = -1, -1\nupper = 1, 1\n";
+static const char both[] =
+    "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n"
+    "surface = 0.1\n[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.2, 0\n"
+    "[solid gate]\nshape = box 0.1, 0, 0.13, 0.2\nclamp = box 0.1, 0.17, 0.13, 0.2\n"
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+
+static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                          "integrator=leapfrog"};
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+/* All particles have the velocity and the path of a free fall from rest. */
+static void falls(enum kind kind, double tolerance)
+{
+    const struct particles *const p = &rig.sim.kind[kind];
+    const double t = rig.sim.state.time;
+    const double v[2] = {0.6 * sin(5 * t), -9.81 * t + 10 * t * t};
+    const double d[2] = {0.12 * (1 - cos(5 * t)), -4.905 * t * t + 10.0 / 3 * t * t * t};
+    for (int64_t i = 0; i < p->n; i++) {
+        const double X = kind == KIND_SOLID ? p->X[i] : rig.scene.points[KIND_FLUID].x[0];
+        assert_near(tolerance, v[0], p->vx[i], "vx");
+        assert_near(tolerance, v[1], p->vy[i], "vy");
+        if (kind == KIND_SOLID) assert_near(tolerance, d[0], p->x[i] - X, "x");
+        if (kind == KIND_SOLID) assert_near(tolerance, d[1], p->y[i] - p->Y[i], "y");
+    }
+}
+
+static void test_bodies_fall_as_gravity_says(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig, solid, integrators[k], NULL);
+        rig_run(&rig, 0.1);
+        falls(KIND_SOLID, 2e-3);
+    }
+}
+
+static void test_fluid_falls_as_gravity_says(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig, fluid, integrators[k], NULL);
+        rig_run(&rig, 0.1);
+        falls(KIND_FLUID, 5e-3);
+    }
+}
+
+/* What gravity gives beyond its potential energy at t = 0 is no spurious energy. */
+static void test_its_work_is_booked(void)
+{
+    const char *const scenes[] = {solid, fluid};
+    for (size_t k = 0; k < COUNT_OF(scenes); k++) {
+        rig_open(&rig, scenes[k], NULL);
+        const struct ledger start = simulation_ledger(&rig.sim);
+        rig.sim.state.energy_start =
+            start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
+        rig_run(&rig, 0.1);
+        const struct ledger end = simulation_ledger(&rig.sim);
+        assert_at_most(0.01 * end.kinetic, fabs(end.dissipated), "dissipated");
+        TEST_ASSERT_TRUE(fabs(rig.sim.state.wall_work) > 0.05 * end.kinetic);
+    }
+}
+
+static uint64_t hash_after(const char *gravity, const char *integrator)
+{
+    rig_open(&rig, both, gravity, integrator, NULL);
+    rig_steps(&rig, 60, 1);
+    return simulation_hash(&rig.sim);
+}
+
+static void test_what_does_not_vary_keeps_its_bits(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++)
+        TEST_ASSERT_EQUAL_HEX64(hash_after("gravity=1, -9.81", integrators[k]),
+                                hash_after("gravity=1, -9.81 + 0*t", integrators[k]));
+}
+
+/* Straight between rows, and beyond the last one as it is there: v = 5 t^2 up to 0.05 s. */
+static void test_a_table_is_added(void)
+{
+    FILE *const table = fopen("test_gravity.tmp", "w");
+    TEST_ASSERT_NOT_NULL(table);
+    fputs("# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n", table);
+    fclose(table);
+    rig_open(&rig, solid, "gravity=0, -1", "gravity_file=test_gravity.tmp", NULL);
+    remove("test_gravity.tmp");
+    rig_run(&rig, 0.1);
+    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        assert_near(2e-4, 0.5 * 0.05 * 0.5 + 0.5 * 0.05, p->vx[i], "vx");
+        assert_near(1e-12, 0, p->vy[i], "vy");
+    }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_bodies_fall_as_gravity_says);
+    RUN_TEST(test_fluid_falls_as_gravity_says);
+    RUN_TEST(test_its_work_is_booked);
+    RUN_TEST(test_what_does_not_vary_keeps_its_bits);
+    RUN_TEST(test_a_table_is_added);
+    return UNITY_END();
+}
