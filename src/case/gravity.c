@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Gravity as it follows from time (T-70): two numbers, expressions in t, and a table that is added to them. */
+ * Gravity as it follows from time (T-70): numbers, expressions in t, and a table that is added to them. */
 #include "case/case.h"
 
 bool scene_gravity_varies(const struct scene *s)
