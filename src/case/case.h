@@ -103,6 +103,8 @@ struct slice slice_of(const char *text);
 /* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none is left. */
 bool slice_next(struct slice *rest, char separator, struct slice *piece);
 int slice_count(struct slice text, char separator);
+/* What to add to a message on the number of numbers where a comma stands between digits; "" else. */
+const char *case_comma_hint(const char *value);
 /* Finds all constants, and the numbers at the top, by their names; then evaluates every one. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;

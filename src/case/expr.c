@@ -25,6 +25,7 @@ enum { MAX_OPS = 1024, MAX_NESTING = 64 };
 
 struct compiler {
     struct slice rest;
+    const char *start; /* of the text */
     const struct expr_names *names;
     int nesting;
     int stack; /* operands waiting while the program runs */
@@ -230,6 +231,10 @@ static bool parse_number(struct compiler *c, struct dim *dim)
         if (!unit_read(&c->rest, &q, c->why)) {
             const size_t length = identifier_length(c->rest);
             if (c->why[0]) return false;
+            const char *const near = unit_nearest(c->rest.at, length);
+            if (near)
+                return say(c, "`%.*s` behind %s is no unit; did you mean `%s`?", (int)length,
+                           c->rest.at, digits, near);
             return say(c,
                        "`%.*s` behind %s is no unit (units: m km cm mm um, s min ms us, kg g, N, "
                        "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
@@ -312,6 +317,29 @@ static bool parse_name(struct compiler *c, struct dim *dim)
     return parse_constant(c, name, dim);
 }
 
+/* Whether the text goes on, behind a digit, with a comma and a digit: 0,005. */
+static bool is_decimal_comma(const struct compiler *c)
+{
+    return c->rest.length > 1 && c->rest.at[0] == ',' && isdigit((unsigned char)c->rest.at[1]) &&
+           c->rest.at > c->start && isdigit((unsigned char)c->rest.at[-1]);
+}
+
+/* A character that cannot stand where it does, and what was probably meant. */
+static bool unexpected(struct compiler *c, int ch, const char *expected)
+{
+    char rest[16] = "";
+    memcpy(rest, c->rest.at, c->rest.length < 4 ? c->rest.length : 4);
+    const char *const strange = ch >= 0x80 ? strange_character(rest) : NULL;
+    if (strange) return say(c, "%s is expected, not %s", expected, strange);
+    if (is_decimal_comma(c))
+        return say(c, "`,` where %s is expected; a decimal number is written with a point: %s",
+                   expected, "0.005");
+    if (ch == '/' && c->rest.at > c->start && c->rest.at[-1] == '/')
+        return say(c, "`//` where %s is expected; a comment begins with #", expected);
+    if (isprint(ch)) return say(c, "`%c` where %s is expected", ch, expected);
+    return say(c, "byte %d where %s is expected", ch, expected);
+}
+
 static bool parse_primary(struct compiler *c, struct dim *dim)
 {
     *dim = (struct dim){DIM_PLAIN, 0, 0, 0};
@@ -326,8 +354,7 @@ static bool parse_primary(struct compiler *c, struct dim *dim)
         skip(c, 1);
         return true;
     }
-    if (isprint(ch)) return say(c, "`%c` where a value is expected", ch);
-    return say(c, "byte %d where a value is expected", ch);
+    return unexpected(c, ch, "a value");
 }
 
 static bool parse_power(struct compiler *c, struct dim *dim)
@@ -388,8 +415,7 @@ static bool parse_all(struct compiler *c, struct dim *dim)
     const int ch = peek(c);
     if (ch == 0 && c->rest.length == 0) return true;
     if (ch == ')') return say(c, "`)` without `(`");
-    if (isprint(ch)) return say(c, "`%c` where an operator is expected", ch);
-    return say(c, "byte %d where an operator is expected", ch);
+    return unexpected(c, ch, "an operator");
 }
 
 bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
@@ -397,7 +423,7 @@ bool expr_value(struct slice text, const struct expr_names *names, struct quanti
 {
     struct expr_names fixed = *names;
     fixed.scope = EXPR_FIXED;
-    struct compiler c = {.rest = text, .names = &fixed, .why = why};
+    struct compiler c = {.rest = text, .start = text.at, .names = &fixed, .why = why};
     if (!parse_all(&c, &result->dim)) return false;
     result->value = c.op[0].value;
     return true;
@@ -406,7 +432,7 @@ bool expr_value(struct slice text, const struct expr_names *names, struct quanti
 enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
 {
-    struct compiler c = {.rest = text, .names = names, .why = why};
+    struct compiler c = {.rest = text, .start = text.at, .names = names, .why = why};
     if (!parse_all(&c, dim)) return ERR_INPUT;
     struct expr *e = arena_alloc(a, 1, sizeof *e, "expression", d);
     if (!e) return ERR_MEMORY;

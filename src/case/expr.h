@@ -94,6 +94,10 @@ enum { DIM_TEXT = 96 };
 void dim_text(const struct dim *dim, char text[DIM_TEXT]);
 void unit_dim_text(const char *unit, char text[DIM_TEXT]);
 
+/* The first character of a text that looks like one that is meant, and what to write instead:
+ * "a no-break space; write a blank". NULL: there is none. */
+const char *strange_character(const char *text);
+
 /* What a name must not be, because it means something else already: NULL or the meaning. */
 const char *expr_reserved(const char *name);
 
@@ -102,6 +106,8 @@ const char *expr_reserved(const char *name);
  * a wrong one, then `why` is written. */
 bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
 bool unit_known(const char *name);
+/* The unit that has the same letters but for capitals, or NULL. */
+const char *unit_nearest(const char *name, size_t length);
 
 /* The identifier at the front of the text: its length; 0: none. */
 size_t identifier_length(struct slice text);

@@ -74,10 +74,12 @@ static enum err unknown_section(struct reader *r, int line, const char *word)
         nearest_offer(&near, word, section_table[id].word);
     if (near.name)
         return bad_line(r, line, "unknown section [%.60s]; did you mean [%s]?", word, near.name);
-    return bad_line(r, line,
-                    "unknown section [%.60s]; known: constants, numerics, domain, output, "
-                    "fluid, wall, solid, motion, probe, reference",
-                    word);
+    char known[400] = "constants";
+    for (int id = SECTION_top + 1; id < SECTION_COUNT; id++) {
+        const size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, ", %s", section_table[id].word);
+    }
+    return bad_line(r, line, "unknown section [%.60s]; known: %s", word, known);
 }
 
 static enum err add_section(struct reader *r, int line, int id, const char *name)
@@ -123,12 +125,16 @@ static enum err read_entry(struct reader *r, int line, char *text)
     char *equals = strchr(text, '=');
     const char *const comment = strchr(text, '#');
     if (!equals || (comment && comment < equals))
-        return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`", text);
+        return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`%s", text,
+                        strncmp(text, "//", 2) == 0 ? "; a comment begins with #" : "");
     *equals = '\0';
     const char *const key = trim(text);
-    if (!is_identifier(key) || strlen(key) >= SCENE_NAME)
+    if (!is_identifier(key) || strlen(key) >= SCENE_NAME) {
+        const char *const strange = strange_character(key);
+        if (strange) return bad_line(r, line, "`%.40s` has %s", key, strange);
         return bad_line(r, line, "`%.40s` is no name of a key: up to %d letters, digits and _", key,
                         SCENE_NAME - 1);
+    }
     const char *why;
     const char *const value = cut_value(equals + 1, &why);
     if (why) return bad_line(r, line, "%s %s", key, why);

@@ -2,6 +2,7 @@
  * Numbers of a case file: pieces of a value, named constants, numbers with units. */
 #include "case/case.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -35,6 +36,14 @@ bool slice_next(struct slice *rest, char separator, struct slice *piece)
     else
         *rest = (struct slice){rest->at + n + 1, rest->length - n - 1};
     return true;
+}
+
+const char *case_comma_hint(const char *value)
+{
+    for (const char *c = value; (c = strchr(c, ',')) != NULL; c++)
+        if (c > value && isdigit((unsigned char)c[-1]) && isdigit((unsigned char)c[1]))
+            return "; a comma parts numbers, and a decimal number is written with a point: 0.005";
+    return "";
 }
 
 int slice_count(struct slice text, char separator)

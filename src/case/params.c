@@ -2,7 +2,9 @@
 #include "case/params.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #define WHERE_0(section) offsetof(struct scene, section), 0
 #define WHERE_1(section) offsetof(struct scene, section), offsetof(struct scene, n_##section)
@@ -78,6 +80,77 @@ const struct param *param_find(enum section_id section, const char *key)
         if (p->section == section && strcmp(p->key, key) == 0) return p;
     }
     return NULL;
+}
+
+/* Whether `word` is one of the words of a key, which _ parts. */
+static bool has_word(const char *key, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const char *at = key; at; at = strchr(at, '_')) {
+        at += *at == '_';
+        if (strncmp(at, word, length) == 0 && (at[length] == '_' || !at[length])) return true;
+    }
+    return false;
+}
+
+/* Whether a key is what the field calls `word`. */
+static bool is_called(const char *key, const char *word)
+{
+    static const char *const names[][2] = {
+        {"e", "young"},
+        {"modulus", "young"},
+        {"youngs_modulus", "young"},
+        {"young_modulus", "young"},
+        {"elastic_modulus", "young"},
+        {"nu", "poisson"},
+        {"poisson_ratio", "poisson"},
+        {"rho", "density"},
+        {"rho0", "density"},
+        {"c0", "sound_speed"},
+        {"speed_of_sound", "sound_speed"},
+        {"spacing", "dp"},
+        {"particle_spacing", "dp"},
+        {"dx", "dp"},
+        {"resolution", "dp"},
+        {"dt", "fixed_step"},
+        {"time_step", "fixed_step"},
+        {"timestep", "fixed_step"},
+        {"duration", "end_time"},
+        {"t_end", "end_time"},
+        {"tmax", "end_time"},
+        {"g", "gravity"},
+        {"alpha", "artificial_viscosity"},
+        {"delta", "density_diffusion"},
+        {"fixed", "clamp"},
+        {"material", "law"},
+        {"model", "law"},
+        {"water_level", "surface"},
+        {"height", "surface"},
+        {"geometry", "shape"},
+        {"region", "shape"},
+        {"movement", "motion"},
+        {"position", "point"},
+        {"location", "point"},
+        {"type", "kind"},
+        {"variable", "quantity"},
+        {"courant", "cfl"},
+    };
+    for (size_t k = 0; k < COUNT_OF(names); k++)
+        if (strcasecmp(names[k][0], word) == 0 && strcmp(names[k][1], key) == 0) return true;
+    return false;
+}
+
+bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT])
+{
+    text[0] = '\0';
+    if (strlen(word) > SCENE_NAME) return false;
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *const p = &param_table[k];
+        if (p->section != section || !(has_word(p->key, word) || is_called(p->key, word))) continue;
+        const size_t used = strlen(text);
+        snprintf(text + used, PARAM_MEANT - used, "%s`%s`", used ? " or " : "", p->key);
+    }
+    return text[0] != '\0';
 }
 
 const char *param_retired(enum section_id section, const char *key)

@@ -88,6 +88,11 @@ void *section_at(const struct scene *s, enum section_id id, int index);
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
 
+/* The keys of a section that a word may mean, as "`a` or `b`": those that have it among their words, as
+ * viscosity in artificial_viscosity, or that textbooks call so; false: none. */
+enum { PARAM_MEANT = 200 };
+bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT]);
+
 /* Why a key of an older release no longer does anything; NULL: it is none of those. */
 const char *param_retired(enum section_id section, const char *key);
 

@@ -165,6 +165,9 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     const char *word = id == SECTION_top ? "at the top of the file" : section_table[id].word;
     char place[80];
     snprintf(place, sizeof place, id == SECTION_top ? "%s" : "in [%s]", word);
+    char meant[PARAM_MEANT];
+    if (param_meant((enum section_id)id, e->key, meant))
+        return bad_entry(r, e, "unknown key `%s` %s; did you mean %s?", e->key, place, meant);
     if (near.name)
         return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
     for (int k = 0; k < PARAM_COUNT; k++)

@@ -17,8 +17,9 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
     struct slice piece;
     const int given = slice_count(text, ',');
     if (given != n)
-        return bad_value(r, e, "%d numbers are expected and %d given in `%.*s`", n, given,
-                         (int)(text.length < 40 ? text.length : 40), text.at);
+        return bad_value(r, e, "%d numbers are expected and %d given in `%.*s`%s", n, given,
+                         (int)(text.length < 40 ? text.length : 40), text.at,
+                         given > n ? case_comma_hint(e->value) : "");
     for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
         TRY(case_number(r, e, piece, "m", &value[k]));
         if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: beyond 1e9 m");

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* A unit is up/down SI units. Two whole numbers, so that 140 mm is the same double as 0.14. */
 static const struct unit {
@@ -39,6 +40,14 @@ static const struct {
     {0, 0, -1, "a frequency (Hz)"},
     {1, 1, -2, "a force (N)"},
     {-1, 0, 0, "an inverse length (1/m)"},
+    {0, 1, -2, "a force per length (N/m)"},
+    {3, 0, 0, "a volume (m^3)"},
+    {2, 0, -1, "a kinematic viscosity (m^2/s)"},
+    {-1, 1, -1, "a dynamic viscosity (Pa s)"},
+    {2, 1, -2, "an energy or a moment (N m)"},
+    {1, 1, -1, "an impulse (N s)"},
+    {2, 1, -3, "a power (N m/s)"},
+    {-3, 1, -2, "a force per volume (N/m^3)"},
 };
 
 static const struct unit *find_unit(const char *name, size_t length)
@@ -46,6 +55,44 @@ static const struct unit *find_unit(const char *name, size_t length)
     for (size_t k = 0; k < COUNT_OF(units); k++)
         if (strlen(units[k].symbol) == length && memcmp(units[k].symbol, name, length) == 0)
             return &units[k];
+    return NULL;
+}
+
+const char *strange_character(const char *text)
+{
+    static const struct {
+        const char *bytes, *what;
+    } strange[] = {
+        {"\xE2\x88\x92", "a Unicode minus; write -"},
+        {"\xE2\x80\x93", "a dash; write -"},
+        {"\xE2\x80\x94", "a dash; write -"},
+        {"\xC2\xA0", "a no-break space; write a blank"},
+        {"\xE2\x80\xAF", "a narrow no-break space; write a blank"},
+        {"\xE2\x80\x89", "a thin space; write a blank"},
+        {"\xC3\x97", "a multiplication sign; write *"},
+        {"\xC2\xB7", "a multiplication dot; write *"},
+        {"\xE2\x8B\x85", "a multiplication dot; write *"},
+        {"\xC2\xB2", "a superscript 2; write ^2"},
+        {"\xC2\xB3", "a superscript 3; write ^3"},
+        {"\xC2\xB5", "a micro sign; write u, as in um"},
+        {"\xCE\xBC", "a Greek mu; write u, as in um"},
+        {"\xC2\xB0", "a degree sign; write deg"},
+    };
+    const char *first = NULL, *what = NULL;
+    for (size_t k = 0; k < COUNT_OF(strange); k++) {
+        const char *const at = strstr(text, strange[k].bytes);
+        if (!at || (first && at >= first)) continue;
+        first = at;
+        what = strange[k].what;
+    }
+    return what;
+}
+
+const char *unit_nearest(const char *name, size_t length)
+{
+    for (size_t k = 0; k < COUNT_OF(units); k++)
+        if (strlen(units[k].symbol) == length && strncasecmp(units[k].symbol, name, length) == 0)
+            return units[k].symbol;
     return NULL;
 }
 
@@ -189,10 +236,20 @@ void dim_text(const struct dim *dim, char text[DIM_TEXT])
     }
     const char *const symbol[] = {"kg", "m", "s"};
     const double power[] = {dim->kg, dim->m, dim->s};
-    size_t n = (size_t)snprintf(text, DIM_TEXT, "in units of");
-    for (int k = 0; k < 3; k++)
-        if (fabs(power[k]) > 1e-9 && n < DIM_TEXT)
-            n += (size_t)snprintf(text + n, DIM_TEXT - n, " %s^%.3g", symbol[k], power[k]);
+    char above[DIM_TEXT] = "", below[DIM_TEXT] = "";
+    int factors = 0;
+    for (int k = 0; k < 3; k++) {
+        if (fabs(power[k]) < 1e-9) continue;
+        char *const side = power[k] > 0 ? above : below;
+        const size_t used = strlen(side);
+        char exponent[16] = "";
+        if (fabs(power[k]) != 1) snprintf(exponent, sizeof exponent, "^%.3g", fabs(power[k]));
+        snprintf(side + used, DIM_TEXT - used, "%s%s%s", used ? " " : "", symbol[k], exponent);
+        factors += power[k] < 0;
+    }
+    const char *const open = factors > 1 ? "(" : "", *const close = factors > 1 ? ")" : "";
+    snprintf(text, DIM_TEXT, "a quantity in %.30s%s%s%.30s%s", *above ? above : "1",
+             factors ? "/" : "", open, below, close);
 }
 
 void unit_dim_text(const char *unit, char text[DIM_TEXT])

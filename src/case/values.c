@@ -86,8 +86,8 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
 static enum err check_pair(struct reader *r, const struct entry *e, const struct param *p, int n)
 {
     if (n == 2) return ERR_OK;
-    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d", p->key,
-                     n == 1 ? "is" : "are", n);
+    return bad_value(r, e, "two components are expected, `%s = X, Y`; there %s %d%s", p->key,
+                     n == 1 ? "is" : "are", n, case_comma_hint(e->value));
 }
 
 static enum err read_vector(struct reader *r, const struct entry *e, const struct param *p,

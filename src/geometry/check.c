@@ -41,8 +41,12 @@ static void warn_box(struct sampler *g, const struct region *region, const struc
                   "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
                   "sampled as %.0f %s from %g to %g m; edges at %g and %g m would fit",
                   place, kind_names[region->kind], region->name, "xy"[c], low, high, b - a,
-                  c ? "high" : "wide", n, c ? "rows" : "columns", from, from + n * dp,
-                  region->origin[c] + round(a) * dp, region->origin[c] + round(b) * dp);
+                  c ? "high" : "wide", n,
+                  n == 1 ? (c ? "row" : "column")
+                  : c    ? "rows"
+                         : "columns",
+                  from, from + n * dp, region->origin[c] + round(a) * dp,
+                  region->origin[c] + round(b) * dp);
     }
 }
 

@@ -79,12 +79,22 @@ static bool yields_to(const struct sampler *g, const struct samples *p, int64_t 
     return its->kind == KIND_WALL && motion_of(g->scene, mine) == motion_of(g->scene, its);
 }
 
+static bool has_band(const struct region *region)
+{
+    for (int k = 0; k < region->list->n; k++)
+        if (region->list->item[k].kind == SHAPE_POLYLINE) return true;
+    return false;
+}
+
 static enum err fail_overlap(struct sampler *g, const struct region *mine, const struct region *its,
                              double x, double y, int64_t count)
 {
     char place[LOCATION_TEXT];
     scene_location(g->scene, mine->line, place);
     const char *mend = "move one of the shapes, or take the place out with `minus`";
+    if (has_band(mine) || has_band(its))
+        mend = "turn the sign of `thickness` if the polyline's band is on the wrong side, move one "
+               "of the shapes, or take the place out with `minus`";
     if (mine->kind == KIND_WALL && its->kind == KIND_SOLID)
         mend = "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)

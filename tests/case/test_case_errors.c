@@ -28,7 +28,54 @@ static const struct {
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, fluid, wall, "
-     "solid, motion, probe, reference"},
+     "solid, contact, load, motion, probe, reference"},
+    {TOP "[fluid w]\nviscosity = 1\n", NULL,
+     "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
+     "`laminar_viscosity`?"},
+    {TOP "[solid a]\nE = 1 MPa\n", NULL,
+     "bad.cfg:4: unknown key `E` in [solid]; did you mean `young`?"},
+    {TOP SOLID, "a.young=1 Mpa",
+     "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` behind 1 is no unit; did you mean `MPa`?"},
+    {"dp = \xE2\x88\x92"
+     "1 mm\n",
+     NULL,
+     "bad.cfg:1: dp = \xE2\x88\x92"
+     "1 mm: a value is expected, not a Unicode minus; write -"},
+    {"dp = 1\xC2\xA0mm\n", NULL,
+     "bad.cfg:1: dp = 1\xC2\xA0mm: an operator is expected, not a no-break space; write a blank"},
+    {"\xC2\xA0"
+     "dp = 1 mm\n",
+     NULL,
+     "bad.cfg:1: `\xC2\xA0"
+     "dp` has a no-break space; write a blank"},
+    {"dp = 5 \xC2\xB5m\n", NULL,
+     "bad.cfg:1: dp = 5 \xC2\xB5m: an operator is expected, not a micro sign; write u, as in um"},
+    {"dp = 0,005\n", NULL,
+     "bad.cfg:1: dp = 0,005: `,` where an operator is expected; a decimal number is written with a "
+     "point: 0.005"},
+    {TOP "gravity = 0, -9,81\n", NULL,
+     "bad.cfg:3: gravity = 0, -9,81: two components are expected, `gravity = X, Y`; there are 3; a "
+     "comma parts numbers, and a decimal number is written with a point: 0.005"},
+    {TOP SOLID "clamp = box 0, 0, 0,1, 1\n", NULL,
+     "bad.cfg:8: clamp = box 0, 0, 0,1, 1: 4 numbers are expected and 5 given in `0, 0, 0,1, 1`; a "
+     "comma parts numbers, and a decimal number is written with a point: 0.005"},
+    {"dp = 1 mm // spacing\n", NULL,
+     "bad.cfg:1: dp = 1 mm // spacing: `//` where a value is expected; a comment begins with #"},
+    {"// a comment\n", NULL,
+     "bad.cfg:1: `// a comment` is neither `key = value` nor `[section]`; a comment begins with #"},
+    {TOP SOLID, "a.young=3 kg*m/s^5",
+     "--set a.young=3 kg*m/s^5: young = 3 kg*m/s^5: a quantity in kg m/s^5 where a pressure (Pa) "
+     "is expected"},
+    {TOP SOLID, "a.young=3 N/m",
+     "--set a.young=3 N/m: young = 3 N/m: a force per length (N/m) where a pressure (Pa) is "
+     "expected"},
+    {TOP SOLID, "a.young=3 kg/m/s^3",
+     "--set a.young=3 kg/m/s^3: young = 3 kg/m/s^3: a quantity in kg/(m s^3) where a pressure (Pa) "
+     "is expected"},
+    {TOP FLUID "[wall w]\nshape = polyline thickness 5 mm: 0, 0; 20 mm, 0\n", NULL,
+     "bad.cfg:3: 100 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0005) m: turn "
+     "the sign of `thickness` if the polyline's band is on the wrong side, move one of the shapes, "
+     "or take the place out with `minus`"},
     {TOP "[solid]\n", NULL, "bad.cfg:3: [solid] needs a name: [solid NAME]"},
     {TOP "[numerics fast]\n", NULL, "bad.cfg:3: [numerics] takes no name"},
     {TOP "[solid a/b]\n", NULL,

@@ -22,7 +22,8 @@ static void read(const char *text)
     struct diag diag = {.warn = note};
     scene_free(&scene);
     warnings[0] = '\0';
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, "doubts.cfg", 0, NULL, &diag),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
+                                  scene_load_text(&scene, text, "doubts.cfg", 0, NULL, &diag),
                                   diag.text);
 }
 

@@ -187,6 +187,10 @@ static void test_off_lattice_edges_are_told(void)
                              "at 0 and 0.0055 m would fit\n",
                              warnings);
     TEST_ASSERT_EQUAL_INT64(11 * 10, total());
+    must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 0.6 mm, 5 mm\n",
+              NULL);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "sampled as 1 column from 0 to 0.0005 m"));
     TEST_ASSERT_TRUE(scene.off_lattice);
     must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
               "shape = polygon 0, 0; 5.3 mm, 0; 5.3 mm, 5 mm; 0, 5 mm\n",
