@@ -40,10 +40,13 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
         return bad_line(r, line, "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above 1e7",
                         f->common.name, *c0);
     if (*c0 < least * (1 - 1e-9))
-        warn(r, line, "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3",
+        warn(r, line,
+             "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary "
+             "by "
+             "more than 1 %%",
              f->common.name, *c0, least);
     if (f->pressure.e[0] && !isnan(f->surface))
-        return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; one is to go",
+        return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; leave one out",
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
         warn(r, line,
@@ -141,9 +144,9 @@ static enum err no_such(struct reader *r, int line, const char *what, const char
     }
     const char *word = section_table[kind].word;
     if (near.name)
-        return bad_line(r, line, "%s = %.60s: no [%s] of that name; did you mean `%s`?", what,
-                        given, word, near.name);
-    return bad_line(r, line, "%s = %.60s: no [%s] of that name", what, given, word);
+        return bad_line(r, line, "%s = %.60s: there is no [%s] of that name; did you mean `%s`?",
+                        what, given, word, near.name);
+    return bad_line(r, line, "%s = %.60s: there is no [%s] of that name", what, given, word);
 }
 
 /* A key that says something to some kinds of motion only. */
@@ -176,9 +179,10 @@ static enum err check_motion_keys(struct reader *r, const struct scene_motion *m
         param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
         const struct scene_given *const given =
             scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), owned[k].key);
-        return bad_line(r, given ? given->line : m->common.line,
-                        "[motion %s] `%s` is of kind = %s, and this one is of kind = %s",
-                        m->common.name, owned[k].key, owned[k].kinds, name);
+        return bad_line(
+            r, given ? given->line : m->common.line,
+            "[motion %s] `%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
+            m->common.name, owned[k].key, owned[k].kinds, name);
     }
     return ERR_OK;
 }
@@ -270,7 +274,10 @@ static enum err check_motion(struct reader *r, const struct scene_motion *m)
 {
     const int line = m->common.line;
     if (!is_used(r->scene, m->common.name))
-        warn(r, line, "[motion %s] moves no wall and no clamp", m->common.name);
+        warn(r, line,
+             "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
+             "[solid]",
+             m->common.name);
     if (!(m->start < m->stop))
         return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                         m->common.name, m->start, m->stop);
@@ -292,7 +299,7 @@ static enum err check_motion(struct reader *r, const struct scene_motion *m)
     return ERR_OK;
 }
 
-/* What a pair across the interface needs one value of. */
+/* Keys of which a pair across a bond needs one value. */
 static enum err check_joint(struct reader *r, const struct scene_solid *a,
                             const struct scene_solid *b)
 {
@@ -308,13 +315,13 @@ static enum err check_joint(struct reader *r, const struct scene_solid *a,
     for (size_t k = 0; k < COUNT_OF(same); k++)
         if (same[k].mine != same[k].its)
             return bad_line(r, a->common.line,
-                            "[solid %s] is joined to [solid %s] and differs in `%s`, of which a "
-                            "bond has one only",
+                            "[solid %s] is joined to [solid %s] and differs in `%s`; joined "
+                            "bodies need the same value",
                             a->common.name, b->common.name, same[k].key);
     return ERR_OK;
 }
 
-/* Cells hold room for so many. */
+/* A cell holds a limited number of particles. */
 static enum err check_spacing(struct reader *r, int solid)
 {
     const struct scene *s = r->scene;
@@ -322,10 +329,10 @@ static enum err check_spacing(struct reader *r, int solid)
     if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || s->n_fluid == 0)) return ERR_OK;
     return bad_line(
         r, s->solid[solid].common.line,
-        "[solid %s] dp = %g m: from a third of the dp at the top, %g m, to all of it is "
-        "possible%s",
+        "[solid %s] dp = %g m: it must lie between a third of the dp at the top, %g m, and all of "
+        "it%s",
         s->solid[solid].common.name, s->solid[solid].dp, s->top.dp,
-        s->n_fluid ? "" : ", or finer without fluid");
+        s->n_fluid ? "" : "; without fluid it may be finer");
 }
 
 static enum err check_joined(struct reader *r, int solid)
@@ -337,12 +344,13 @@ static enum err check_joined(struct reader *r, int solid)
     const int other = scene_find_solid(s, a->joined);
     if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
     if (other == solid)
-        return bad_line(r, a->common.line, "[solid %s] joined = %s: a body is one with itself",
+        return bad_line(r, a->common.line,
+                        "[solid %s] joined = %s: a body cannot be joined to itself; name another",
                         a->common.name, a->joined);
     return check_joint(r, a, &s->solid[other]);
 }
 
-/* A surface particle has room for so many partners. */
+/* A surface particle keeps a limited number of contact partners. */
 static enum err check_gap(struct reader *r, const struct scene_contact *c)
 {
     const double most = 4;
@@ -351,8 +359,7 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
     if (c->gap <= most * dp * (1 + 1e-9)) return ERR_OK;
     return bad_line(
         r, c->common.line,
-        "[contact %s] gap = %g m is more than %g spacings of %g m: a layer of fluid needs "
-        "one of its own, and at most %g m are meant",
+        "[contact %s] gap = %g m is more than %g spacings of %g m; at most %g m are possible",
         c->common.name, c->gap, most, dp, most * dp);
 }
 
@@ -382,7 +389,8 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
                         "solid",
                         c->between);
     if (strcmp(name[0], name[1]) == 0)
-        return bad_line(r, line, "between = %.100s: a body does not touch itself", c->between);
+        return bad_line(r, line, "between = %.100s: a body does not touch itself; name two",
+                        c->between);
     return ERR_OK;
 }
 
@@ -446,7 +454,7 @@ static enum err check_gravity(struct reader *r)
     return ERR_OK;
 }
 
-/* Named for nothing; without fluid or solid case/rules.def refuses it. */
+/* Has no effect; without fluid or solid case/rules.def refuses it. */
 static void check_interface(struct reader *r)
 {
     const struct scene *s = r->scene;

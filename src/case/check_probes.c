@@ -13,8 +13,8 @@ static enum err no_section(struct reader *r, const struct scene_probe *p, bool w
         nearest_offer(&near, p->body, r->scene->solid[k].common.name);
     for (int k = 0; walls_too && k < r->scene->n_wall; k++)
         nearest_offer(&near, p->body, r->scene->wall[k].common.name);
-    return bad_line(r, p->common.line, "body = %.60s: no [solid]%s of that name%s%s%s", p->body,
-                    walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
+    return bad_line(r, p->common.line, "body = %.60s: there is no [solid]%s of that name%s%s%s",
+                    p->body, walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
                     near.name ? near.name : "", near.name ? "`?" : "");
 }
 
@@ -35,7 +35,7 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
     const enum probe_target target = scene_probe_target(p);
     if (*p->body && target != TARGET_BODY)
         return bad_line(r, p->common.line,
-                        "[probe %s] measures %s of the fluid, at a fixed place; `body` is to go",
+                        "[probe %s] measures %s of the fluid, at a fixed point; leave `body` out",
                         p->common.name, quantity);
     if (r->scene->n_fluid == 0)
         return bad_line(r, p->common.line, "[probe %s] measures %s, but there is no fluid",

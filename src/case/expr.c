@@ -96,7 +96,7 @@ static double run_binary(enum op_code code, double a, double b)
 static bool push(struct compiler *c, enum op_code code, double value)
 {
     if (c->n == MAX_OPS) return say(c, "longer than %d operations", MAX_OPS);
-    if (c->stack == MAX_STACK) return say(c, "more than %d values wait for each other", MAX_STACK);
+    if (c->stack == MAX_STACK) return say(c, "nested too deeply: more than %d operands", MAX_STACK);
     c->op[c->n++] = (struct op){code, value};
     c->stack++;
     return true;
@@ -174,7 +174,7 @@ static bool pure_argument(struct compiler *c, const char *what, const struct dim
     if (d->kind != DIM_KNOWN || is_pure(d)) return true;
     char text[DIM_TEXT];
     dim_text(d, text);
-    return say(c, "%s of %s; it needs a pure number", what, text);
+    return say(c, "%s of %s; it needs a number without a unit", what, text);
 }
 
 /* Of base^exponent; the exponent, if it is a number, is the last operation. */
@@ -184,9 +184,10 @@ static bool power_dims(struct compiler *c, struct dim *base, const struct dim *e
     if (base->kind == DIM_KNOWN && !is_pure(base)) {
         const struct op *last = &c->op[c->n - 1];
         if (last->code != OP_NUMBER)
-            return say(c, "a quantity with a unit to a power that depends on x or y");
+            return say(c, "a quantity with a unit has a power that depends on x, y or t; it must "
+                          "be a number");
         const double p = last->value;
-        if (fabs(p) > 9) return say(c, "a quantity with a unit to a power beyond 9");
+        if (fabs(p) > 9) return say(c, "a quantity with a unit has a power beyond 9");
         base->m *= p;
         base->kg *= p;
         base->s *= p;
@@ -222,8 +223,8 @@ static bool parse_number(struct compiler *c, struct dim *dim)
     digits[n] = '\0';
     char *end;
     struct quantity q = {strtod(digits, &end), {DIM_PLAIN, 0, 0, 0}};
-    if (*end || end == digits) return say(c, "`%s` is no number", digits);
-    if (!isfinite(q.value)) return say(c, "%s is too large for a real number", digits);
+    if (*end || end == digits) return say(c, "`%s` is not a number", digits);
+    if (!isfinite(q.value)) return say(c, "%s is too large for a number", digits);
     skip(c, n);
     const int next = peek(c);
     if (next == '%' || isalpha(next) || next == '_') {
@@ -233,10 +234,10 @@ static bool parse_number(struct compiler *c, struct dim *dim)
             if (c->why[0]) return false;
             const char *const near = unit_nearest(c->rest.at, length);
             if (near)
-                return say(c, "`%.*s` behind %s is no unit; did you mean `%s`?", (int)length,
+                return say(c, "`%.*s` after %s is not a unit; did you mean `%s`?", (int)length,
                            c->rest.at, digits, near);
             return say(c,
-                       "`%.*s` behind %s is no unit (units: m km cm mm um, s min ms us, kg g, N, "
+                       "`%.*s` after %s is not a unit (units: m km cm mm um, s min ms us, kg g, N, "
                        "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
                        (int)(length < 40 ? length : 40), c->rest.at, digits);
         }
@@ -257,7 +258,7 @@ static bool parse_call(struct compiler *c, const struct function *f, struct dim 
         struct dim other = {0};
         if (!parse_sum(c, &other) || !join_dims(c, dim, &other)) return false;
     }
-    if (peek(c) != ')') return say(c, "`(` behind %s is not closed", f->name);
+    if (peek(c) != ')') return say(c, "`(` after %s is not closed", f->name);
     skip(c, 1);
     if (f->code == OP_SQRT) {
         dim->m /= 2;

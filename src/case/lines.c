@@ -44,11 +44,11 @@ static const char *cut_value(char *value, const char **why)
     }
     char *close = strchr(value + 1, '"');
     if (!close) {
-        *why = "has a quote that is not closed";
+        *why = "has a quote that is not closed; end the text with \"";
         return value;
     }
     char *const rest = trim(close + 1);
-    if (*rest && *rest != '#') *why = "has text behind the closing quote";
+    if (*rest && *rest != '#') *why = "has text after the closing quote; a comment begins with #";
     close[1] = '\0';
     return value;
 }
@@ -95,8 +95,9 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     for (int k = 0; k < r->n_sections; k++) {
         if (r->sections[k].id != id) continue;
         if (strcmp(r->sections[k].name, name) == 0)
-            return bad_line(r, line, "[%s%s%s] is there already, in line %d", word,
-                            named ? " " : "", name, r->sections[k].line);
+            return bad_line(r, line,
+                            "[%s%s%s] is given twice, first in line %d; join the two or rename one",
+                            word, named ? " " : "", name, r->sections[k].line);
         index++;
     }
     if (index == SCENE_MAX_SECTIONS)
@@ -108,9 +109,10 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
 static enum err read_header(struct reader *r, int line, char *text)
 {
     char *close = strchr(text, ']');
-    if (!close) return bad_line(r, line, "`[` without `]`");
+    if (!close) return bad_line(r, line, "`[` without `]`; a section is [WORD] or [WORD NAME]");
     char *const rest = trim(close + 1);
-    if (*rest && *rest != '#') return bad_line(r, line, "text behind the section's `]`");
+    if (*rest && *rest != '#')
+        return bad_line(r, line, "text after the section's `]`; a comment begins with #");
     *close = '\0';
     char *word = trim(text + 1), *name = word;
     while (*name && !blank(*name)) name++;
@@ -132,12 +134,13 @@ static enum err read_entry(struct reader *r, int line, char *text)
     if (!is_identifier(key) || strlen(key) >= SCENE_NAME) {
         const char *const strange = strange_character(key);
         if (strange) return bad_line(r, line, "`%.40s` has %s", key, strange);
-        return bad_line(r, line, "`%.40s` is no name of a key: up to %d letters, digits and _", key,
+        return bad_line(r, line,
+                        "`%.40s` is not a valid key: a key has up to %d letters, digits and _", key,
                         SCENE_NAME - 1);
     }
     const char *why;
     const char *const value = cut_value(equals + 1, &why);
-    if (why) return bad_line(r, line, "%s %s", key, why);
+    if (why) return bad_line(r, line, "`%s` %s", key, why);
     if (!r->in_lost_section)
         r->entries[r->n_entries++] = (struct entry){r->n_sections - 1, line, NULL, key, value};
     return ERR_OK;
@@ -250,7 +253,8 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
     }
     if (*target >= 0) return ERR_OK;
     if (!meant && near_section.name)
-        return bad_entry(r, e, "no section `%.60s`; did you mean `%s`?", prefix, near_section.name);
+        return bad_entry(r, e, "there is no section `%.60s`; did you mean `%s`?", prefix,
+                         near_section.name);
     if (!meant) return bad_entry(r, e, "the case has no section `%.60s`", prefix);
     if (near.name)
         return bad_entry(r, e, "unknown key `%.60s`; did you mean `%s`?", e->key, near.name);
@@ -293,7 +297,7 @@ static enum err apply_set(struct reader *r, const char *set)
     e.key = key;
     const char *why;
     e.value = cut_value(value, &why);
-    if (why) return bad_entry(r, &e, "%s %s", key, why);
+    if (why) return bad_entry(r, &e, "`%s` %s", key, why);
     TRY(find_target(r, &e, prefix, &e.section));
     put_entry(r, &e);
     return ERR_OK;

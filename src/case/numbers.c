@@ -60,15 +60,18 @@ static enum err collect_constant(struct reader *r, const struct entry *e)
 {
     const char *const meaning = expr_reserved(e->key);
     if (meaning)
-        return bad_entry(r, e, "a constant cannot be named `%s`: that is %s", e->key, meaning);
+        return bad_entry(r, e, "a constant cannot be named `%s`: that is %s; rename it", e->key,
+                         meaning);
     if (param_find(SECTION_top, e->key))
-        return bad_entry(r, e,
-                         "a constant cannot be named `%s`: that is a key at the top of the file",
-                         e->key);
+        return bad_entry(
+            r, e,
+            "a constant cannot be named `%s`: that is a key at the top of the file; rename it",
+            e->key);
     for (int k = 0; k < r->n_constants; k++) {
         const struct entry *old = r->constants[k].entry;
         if (strcmp(old->key, e->key) == 0)
-            return bad_entry(r, e, "%s is given already, in line %d", e->key, old->line);
+            return bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out", e->key,
+                             old->line);
     }
     if (r->n_constants == CASE_MAX_CONSTANTS)
         return bad_entry(r, e, "more than %d constants", CASE_MAX_CONSTANTS);
@@ -105,7 +108,7 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
         return false;
     }
     if (r->depth == MAX_CONSTANT_DEPTH) {
-        snprintf(why, EXPR_WHY, "constants wait for later constants more than %d deep",
+        snprintf(why, EXPR_WHY, "constants depend on constants more than %d deep",
                  MAX_CONSTANT_DEPTH);
         return false;
     }

@@ -152,9 +152,9 @@ static enum err inherit(struct reader *r, int section)
     }
     if (r->lost) return ERR_INPUT; /* it may have been in what could not be understood */
     if (near.name)
-        return bad_value(r, e, "no earlier [%s] of that name; did you mean `%s`?",
+        return bad_value(r, e, "there is no earlier [%s] of that name; did you mean `%s`?",
                          section_table[to->id].word, near.name);
-    return bad_value(r, e, "no earlier [%s] of that name", section_table[to->id].word);
+    return bad_value(r, e, "there is no earlier [%s] of that name", section_table[to->id].word);
 }
 
 static enum err unknown_key(struct reader *r, const struct entry *e, int id)
@@ -202,7 +202,7 @@ static void drop_rivals(struct reader *r, int section)
     }
 }
 
-/* `like` takes over no regions: a copy of a clamped body that has no clamp of its own is loose. */
+/* `like` copies no regions: a copy of a clamped body that has no clamp of its own moves freely. */
 static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
 {
     const struct case_section *cs = &r->sections[section];
@@ -214,16 +214,16 @@ static void warn_of_lost_clamp(struct reader *r, int section, const struct entry
         const struct scene_solid *const from = &r->scene->solid[k];
         if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
             diag_warn(r->diag,
-                      "%s: [solid %s] is like [solid %s], but has no `clamp` of its own, since "
+                      "%s: [solid %s] is like [solid %s], but has no `clamp`, since "
                       "regions are "
-                      "not taken over: it moves freely",
+                      "not copied: it moves freely",
                       place, copy->common.name, from->common.name);
     }
 }
 
 static enum err given_twice(struct reader *r, const struct entry *e, int line)
 {
-    return bad_entry(r, e, "%s is given already, in line %d", e->key, line);
+    return bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out", e->key, line);
 }
 
 static enum err read_section(struct reader *r, int section)

@@ -147,7 +147,7 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     for (int k = 0; k < (int)COUNT_OF(words); k++)
         if (strlen(words[k]) == length && memcmp(words[k], e->value, length) == 0) kind = k;
     if (kind < 0)
-        return bad_value(r, e, "`%.*s` is no shape; known: box, polygon, polyline, circle",
+        return bad_value(r, e, "`%.*s` is not a shape; known: box, polygon, polyline, circle",
                          (int)(length < 40 ? length : 40), e->value);
     struct shape shape = {.kind = (enum shape_kind)kind};
     const char *start = e->value + length + strspn(e->value + length, " \t");

@@ -76,8 +76,10 @@ static enum err read_text(struct reader *r, const struct entry *e, char value[SC
         text.at++;
         text.length -= 2;
     }
-    if (text.length >= SCENE_TEXT) return bad_value(r, e, "longer than %d bytes", SCENE_TEXT - 1);
-    if (!is_utf8(text)) return bad_entry(r, e, "%s is not UTF-8 text", e->key);
+    if (text.length >= SCENE_TEXT)
+        return bad_value(r, e, "the text is longer than %d bytes; shorten it", SCENE_TEXT - 1);
+    if (!is_utf8(text))
+        return bad_entry(r, e, "`%s` is not UTF-8 text; save the file as UTF-8", e->key);
     memset(value, 0, SCENE_TEXT);
     memcpy(value, text.at, text.length);
     return ERR_OK;

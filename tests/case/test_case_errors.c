@@ -19,12 +19,15 @@ static const struct {
     {"", NULL, "bad.cfg:1: `dp` is missing at the top of the file: particle spacing (m)"},
     {"dp 1 mm\n", NULL, "bad.cfg:1: `dp 1 mm` is neither `key = value` nor `[section]`"},
     {"dp = 1 mm # fine\n= 5\n", NULL,
-     "bad.cfg:2: `` is no name of a key: up to 63 letters, digits and _"},
-    {"dp =\n", NULL, "bad.cfg:1: dp has no value"},
-    {"dp = # nothing\n", NULL, "bad.cfg:1: dp has no value"},
-    {"title = \"open\n", NULL, "bad.cfg:1: title has a quote that is not closed"},
-    {"title = \"a\" b\n", NULL, "bad.cfg:1: title has text behind the closing quote"},
-    {"2dp = 1\n", NULL, "bad.cfg:1: `2dp` is no name of a key: up to 63 letters, digits and _"},
+     "bad.cfg:2: `` is not a valid key: a key has up to 63 letters, digits and _"},
+    {"dp =\n", NULL, "bad.cfg:1: `dp` has no value"},
+    {"dp = # nothing\n", NULL, "bad.cfg:1: `dp` has no value"},
+    {"title = \"open\n", NULL,
+     "bad.cfg:1: `title` has a quote that is not closed; end the text with \""},
+    {"title = \"a\" b\n", NULL,
+     "bad.cfg:1: `title` has text after the closing quote; a comment begins with #"},
+    {"2dp = 1\n", NULL,
+     "bad.cfg:1: `2dp` is not a valid key: a key has up to 63 letters, digits and _"},
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, fluid, wall, "
@@ -35,7 +38,7 @@ static const struct {
     {TOP "[solid a]\nE = 1 MPa\n", NULL,
      "bad.cfg:4: unknown key `E` in [solid]; did you mean `young`?"},
     {TOP SOLID, "a.young=1 Mpa",
-     "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` behind 1 is no unit; did you mean `MPa`?"},
+     "--set a.young=1 Mpa: young = 1 Mpa: `Mpa` after 1 is not a unit; did you mean `MPa`?"},
     {"dp = \xE2\x88\x92"
      "1 mm\n",
      NULL,
@@ -81,9 +84,11 @@ static const struct {
     {TOP "[solid a/b]\n", NULL,
      "bad.cfg:3: [solid a/b]: a name has up to 63 letters, digits, _ and -"},
     {TOP "[solid a\n", NULL, "bad.cfg:3: `[` without `]`"},
-    {TOP "[solid a] b\n", NULL, "bad.cfg:3: text behind the section's `]`"},
-    {TOP SOLID SOLID, NULL, "bad.cfg:8: [solid a] is there already, in line 3"},
-    {TOP "[output]\n[output]\n", NULL, "bad.cfg:4: [output] is there already, in line 3"},
+    {TOP "[solid a] b\n", NULL, "bad.cfg:3: text after the section's `]`; a comment begins with #"},
+    {TOP SOLID SOLID, NULL,
+     "bad.cfg:8: [solid a] is given twice, first in line 3; join the two or rename one"},
+    {TOP "[output]\n[output]\n", NULL,
+     "bad.cfg:4: [output] is given twice, first in line 3; join the two or rename one"},
     {"dp = 1 mm\ntitle = a\x01"
      "b\n",
      NULL, "bad.cfg:2: control byte 1; a case file is plain text"},
@@ -92,7 +97,8 @@ static const struct {
     {TOP "colour = 3\n" SOLID, NULL, "bad.cfg:3: unknown key `colour` at the top of the file"},
     {TOP "young = 1 MPa\n" SOLID, NULL,
      "bad.cfg:3: unknown key `young` at the top of the file; it belongs in [solid]"},
-    {TOP "dp = 2 mm\n" SOLID, NULL, "bad.cfg:3: dp is given already, in line 1"},
+    {TOP "dp = 2 mm\n" SOLID, NULL,
+     "bad.cfg:3: `dp` is given twice, first in line 1; leave one out"},
     {"end_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: `dp` is missing at the top of the file: particle spacing (m)"},
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\n", NULL,
@@ -106,7 +112,7 @@ static const struct {
     {TOP
      "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 5 foo\npoisson = 0.3\n",
      NULL,
-     "bad.cfg:6: young = 5 foo: `foo` behind 5 is no unit (units: m km cm mm um, s min ms us, kg "
+     "bad.cfg:6: young = 5 foo: `foo` after 5 is not a unit (units: m km cm mm um, s min ms us, kg "
      "g, N, Pa kPa MPa GPa, Hz kHz, rad deg, %)"},
     {TOP
      "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.5\n",
@@ -117,7 +123,7 @@ static const struct {
     {"dp = 0\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 0: out of range: it must be above 0 m and at most 1000 m"},
     {"dp = 1e999\nend_time = 1 s\n" SOLID, NULL,
-     "bad.cfg:1: dp = 1e999: 1e999 is too large for a real number"},
+     "bad.cfg:1: dp = 1e999: 1e999 is too large for a number"},
     {"dp = nan\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = nan: unknown name `nan`; define it in [constants]"},
     {"dp = 1/0\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1/0: division by zero"},
@@ -125,13 +131,13 @@ static const struct {
     {"dp = 1 mm)\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1 mm): `)` without `(`"},
     {"dp = 1 mm 2\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 1 mm 2: `2` where an operator is expected"},
-    {"dp = 1..2\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1..2: `1..2` is no number"},
+    {"dp = 1..2\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1..2: `1..2` is not a number"},
     {"dp = 1 mm + 1 s\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 1 mm + 1 s: a length (m) and a time (s) cannot be added or compared"},
     {"dp = sqrt(-1)\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = sqrt(-1): the result is not a finite number"},
     {"dp = sin(1 mm)\nend_time = 1 s\n" SOLID, NULL,
-     "bad.cfg:1: dp = sin(1 mm): sin of a length (m); it needs a pure number"},
+     "bad.cfg:1: dp = sin(1 mm): sin of a length (m); it needs a number without a unit"},
     {"dp = root(4)\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = root(4): unknown function `root`"},
     {"dp = max(1 mm)\nend_time = 1 s\n" SOLID, NULL,
@@ -154,7 +160,8 @@ static const struct {
      "bad.cfg:4: a constant cannot be named `mm`: that is a unit"},
     {TOP "[constants]\ndp = 3\n" SOLID, NULL,
      "bad.cfg:4: a constant cannot be named `dp`: that is a key at the top of the file"},
-    {TOP "[constants]\na = 3\na = 4\n" SOLID, NULL, "bad.cfg:5: a is given already, in line 4"},
+    {TOP "[constants]\na = 3\na = 4\n" SOLID, NULL,
+     "bad.cfg:5: `a` is given twice, first in line 4; leave one out"},
     {TOP "[constants]\nunused = 1/0\n" SOLID, NULL, "bad.cfg:4: unused = 1/0: division by zero"},
     {TOP "gravity = 9.81\n" SOLID, NULL,
      "bad.cfg:3: gravity = 9.81: two components are expected, `gravity = X, Y`; there is 1"},
@@ -178,9 +185,10 @@ static const struct {
          "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"
          "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa\n" SOLID,
      NULL,
-     "bad.cfg:3: title = aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...: longer "
-     "than 255 bytes"},
-    {TOP "title = caf\xE9\n" SOLID, NULL, "bad.cfg:3: title is not UTF-8 text"},
+     "bad.cfg:3: title = aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa...: the text "
+     "is longer than 255 bytes; shorten it"},
+    {TOP "title = caf\xE9\n" SOLID, NULL,
+     "bad.cfg:3: `title` is not UTF-8 text; save the file as UTF-8"},
     {TOP SOLID "velocity = x\n", NULL,
      "bad.cfg:8: velocity = x: two expressions are expected, with commas between them; there is 1"},
     {TOP SOLID "velocity = x, z\n", NULL,
@@ -189,9 +197,10 @@ static const struct {
      "bad.cfg:8: velocity = 1 MPa, 0: a pressure (Pa) where a speed (m/s) is expected"},
     {TOP SOLID "velocity = 1/(x - x), 0\n", NULL,
      "bad.cfg:3: [solid a] velocity has no finite value at (0.0005, 0.0005) m"},
-    {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: no earlier [solid] of that name"},
+    {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: there is no earlier [solid] of that name"},
     {TOP SOLID "clamp = bix 0, 0, 1, 1\n", NULL,
-     "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is no shape; known: box, polygon, polyline, circle"},
+     "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is not a shape; known: box, polygon, polyline, "
+     "circle"},
     {TOP SOLID "clamp = box 0, 0, 1\n", NULL,
      "bad.cfg:8: clamp = box 0, 0, 1: 4 numbers are expected and 3 given in `0, 0, 1`"},
     {TOP SOLID "clamp = box 1, 0, 0, 1\n", NULL,
@@ -270,9 +279,9 @@ static const struct {
      "of "
      "one kind"},
     {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
-     "bad.cfg:3: [fluid w] has both `surface` and `pressure`; one is to go"},
+     "bad.cfg:3: [fluid w] has both `surface` and `pressure`; leave one out"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
-     "bad.cfg:6: motion = lift: no [motion] of that name"},
+     "bad.cfg:6: motion = lift: there is no [motion] of that name"},
     {TOP FLUID "[motion lift]\nkind = table\n", NULL,
      "bad.cfg:6: [motion lift] kind = table needs `file`"},
     {TOP FLUID "[motion lift]\nkind = table\nfile = none/such.txt\n", NULL,
@@ -286,15 +295,15 @@ static const struct {
      "Known: all, or of velocity density pressure kind id body stress von_mises displacement "
      "det_F"},
     {TOP SOLID "[probe F]\nquantity = force\nbody = aa\n", NULL,
-     "bad.cfg:8: body = aa: no [solid] or [wall] of that name"},
+     "bad.cfg:8: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
-     "bad.cfg:6: [probe F] measures front of the fluid, at a fixed place; `body` is to go"},
+     "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
     {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
      "bad.cfg:6: [probe Q] measures through a line: `point` and `to` are its ends and must differ"},
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
      "bad.cfg:8: [probe M1] needs `body`, the solid it belongs to"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
-     "bad.cfg:8: body = aa: no [solid] of that name"},
+     "bad.cfg:8: body = aa: there is no [solid] of that name"},
     {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,
      "bad.cfg:8: [probe M1] point (0, 1) lies about 0.98 m outside of [solid a]"},
     {TOP SOLID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
@@ -371,7 +380,7 @@ static const struct {
      "--set dp=1 MPa: dp = 1 MPa: a pressure (Pa) where a length (m) is expected"},
     {TOP SOLID, "b.young=1 MPa", "--set b.young=1 MPa: the case has no section `b`"},
     {TOP SOLID, "a.yuong=1 MPa", "--set a.yuong=1 MPa: unknown key `yuong`; did you mean `young`?"},
-    {TOP SOLID, "solid a.young=", "--set solid a.young=: young has no value"},
+    {TOP SOLID, "solid a.young=", "--set solid a.young=: `young` has no value"},
     {TOP SOLID "[wall a]\nshape = box 20 mm, 0, 30 mm, 20 mm\n", "a.shape=circle 0, 0, 1",
      "--set a.shape=circle 0, 0, 1: [solid a] and [wall a] both have `shape`; write the section's "
      "kind too"},
@@ -475,7 +484,7 @@ static void test_all_problems_of_a_case_are_reported(void)
                 "bad.cfg:1: dp = 1 MPa: a pressure (Pa) where a length (m) is expected\n"
                 "bad.cfg:2: `end_time 1 s` is neither `key = value` nor `[section]`\n"
                 "bad.cfg:3: unknown section [constant]; did you mean [constants]?\n"
-                "bad.cfg:6: shape = bix 0: `bix` is no shape; known: box, polygon, polyline, "
+                "bad.cfg:6: shape = bix 0: `bix` is not a shape; known: box, polygon, polyline, "
                 "circle\n"
                 "bad.cfg:7: young = 1/0: division by zero\n"
                 "bad.cfg:9: unknown key `poison` in [solid]; did you mean `poisson`?\n"
@@ -485,9 +494,10 @@ static void test_all_problems_of_a_case_are_reported(void)
 /* A constant that is wrong is reported where it stands, not at each use. */
 static void test_uses_of_a_wrong_constant_are_not_problems(void)
 {
-    refuses_all("dp = 1 mm\nend_time = T\n[constants]\nH = 3 foot\nT = 2*H\n" SOLID, 0, NULL,
-                "bad.cfg:4: H = 3 foot: `foot` behind 3 is no unit (units: m km cm mm um, s min ms "
-                "us, kg g, N, Pa kPa MPa GPa, Hz kHz, rad deg, %)\n");
+    refuses_all(
+        "dp = 1 mm\nend_time = T\n[constants]\nH = 3 foot\nT = 2*H\n" SOLID, 0, NULL,
+        "bad.cfg:4: H = 3 foot: `foot` after 3 is not a unit (units: m km cm mm um, s min ms "
+        "us, kg g, N, Pa kPa MPa GPa, Hz kHz, rad deg, %)\n");
 }
 
 /* What concerns several values is looked at in every section. */
@@ -496,8 +506,8 @@ static void test_checks_go_on_after_the_first(void)
     refuses_all(TOP SOLID "joined = zz\n[probe p]\nbody = zz\n[load l]\nbody = a\n"
                           "[motion m]\nkind = sine\n[contact c]\n[reference r]\n",
                 0, NULL,
-                "bad.cfg:3: joined = zz: no [solid] of that name\n"
-                "bad.cfg:9: body = zz: no [solid] of that name\n"
+                "bad.cfg:3: joined = zz: there is no [solid] of that name\n"
+                "bad.cfg:9: body = zz: there is no [solid] of that name\n"
                 "bad.cfg:11: [load l] needs a `shape`, the region it acts on\n"
                 "bad.cfg:13: [motion m] kind = sine needs `period`\n"
                 "bad.cfg:15: [contact c] needs a [solid] and something that it may touch\n"

@@ -131,15 +131,15 @@ static void test_what_makes_no_sense(void)
     wrong("a value is missing", "");
     wrong("a value is missing", "1 +");
     wrong("`*` where a value is expected", "*2");
-    wrong("`(` behind sqrt is not closed", "sqrt(2");
+    wrong("`(` after sqrt is not closed", "sqrt(2");
     wrong("`)` without `(`", "2)");
     wrong("division by zero", "1/(n - 3)");
     wrong("the result is not a finite number", "log(0)");
     wrong("the result is not a finite number", "1e308*10");
     wrong("a length (m) and a time (s) cannot be added or compared", "max(L, 1 s)");
-    wrong("the power of a length (m); it needs a pure number", "2^L");
+    wrong("the power of a length (m); it needs a number without a unit", "2^L");
     wrong("the power of a unit is a number from -9 to 9", "2 m^99");
-    wrong("a quantity with a unit to a power beyond 9", "L^99");
+    wrong("a quantity with a unit has a power beyond 9", "L^99");
     wrong("byte 200 where an operator is expected", "2\xC8");
     wrong("`x` has a value only where a key takes an expression in x and y", "x");
     wrong("unknown name `q`", "q");

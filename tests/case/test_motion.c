@@ -267,11 +267,12 @@ static void test_bad_expressions(void)
         "motion.cfg:9: [motion move] sqrt(t^2) is not finite, or its velocity or acceleration is "
         "not, at t = 0 s since start");
     refuses("velocity = 1, 0\nx = t\n",
-            "motion.cfg:11: [motion move] `x` is of kind = expression, and "
-            "this one is of kind = velocity");
+            "motion.cfg:11: [motion move] `x` belongs to kind = expression, "
+            "but this motion has kind = velocity; leave it out");
     refuses("kind = sine\nperiod = 1\namplitude = 1, 0\nangle = 1\n",
-            "motion.cfg:13: [motion move] `angle` is of kind = rotation, and this one is of kind = "
-            "sine");
+            "motion.cfg:13: [motion move] `angle` belongs to kind = rotation, but this motion has "
+            "kind = "
+            "sine; leave it out");
 }
 
 /* A body is nowhere moved without a velocity; what is steep, quick or has a kink is not a jump. */
