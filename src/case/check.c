@@ -350,7 +350,7 @@ static enum err check_joined(struct reader *r, int solid)
     return check_joint(r, a, &s->solid[other]);
 }
 
-/* A surface particle keeps a limited number of contact partners. */
+/* Within a gap of more a layer of fluid has particles of its own. */
 static enum err check_gap(struct reader *r, const struct scene_contact *c)
 {
     const double most = 4;
@@ -363,15 +363,13 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
         c->common.name, c->gap, most, dp, most * dp);
 }
 
-/* Two different bodies, one of them a solid. */
+/* Two bodies, one of them a solid. */
 static enum err check_contact(struct reader *r, const struct scene_contact *c)
 {
     const struct scene *s = r->scene;
     const int line = c->common.line;
     char name[2][SCENE_TEXT];
-    if (s->n_solid == 0 || s->n_solid + s->n_wall < 2)
-        return bad_line(r, line, "[contact %s] needs a [solid] and something that it may touch",
-                        c->common.name);
+    if (s->n_solid == 0) return bad_line(r, line, "[contact %s] needs a [solid]", c->common.name);
     TRY(check_gap(r, c));
     if (!*c->between) return ERR_OK;
     if (!scene_pair(c->between, name))
@@ -387,9 +385,6 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
         return bad_line(r, line,
                         "between = %.100s: walls do not move each other; one of the two must be a "
                         "solid",
-                        c->between);
-    if (strcmp(name[0], name[1]) == 0)
-        return bad_line(r, line, "between = %.100s: a body does not touch itself; name two",
                         c->between);
     return ERR_OK;
 }

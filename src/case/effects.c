@@ -31,23 +31,23 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
                   at;                                                \
               }))
 #define LATER false
-#define TOUCHES_WALL called_by(by, SECTION_contact, "", first_with_wall(s))
+#define MEETS meets(s, by, 0)
+#define MEETS_WALL meets(s, by, s->n_solid)
 #define HAS_GRAVITY                                                               \
     called_by(by, SECTION_top, *s->top.gravity_file ? "gravity_file" : "gravity", \
               has_gravity(s) ? 0 : -1)
 #define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
 
-/* The first contact that a wall takes part in; -1: none. */
-static int first_with_wall(const struct scene *s)
+/* The first bodies that meet, the second of them from `first` on, walls behind solids. */
+static bool meets(const struct scene *s, struct effect_caller *by, int first)
 {
-    for (int k = 0; k < s->n_contact; k++) {
-        char name[2][SCENE_TEXT];
-        if (!scene_pair(s->contact[k].between, name)
-                ? s->n_wall > 0
-                : scene_find_solid(s, name[0]) < 0 || scene_find_solid(s, name[1]) < 0)
-            return k;
-    }
-    return -1;
+    for (int a = 0; a < s->n_solid; a++)
+        for (int b = a > first ? a : first; b < s->n_solid + s->n_wall; b++) {
+            const struct scene_contact *const c = scene_contact_of(s, a, b);
+            if (c == &s->contact_default) return called_by(by, SECTION_solid, "", a);
+            if (c) return called_by(by, SECTION_contact, "", (int)(c - s->contact));
+        }
+    return false;
 }
 
 static bool has_gravity(const struct scene *s)

@@ -158,7 +158,7 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
 {
     struct motion_point p;
     const double from[2] = {X - m->centre[0], Y - m->centre[1]}, place[2] = {X, Y};
-    const double c = cos(m->angle), s = sin(m->angle);
+    const double c = m->turn[0], s = m->turn[1];
     const double arm[2] = {c * from[0] - s * from[1], s * from[0] + c * from[1]};
     for (int k = 0; k < 2; k++) {
         const double across = k == 0 ? -arm[1] : arm[0];
@@ -170,7 +170,7 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
     return p;
 }
 
-struct motion_state motion_at(const struct scene *s, int motion_index, double time)
+static struct motion_state prescribed_at(const struct scene *s, int motion_index, double time)
 {
     struct motion_state m = {0};
     if (motion_index < 0 || motion_index >= s->n_motion) return m;
@@ -188,5 +188,13 @@ struct motion_state motion_at(const struct scene *s, int motion_index, double ti
     memset(m.v, 0, sizeof m.v);
     memset(m.a, 0, sizeof m.a);
     m.rate = m.angular_acceleration = 0;
+    return m;
+}
+
+struct motion_state motion_at(const struct scene *s, int motion_index, double time)
+{
+    struct motion_state m = prescribed_at(s, motion_index, time);
+    m.turn[0] = cos(m.angle);
+    m.turn[1] = sin(m.angle);
     return m;
 }

@@ -113,6 +113,7 @@ static enum err allocate_sections(struct reader *r)
         for (int k = 0; k < section_count(s, (enum section_id)id); k++)
             set_defaults(section_at(s, (enum section_id)id, k), (enum section_id)id);
     }
+    set_defaults(&s->contact_default, SECTION_contact);
     for (int k = 0; k < r->n_sections; k++) {
         const struct case_section *from = &r->sections[k];
         if (from->id == SECTION_constants) continue;

@@ -58,6 +58,31 @@ int scene_find_wall(const struct scene *s, const char *name)
     return -1;
 }
 
+/* Whether a section is about two bodies, walls behind solids; one that names nobody is about all. */
+static bool is_between(const struct scene *s, const struct scene_contact *c, int a, int b)
+{
+    char name[2][SCENE_TEXT];
+    int number[2];
+    if (!scene_pair(c->between, name)) return c->between[0] == '\0';
+    for (int k = 0; k < 2; k++) {
+        const int solid = scene_find_solid(s, name[k]);
+        number[k] = solid >= 0 ? solid : s->n_solid + scene_find_wall(s, name[k]);
+    }
+    return (number[0] == a && number[1] == b) || (number[0] == b && number[1] == a);
+}
+
+/* Sections that name nobody first: those that do may differ from them. */
+const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b)
+{
+    if (s->n_contact == 0 && s->domain.periodic != PERIODIC_NONE) return NULL;
+    const struct scene_contact *found = &s->contact_default;
+    for (int named = 0; named < 2; named++)
+        for (int k = 0; k < s->n_contact; k++)
+            if ((s->contact[k].between[0] != '\0') == named && is_between(s, &s->contact[k], a, b))
+                found = &s->contact[k];
+    return found->enabled ? found : NULL;
+}
+
 bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 {
     const char *comma = strchr(text, ',');

@@ -250,6 +250,7 @@ struct scene {
     int n_##section;
 #define SECTION(section, named) SCENE_MEMBER_##named(section)
 #include "case/params.def"
+    struct scene_contact contact_default; /* of bodies that no section is about */
     int n_constants;
     struct scene_constant *constant;
     int n_given;
@@ -293,6 +294,7 @@ enum err scene_write(const struct scene *s, const char *path, struct diag *d) SP
 struct motion_state {
     double d[2], v[2], a[2];
     double centre[2], angle, rate, angular_acceleration;
+    double turn[2]; /* cosine and sine of the angle */
 };
 struct motion_hook { /* a motion that a program with the library prescribes instead */
     void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
@@ -305,7 +307,8 @@ bool scene_gravity_varies(const struct scene *s);
 
 struct motion_state motion_at(const struct scene *s, int motion_index, double time);
 
-/* Where a motion puts a point that began at (X, Y): x, v and a. */
+/* Where a motion puts a point that began at (X, Y): x, v and a. Whatever is driven, a wall for the fluid or
+ * for contact, a clamp, is there. */
 struct motion_point {
     double x[2], v[2], a[2];
 };
@@ -333,6 +336,10 @@ bool scene_snapshot_has(const struct scene *s, const char *field);
 
 /* What a probe looks at; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
+
+/* The section that says how two bodies meet, walls behind solids, a body and itself the same; NULL: they do
+ * not. */
+const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b);
 
 /* The two names of `a, b`; false: it is something else. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);

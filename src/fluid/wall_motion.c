@@ -32,7 +32,7 @@ static bool same_place(const struct motion_state *a, const struct motion_state *
     return memcmp(a, b, sizeof *a) == 0;
 }
 
-static void turn_body(const struct moving_wall *b, struct particles *p)
+static void place_body(const struct moving_wall *b, struct particles *p)
 {
 #pragma omp parallel for schedule(static)
     for (int64_t i = b->first; i < b->end; i++) {
@@ -43,24 +43,6 @@ static void turn_body(const struct moving_wall *b, struct particles *p)
         p->vy[i] = at.v[1];
         p->ax[i] = at.a[0];
         p->ay[i] = at.a[1];
-    }
-}
-
-static void place_body(const struct moving_wall *b, struct particles *p)
-{
-    const struct motion_state *const m = &b->placed;
-    if (m->angle != 0 || m->rate != 0 || m->angular_acceleration != 0) {
-        turn_body(b, p);
-        return;
-    }
-#pragma omp parallel for schedule(static)
-    for (int64_t i = b->first; i < b->end; i++) {
-        p->x[i] = p->X[i] + m->d[0];
-        p->y[i] = p->Y[i] + m->d[1];
-        p->vx[i] = m->v[0];
-        p->vy[i] = m->v[1];
-        p->ax[i] = m->a[0];
-        p->ay[i] = m->a[1];
     }
 }
 

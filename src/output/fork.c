@@ -6,40 +6,43 @@
 #include <math.h>
 #include <string.h>
 
-/* A motion must continue from the displacement of the wall: a jump would move it through the fluid. */
-static enum err check_motion(const struct simulation *s, double at[2], int wall, struct diag *d)
+/* Every particle of a moving wall has to be where its motion puts it: a jump would move it through
+ * the fluid. */
+static enum err check_wall(const struct simulation *s, int64_t i, const struct motion_state *m,
+                           struct diag *d)
 {
-    const struct scene_wall *w = &s->scene->wall[wall];
-    const int motion = scene_find_motion(s->scene, w->motion);
-    if (!w->motion[0] || motion < 0) return ERR_OK;
-    const struct motion_state to = motion_at(s->scene, motion, s->state.time);
-    if (hypot(at[0] - to.d[0], at[1] - to.d[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
+    const struct particles *const p = &s->kind[KIND_WALL];
+    const struct motion_point to = motion_of_point(m, p->X[i], p->Y[i]);
+    if (hypot(p->x[i] - to.x[0], p->y[i] - to.x[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
+    const struct scene_wall *const w = &s->scene->wall[p->body[i]];
     return diag_fail(
         d, ERR_INPUT,
-        "fork: [wall %s] would jump at %.6g s from its displacement in the checkpoint, "
+        "fork: a particle of [wall %s] would jump at %.6g s from its place in the checkpoint, "
         "(%.6g, %.6g) m, to (%.6g, %.6g) m of [motion %s]; let the motion begin where the "
         "checkpoint ends",
-        w->common.name, s->state.time, at[0], at[1], to.d[0], to.d[1], w->motion);
+        w->common.name, s->state.time, p->x[i], p->y[i], to.x[0], to.x[1], w->motion);
 }
 
 static enum err fork_walls(struct simulation *s, struct diag *d)
 {
     struct particles *p = &s->kind[KIND_WALL];
-    bool seen[SCENE_MAX_SECTIONS] = {0};
+    struct motion_state m = {0};
     for (int64_t i = 0; i < p->n; i++) {
-        const int wall = p->body[i];
-        if (!s->scene->wall[wall].motion[0]) {
+        const struct scene_wall *const w = &s->scene->wall[p->body[i]];
+        if (!w->motion[0]) {
             p->vx[i] = p->vy[i] = 0;
             if (p->ax) p->ax[i] = p->ay[i] = 0;
-        } else if (!seen[wall]) {
-            seen[wall] = true;
-            TRY(check_motion(s, (double[2]){p->x[i] - p->X[i], p->y[i] - p->Y[i]}, wall, d));
+            continue;
         }
+        if (i == 0 || p->body[i] != p->body[i - 1])
+            m = motion_at(s->scene, scene_find_motion(s->scene, w->motion), s->state.time);
+        TRY(check_wall(s, i, &m, d));
     }
     return ERR_OK;
 }
 
-/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they are;
+/* Applies the clamps of the new case, `free`. A clamp without a motion stops its particles where they
+ * are;
  * the motion of a clamp must continue from their present displacement. */
 static enum err fork_clamps(struct simulation *s, const double *free, struct diag *d)
 {
@@ -97,12 +100,10 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     double *const free = s->solid.scratch[0];
     if (s->effects & FX_SOLID) memcpy(free, solid->free, (size_t)solid->n * sizeof *free);
     TRY(checkpoint_load(m, s, true, d));
+    if (s->effects & (FX_FLUID | FX_MOTION)) TRY(fork_walls(s, d));
     if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
     clear_interface_impulse(s);
-    if (s->effects & FX_FLUID) {
-        TRY(fork_walls(s, d));
-        TRY(sort_again(s, d));
-    }
+    if (s->effects & FX_FLUID) TRY(sort_again(s, d));
     TRY(simulation_resume(s, d));
     s->state.energy_start -= simulation_ledger(s).dissipated;
     return ERR_OK;

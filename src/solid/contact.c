@@ -2,430 +2,524 @@
 #include "solid/contact.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
-/* Partners are looked for this much further than they reach, in smallest spacings, so that the search
- * need not be repeated in every step. */
-static const double skin_over_dp = 0.4;
+/* --- the law of a pair --- */
 
-/* --- laws --- */
+/* Each surface of a pair of bodies carries half: points of one on the edges of the other, and the
+ * other way round. */
+#define HALF 0.5
 
-static struct contact_law *law_of(const struct contact *c, int a, int b)
+/* Constants of a point and an edge. */
+struct pair {
+    double reach;     /* m */
+    double stiffness; /* force over overlap where they begin to touch, N/m per depth */
+    double damping;   /* N s/m */
+    double friction;
+    double grip; /* friction over the speed of slip before it slides, N s/m */
+};
+
+static double mass_of(const struct contact *c, int body)
 {
-    return &c->law[a * (c->n_solids + c->n_walls) + b];
+    return body < c->n_solids ? c->solid->body[body].mass : (double)INFINITY;
 }
 
-/* Spring constant stiffness * E of the softer body, so that a pressure p leaves an overlap of dp p/(stiffness
- * E); dashpots in shares of the pair's critical damping 2 sqrt(k m_ab), with m_ab = m_a m_b/(m_a + m_b). */
-static struct contact_law law_between(const struct scene_contact *from, const struct solid_body *a,
-                                      const struct solid_body *b, double wall_dp)
+static double dp_of(const struct contact *c, int body)
 {
-    const double young = b ? min2(a->young, b->young) : a->young;
-    const double mass = b ? a->mass * b->mass / (a->mass + b->mass) : a->mass;
-    const double k = from->stiffness * young, critical = 2 * sqrt(k * mass);
-    return (struct contact_law){
-        .on = true,
-        .reach = 0.5 * (a->dp + (b ? b->dp : wall_dp)) + from->gap,
-        .gap = from->gap,
-        .stiffness = k,
-        .damping = from->damping * critical,
-        .friction = from->friction,
-        .grip = from->friction > 0 ? 0.5 * critical : 0,
+    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
+}
+
+/* A point stands for its own spacing of surface. Damping in shares of 2 sqrt(k m), with the mass m of the
+ * pair, m_a m_b/(m_a + m_b). */
+static struct pair pair_of(const struct contact *c, const struct contact_law *law, int32_t point,
+                           int32_t edge)
+{
+    const int a = c->body[point], b = c->body[c->edge[edge].a];
+    const double k = law->stiffness * dp_of(c, a) / law->spacing;
+    const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
+    return (struct pair){
+        .reach = law->reach,
+        .stiffness = HALF * k,
+        .damping = HALF * law->damping * critical,
+        .friction = law->friction,
+        .grip = law->friction > 0 ? HALF * 0.5 * critical : 0,
     };
 }
 
-/* The number of a section that `between` names, walls behind solids. */
-static int number_of(const struct scene *s, const char *name)
+/* T-61: k r0^2 (r/r0 - 1 - ln(r/r0)), infinite where the distance r vanishes. */
+static double touch_energy(const struct pair *q, double r)
 {
-    const int solid = scene_find_solid(s, name);
-    return solid >= 0 ? solid : s->n_solid + scene_find_wall(s, name);
+    if (!(r < q->reach)) return 0;
+    const double s = r / q->reach;
+    return q->stiffness * square(q->reach) * (s - 1 - log(s));
 }
 
-/* Bodies that are joined are one and do not touch. */
-static void set_law(struct contact *c, const struct scene_contact *from, const struct solid *s,
-                    int a, int b)
+/* Its slope, k r0 (r0/r - 1), and the slope of that, k (r0/r)^2. */
+static double touch_push(const struct pair *q, double r)
 {
-    if (a == b || (b < c->n_solids && s->body[a].bond == s->body[b].bond)) return;
-    const bool wall = b >= c->n_solids;
-    const struct contact_law law =
-        law_between(from, &s->body[a], wall ? NULL : &s->body[b], c->scene->top.dp);
-    *law_of(c, a, b) = law;
-    if (!wall) *law_of(c, b, a) = law;
-    c->reach = max2(c->reach, law.reach);
+    return q->stiffness * q->reach * (q->reach / r - 1);
+}
+static double touch_stiffness(const struct pair *q, double r)
+{
+    return q->stiffness * square(q->reach / min2(r, q->reach));
 }
 
-/* Sections that name nobody first: those that do may differ from them. */
-static void set_laws(struct contact *c, const struct solid *s)
+/* T-62, from a place at distance r on the way (x, y) to the point, at a velocity (vx, vy) beside it. The
+ * dashpot may weaken the push but not turn it into a pull; friction is Coulomb's, below the speed of
+ * sliding proportional to the speed. */
+static void touch_force(const struct pair *q, const double way[2], double r, const double v[2],
+                        double f[2])
 {
-    const struct scene *const scene = c->scene;
-    const int n = c->n_solids + c->n_walls;
-    for (int k = 0; k < scene->n_contact; k++)
-        if (!scene->contact[k].between[0])
-            for (int a = 0; a < c->n_solids; a++)
-                for (int b = a + 1; b < n; b++) set_law(c, &scene->contact[k], s, a, b);
-    for (int k = 0; k < scene->n_contact; k++) {
-        char name[2][SCENE_TEXT];
-        if (!scene_pair(scene->contact[k].between, name)) continue;
-        const int a = number_of(scene, name[0]), b = number_of(scene, name[1]);
-        set_law(c, &scene->contact[k], s, a < b ? a : b, a < b ? b : a);
-    }
-}
-
-/* By Gershgorin's circles: row a of M^-1 K sums to at most n (k + k)/m_a with n springs on a, and to half
- * of that against a wall, which does not move. A particle of spacing dp_b in front of it for every dp_b
- * along its reach on both sides, and one more. The same for dashpots, along and across. */
-static void bound_step(struct contact *c, const struct solid *s)
-{
-    for (int a = 0; a < c->n_solids; a++) {
-        for (int b = 0; b < c->n_solids + c->n_walls; b++) {
-            const struct contact_law *const law = law_of(c, a, b);
-            if (!law->on) continue;
-            const bool wall = b >= c->n_solids;
-            const double dp = wall ? c->scene->top.dp : s->body[b].dp;
-            const double n = (1 + 2 * ceil(law->reach / dp - 1e-9)) * (wall ? 1 : 2);
-            c->omega2 = max2(c->omega2, n * law->stiffness / s->body[a].mass);
-            c->damping = max2(c->damping, n * max2(law->damping, law->grip) / s->body[a].mass);
-        }
-    }
-}
-
-/* --- surfaces --- */
-
-static int64_t cell_of(const struct contact_grid *g, double x)
-{
-    return (int64_t)floor(x / g->side);
-}
-
-static enum err grid_create(struct contact_grid *g, struct arena *a, int64_t n, struct diag *d)
-{
-    uint32_t size = 64;
-    while (size < (uint64_t)n) size *= 2;
-    g->mask = size - 1;
-    g->head = arena_alloc(a, size, sizeof *g->head, "contact", d);
-    g->next = arena_alloc(a, (size_t)n, sizeof *g->next, "contact", d);
-    return g->head && g->next ? ERR_OK : ERR_MEMORY;
-}
-
-static void grid_fill(struct contact_grid *g, int64_t n)
-{
-    memset(g->head, 0xff, ((size_t)g->mask + 1) * sizeof *g->head);
-    for (int64_t k = n - 1; k >= 0; k--) {
-        const uint32_t slot = hash_cell(cell_of(g, g->x[k]), cell_of(g, g->y[k]), g->mask);
-        g->next[k] = g->head[slot];
-        g->head[slot] = (int32_t)k;
-    }
-}
-
-/* Points within `reach`, at most `side`, of (x, y), ascending; returns how many, of which at most `room`
- * are stored. */
-static int grid_find(const struct contact_grid *g, double x, double y, double reach, int room,
-                     int32_t *found)
-{
-    const int64_t ci = cell_of(g, x), cj = cell_of(g, y);
-    int n = 0;
-    for (int64_t j = cj - 1; j <= cj + 1; j++) {
-        for (int64_t i = ci - 1; i <= ci + 1; i++) {
-            for (int32_t k = g->head[hash_cell(i, j, g->mask)]; k >= 0; k = g->next[k]) {
-                /* Cells may share a slot. */
-                if (cell_of(g, g->x[k]) != i || cell_of(g, g->y[k]) != j) continue;
-                if (square(g->x[k] - x) + square(g->y[k] - y) >= reach * reach) continue;
-                if (n++ >= room) continue;
-                int at = n - 1;
-                for (; at > 0 && found[at - 1] > k; at--) found[at] = found[at - 1];
-                found[at] = k;
-            }
-        }
-    }
-    return n;
-}
-
-/* A particle with an empty place among the eight next to it belongs to a surface. Bodies that are joined
- * count as one, and so do walls. */
-static enum err add_surface(struct contact *c, struct arena *a, const struct solid *s,
-                            const struct particles *p, bool walls, struct diag *d)
-{
-    const double largest = walls ? c->scene->top.dp : c->largest_dp;
-    struct arena temp = {.limit = a->limit};
-    struct contact_grid g = {.side = 1.5 * largest, .x = p->X, .y = p->Y};
-    enum err e = grid_create(&g, &temp, p->n, d);
-    if (!e) grid_fill(&g, p->n);
-    for (int64_t i = 0; i < p->n && !e; i++) {
-        int32_t near[CONTACT_PARTNERS];
-        const double dp = walls ? c->scene->top.dp : s->body[p->body[i]].dp;
-        const int found = grid_find(&g, p->X[i], p->Y[i], 1.5 * dp, CONTACT_PARTNERS, near);
-        int n = 0;
-        for (int k = 0; k < found && k < CONTACT_PARTNERS; k++)
-            n += walls || s->body[p->body[near[k]]].bond == s->body[p->body[i]].bond;
-        if (n >= 9) continue; /* itself and eight more */
-        c->index[c->n_points] = (int32_t)i;
-        c->body[c->n_points] = p->body[i] + (walls ? c->n_solids : 0);
-        c->n_points++;
-    }
-    arena_free(&temp);
-    return e;
-}
-
-/* --- where points are --- */
-
-/* Brings the points of solids to where they are at the state, those of moving walls to `time`; notes
- * whether any has gone too far since partners were looked for. */
-static void place_points(struct contact *c, const struct particles *p, double time)
-{
-    const double far2 = square(0.5 * c->skin);
-    if (c->power) {
-#pragma omp single
-        for (int k = 0; k < c->n_walls; k++) {
-            const int motion = scene_find_motion(c->scene, c->scene->wall[k].motion);
-            c->motion[k] =
-                motion >= 0 ? motion_at(c->scene, motion, time) : (struct motion_state){0};
-        }
-    }
-    /* Walls at rest stay where they were put. */
-    const int64_t n = c->power ? c->n_points : c->n_solid_points;
-#pragma omp for schedule(static)
-    for (int64_t k = 0; k < n; k++) {
-        const int32_t i = c->index[k];
-        if (k < c->n_solid_points) {
-            c->x[k] = p->X[i] + p->ux[i];
-            c->y[k] = p->Y[i] + p->uy[i];
-        } else {
-            const struct motion_point at =
-                motion_of_point(&c->motion[c->body[k] - c->n_solids], c->wall->X[i], c->wall->Y[i]);
-            c->x[k] = at.x[0];
-            c->y[k] = at.x[1];
-            c->vx[k - c->n_solid_points] = at.v[0];
-            c->vy[k - c->n_solid_points] = at.v[1];
-        }
-        /* Not a number counts as far. */
-        if (!(square(c->x[k] - c->at_x[k]) + square(c->y[k] - c->at_y[k]) <= far2)) {
-#pragma omp atomic write
-            c->stale = 1;
-        }
-    }
-}
-
-/* Every solid point's partners. Which there are beyond the reach changes no bit of a force, so it does not
- * matter when they were looked for. */
-static void find_partners(struct contact *c)
-{
-    memcpy(c->at_x, c->x, (size_t)c->n_points * sizeof *c->x);
-    memcpy(c->at_y, c->y, (size_t)c->n_points * sizeof *c->y);
-    grid_fill(&c->grid, c->n_points);
-    for (int64_t k = 0; k < c->n_solid_points; k++) {
-        enum { ROOM = 4 * CONTACT_PARTNERS };
-        int32_t near[ROOM], *const kept = &c->partner[k * CONTACT_PARTNERS];
-        const int found = grid_find(&c->grid, c->x[k], c->y[k], c->reach + c->skin, ROOM, near);
-        int n = 0;
-        for (int m = 0; m < found && m < ROOM; m++) {
-            if (!law_of(c, c->body[k], c->body[near[m]])->on) continue;
-            if (n < CONTACT_PARTNERS) kept[n] = near[m];
-            n++;
-        }
-        if (n > CONTACT_PARTNERS || found > ROOM) c->crowded = 1;
-        c->n_partners[k] = n < CONTACT_PARTNERS ? n : CONTACT_PARTNERS;
-    }
-    c->stale = 0;
-}
-
-static void update(struct contact *c, const struct particles *p, double time)
-{
-    place_points(c, p, time);
-    if (!c->stale) return;
-#pragma omp barrier
-#pragma omp single
-    find_partners(c);
-}
-
-/* --- forces --- */
-
-/* A pair within reach: its direction from the partner, overlap and relative velocity. */
-struct touch {
-    double x, y, overlap, vx, vy;
-};
-
-/* Where a gap was narrower at the start, as beside a clamp or under a body that rests, that is its gap. */
-static double pair_reach(const struct contact *c, const struct contact_law *law, int64_t k,
-                         int32_t other)
-{
-    if (law->gap == 0) return law->reach;
-    const double began = hypot(c->X[k] - c->X[other], c->Y[k] - c->Y[other]);
-    return min2(law->reach, max2(law->reach - law->gap, began));
-}
-
-static bool touches(const struct contact *c, const struct contact_law *law, int64_t k,
-                    int32_t other, struct touch *t)
-{
-    const double dx = c->x[k] - c->x[other], dy = c->y[k] - c->y[other], r2 = dx * dx + dy * dy;
-    if (r2 >= law->reach * law->reach || r2 == 0) return false;
-    const double r = sqrt(r2), reach = pair_reach(c, law, k, other);
-    *t = (struct touch){.x = dx / r, .y = dy / r, .overlap = reach - r};
-    return r < reach;
-}
-
-/* Potential k/2 (r0 - r)^2 below r0 = the mean spacing: the linear spring of Cundall and Strack (1979)
- * on the particles of a surface, as in the contact of Campbell, Vignjevic and Libersky (2000). Along the
- * pair a dashpot that may weaken the push but not turn it into a pull; across it Coulomb's friction, below
- * the speed of sliding proportional to the speed. */
-static void touch_force(const struct contact_law *law, const struct touch *t, double f[2])
-{
-    const double along = t->vx * t->x + t->vy * t->y;
-    const double push = max2(0, law->stiffness * t->overlap - law->damping * along);
-    f[0] = push * t->x;
-    f[1] = push * t->y;
-    if (!(law->friction > 0)) return;
-    const double sx = t->vx - along * t->x, sy = t->vy - along * t->y,
-                 slip = sqrt(sx * sx + sy * sy);
+    f[0] = f[1] = 0;
+    if (!(r < q->reach) || r == 0) return;
+    const double x = way[0] / r, y = way[1] / r, along = v[0] * x + v[1] * y;
+    const double push = max2(0, touch_push(q, r) - q->damping * along);
+    f[0] = push * x;
+    f[1] = push * y;
+    if (!(q->friction > 0)) return;
+    const double sx = v[0] - along * x, sy = v[1] - along * y, slip = sqrt(sx * sx + sy * sy);
     if (!(slip > 0)) return;
-    const double drag = min2(law->friction * push, law->grip * slip) / slip;
+    const double drag = min2(q->friction * push, q->grip * slip) / slip;
     f[0] -= drag * sx;
     f[1] -= drag * sy;
 }
 
-static void partner_velocity(const struct contact *c, const struct particles *p, int32_t j,
-                             double v[2])
+/* The same from one of the points. */
+static void touch_end(const struct contact *c, const struct pair *q, int32_t point, int32_t end,
+                      double f[2])
 {
-    const bool solid = j < c->n_solid_points;
-    const int64_t wall = j - c->n_solid_points;
-    v[0] = solid ? p->vx[c->index[j]] : c->power ? c->vx[wall] : 0;
-    v[1] = solid ? p->vy[c->index[j]] : c->power ? c->vy[wall] : 0;
+    const double way[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
+    const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
+    touch_force(q, way, sqrt(way[0] * way[0] + way[1] * way[1]), v, f);
 }
 
-/* All forces on one point of a solid. */
-static void point_forces(struct contact *c, const struct solid *s, struct particles *p, int64_t k)
+/* Velocity of a point beside the place of an edge that is nearest to it. */
+static void relative_velocity(const struct contact *c, int32_t point, int32_t edge, double s,
+                              double v[2])
 {
-    const int32_t i = c->index[k], *const partner = &c->partner[k * CONTACT_PARTNERS];
-    double fx = 0, fy = 0, power = 0;
-    for (int m = 0; m < c->n_partners[k]; m++) {
-        const int32_t j = partner[m];
-        const struct contact_law *const law = law_of(c, c->body[k], c->body[j]);
-        struct touch t;
-        if (!touches(c, law, k, j, &t)) continue;
-        double v[2];
-        partner_velocity(c, p, j, v);
-        t.vx = p->vx[i] - v[0];
-        t.vy = p->vy[i] - v[1];
-        double f[2];
-        touch_force(law, &t, f);
-        fx += f[0];
-        fy += f[1];
-        if (j >= c->n_solid_points) power += f[0] * v[0] + f[1] * v[1];
+    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
+    v[0] = c->vx[point] - ((1 - s) * c->vx[a] + s * c->vx[b]);
+    v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
+}
+
+/* T-61a: an edge pushes with all of it, less what its ends push, shared among the edges that meet there. */
+static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
+                       struct contact_force *out)
+{
+    const struct contact_law law = contact_pair_law(c, point, edge);
+    const struct contact_foot foot = contact_foot(c, point, edge);
+    if (!law.on || !(foot.distance < law.reach)) return false;
+    const struct pair q = pair_of(c, &law, point, edge);
+    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
+    const double s = foot.at, way[2] = {foot.x, foot.y};
+    double v[2], f[2], fa[2], fb[2];
+    relative_velocity(c, point, edge, s, v);
+    touch_force(&q, way, foot.distance, v, f);
+    touch_end(c, &q, point, a, fa);
+    touch_end(c, &q, point, b, fb);
+    for (int k = 0; k < 2; k++) {
+        const double ga = c->share[a] * fa[k], gb = c->share[b] * fb[k];
+        out->p[k] = f[k] - ga - gb;
+        out->a[k] = ga - (1 - s) * f[k];
+        out->b[k] = gb - s * f[k];
     }
-    if (c->power) c->power[k] = power;
-    const double per_mass = p->free[i] / s->body[c->body[k]].mass;
-    p->sx[i] += fx * per_mass;
-    p->sy[i] += fy * per_mass;
+    return true;
+}
+
+static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
+{
+    const struct contact_law law = contact_pair_law(c, point, edge);
+    const double r = contact_foot(c, point, edge).distance;
+    if (!law.on || !(r < law.reach)) return 0;
+    const struct pair q = pair_of(c, &law, point, edge);
+    double sum = touch_energy(&q, r);
+    const int32_t end[2] = {c->edge[edge].a, c->edge[edge].b};
+    for (int k = 0; k < 2; k++)
+        sum -= c->share[end[k]] *
+               touch_energy(&q, hypot(c->x[point] - c->x[end[k]], c->y[point] - c->y[end[k]]));
+    return sum;
+}
+
+/* --- forces --- */
+
+static void add_force(struct contact *c, struct particles *p, int32_t point, const double f[2])
+{
+    if (point >= c->n_solid_points) {
+        c->power -= f[0] * c->vx[point] + f[1] * c->vy[point];
+        return;
+    }
+    const int32_t i = c->index[point];
+    const double per_mass = p->free[i] / c->solid->body[c->body[point]].mass;
+    p->sx[i] += f[0] * per_mass;
+    p->sy[i] += f[1] * per_mass;
+}
+
+static void list_if_stale(struct contact *c)
+{
+    if (!c->stale) return;
+#pragma omp barrier
+#pragma omp single
+    contact_list(c);
 }
 
 void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time)
 {
-    update(c, p, time);
+    (void)s;
+    contact_place(c, p, time);
+    list_if_stale(c);
 #pragma omp for schedule(static)
-    for (int64_t k = 0; k < c->n_solid_points; k++) point_forces(c, s, p, k);
-}
-
-double contact_power(const struct contact *c)
-{
-    double sum = 0;
-    for (int64_t k = 0; c->power && k < c->n_solid_points; k++) sum += c->power[k];
-    return sum;
-}
-
-/* Pairs of solids are met twice, those with walls once. */
-double contact_energy(struct contact *c, const struct particles *p, double time)
-{
-    update(c, p, time);
-    double sum = 0;
-    for (int64_t k = 0; k < c->n_solid_points; k++) {
-        for (int m = 0; m < c->n_partners[k]; m++) {
-            const int32_t j = c->partner[k * CONTACT_PARTNERS + m];
-            const struct contact_law *const law = law_of(c, c->body[k], c->body[j]);
-            struct touch t;
-            if (touches(c, law, k, j, &t))
-                sum += (j < c->n_solid_points ? 0.25 : 0.5) * law->stiffness * square(t.overlap);
+    for (int64_t k = 0; k < c->n_pairs; k++) {
+        struct contact_force *const f = &c->force[k];
+        f->touches = pair_force(c, c->pair_point[k], c->pair_edge[k], f);
+    }
+    /* By one thread, in the order of the list: the same sums on any number of threads. */
+#pragma omp single
+    {
+        c->power = 0;
+        for (int64_t k = 0; k < c->n_pairs; k++) {
+            const struct contact_force *const f = &c->force[k];
+            if (!f->touches) continue;
+            add_force(c, p, c->pair_point[k], f->p);
+            add_force(c, p, c->edge[c->pair_edge[k]].a, f->a);
+            add_force(c, p, c->edge[c->pair_edge[k]].b, f->b);
         }
     }
+}
+
+/* Beyond what two points approach in the time at their present speeds they may gain so many spacings. */
+#define GAIN 0.25
+/* Surfaces nearer than this many of their reaches count in the bound of the step. */
+#define NEAR 1.25
+/* What the list has beyond that, in spacings: pairs are listed anew when points have gone so far. */
+#define SKIN 1.0
+
+double contact_energy(struct contact *c, const struct particles *p, double time)
+{
+    if (c->known && !c->near) return 0;
+    contact_place(c, p, time);
+    if (c->known) {
+        list_if_stale(c);
+    } else {
+        for (int k = 0; k < CONTACT_WITH; k++) c->margin[k] = SKIN * c->spacing;
+        contact_list(c);
+        c->near = c->n_pairs > 0;
+    }
+    double sum = 0;
+    for (int64_t k = 0; k < c->n_pairs; k++)
+        sum += pair_energy(c, c->pair_point[k], c->pair_edge[k]);
     return sum;
+}
+
+/* --- before a step --- */
+
+/* Mean displacement since the list was made, and velocity, of a group's points. */
+struct contact_mean {
+    double n, x, y, vx, vy;
+};
+
+static void find_means(struct contact *c)
+{
+    memset(c->mean, 0, (size_t)c->n_groups * sizeof *c->mean);
+    for (int64_t k = 0; k < c->n_solid_points; k++) {
+        struct contact_mean *const m = &c->mean[c->group[k]];
+        m->n++;
+        m->x += c->x[k] - c->at_x[k];
+        m->y += c->y[k] - c->at_y[k];
+        m->vx += c->vx[k];
+        m->vy += c->vy[k];
+    }
+    for (int g = 0; g < c->n_groups; g++) {
+        struct contact_mean *const m = &c->mean[g];
+        const double per = m->n > 0 ? 1 / m->n : 0;
+        *m = (struct contact_mean){m->n, per * m->x, per * m->y, per * m->vx, per * m->vy};
+    }
+}
+
+/* How far two points may have come together since the list was made, and their speed. */
+struct contact_pace {
+    double moved[CONTACT_WITH], speed[CONTACT_WITH];
+};
+
+static struct contact_pace pace_of(const struct contact *c)
+{
+    double far2[3] = {0}, speed2[3] = {0}; /* beside their group; of solids; of walls */
+    for (int64_t k = 0; k < c->n_solid_points; k++) {
+        const struct contact_mean *const m = &c->mean[c->group[k]];
+        const double x = c->x[k] - c->at_x[k], y = c->y[k] - c->at_y[k];
+        far2[0] = max2(far2[0], square(x - m->x) + square(y - m->y));
+        far2[1] = max2(far2[1], x * x + y * y);
+        speed2[0] = max2(speed2[0], square(c->vx[k] - m->vx) + square(c->vy[k] - m->vy));
+        speed2[1] = max2(speed2[1], square(c->vx[k]) + square(c->vy[k]));
+    }
+    for (int64_t k = c->n_solid_points; k < c->n_moving_points; k++) {
+        far2[2] = max2(far2[2], square(c->x[k] - c->at_x[k]) + square(c->y[k] - c->at_y[k]));
+        speed2[2] = max2(speed2[2], square(c->vx[k]) + square(c->vy[k]));
+    }
+    return (struct contact_pace){
+        .moved = {2 * sqrt(far2[0]), sqrt(far2[1]) + sqrt(max2(far2[1], far2[2]))},
+        .speed = {2 * sqrt(speed2[0]), sqrt(speed2[1]) + sqrt(max2(speed2[1], speed2[2]))},
+    };
+}
+
+/* A point may go this share of the way to what it touches in a step (T-62b). */
+#define ADVANCE 0.25
+
+static void add_row(struct contact *c, const struct particles *p, int32_t point, double weight,
+                    double stiffness, double damping)
+{
+    if (point >= c->n_solid_points) return;
+    const double per_mass = p->free[c->index[point]] / c->solid->body[c->body[point]].mass;
+    c->row[point] += weight * stiffness * per_mass;
+    c->row_damping[point] += weight * damping * per_mass;
+}
+
+static double moves_freely(const struct contact *c, const struct particles *p, int32_t point)
+{
+    return point < c->n_solid_points ? p->free[c->index[point]] : 0;
+}
+
+/* T-62a: a pair's share of the rows of M^-1 K by Gershgorin, where it is at the end of the step. */
+static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
+                     const struct pair *q, const struct contact_foot *foot, double r)
+{
+    const int32_t k = c->pair_point[pair];
+    const struct contact_edge *const e = &c->edge[c->pair_edge[pair]];
+    const double s = foot->at;
+    const double own = s == 0 ? 1 - c->share[e->a] : s == 1 ? 1 - c->share[e->b] : 1;
+    const double both =
+        moves_freely(c, p, k) + (1 - s) * moves_freely(c, p, e->a) + s * moves_freely(c, p, e->b);
+    const double stiffness = own * both * touch_stiffness(q, r);
+    const double damping = own * both * max2(q->damping, q->grip);
+    add_row(c, p, k, 1, stiffness, damping);
+    add_row(c, p, e->a, 1 - s, stiffness, damping);
+    add_row(c, p, e->b, s, stiffness, damping);
+}
+
+static void note_depth(struct contact *c, int32_t point, int32_t edge, double overlap)
+{
+    if (!(overlap > c->deepest.overlap)) return;
+    c->deepest = (struct contact_depth){overlap, c->x[point], c->y[point], c->body[point],
+                                        c->body[c->edge[edge].a]};
+}
+
+/* Distance beyond the reach within which a pair matters to the coming time `span`. */
+static double distance_near(const struct contact *c, double speed, double span)
+{
+    return max2((NEAR - 1) * c->reach, GAIN * c->spacing) + 1.5 * span * speed;
+}
+
+static void watch_pair(struct contact *c, const struct particles *p, int64_t pair, double longest,
+                       double span)
+{
+    const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
+    const struct contact_law law = contact_pair_law(c, point, edge);
+    const struct contact_foot foot = contact_foot(c, point, edge);
+    const double r = foot.distance;
+    double v[2];
+    relative_velocity(c, point, edge, foot.at, v);
+    if (r > law.reach + distance_near(c, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
+    c->near = true;
+    const double gap =
+        c->law[c->body[point] * (c->n_solids + c->n_walls) + c->body[c->edge[edge].a]].reach -
+        law.spacing;
+    note_depth(c, point, edge, (law.reach - gap - r) / law.spacing);
+    const double closing = r > 0 ? max2(0, -(v[0] * foot.x + v[1] * foot.y) / r) : 0;
+    if (closing > 0)
+        c->approach =
+            min2(c->approach, (max2(0, r - law.reach) + ADVANCE * min2(r, law.reach)) / closing);
+    const double then = max2(r - closing * longest, (1 - ADVANCE) * min2(r, law.reach));
+    if (then > NEAR * law.reach) return;
+    const struct pair q = pair_of(c, &law, point, edge);
+    add_rows(c, p, pair, &q, &foot, then);
+}
+
+/* How far a point is behind the nearest edge of another body, whose surface it has passed then: of the
+ * pairs of one point; 0: before it. */
+static double behind(const struct contact *c, int64_t first, int64_t end, int32_t *nearest_edge)
+{
+    double nearest = (double)INFINITY;
+    bool inside = false;
+    const int32_t point = c->pair_point[first];
+    for (int64_t k = first; k < end; k++) {
+        if (contact_with(c, point, c->pair_edge[k]) == CONTACT_SELF) continue;
+        const struct contact_foot f = contact_foot(c, point, c->pair_edge[k]);
+        if (!(f.distance < nearest)) continue;
+        const struct contact_edge *const e = &c->edge[c->pair_edge[k]];
+        const double side = (c->x[e->b] - c->x[e->a]) * f.y - (c->y[e->b] - c->y[e->a]) * f.x;
+        nearest = f.distance;
+        *nearest_edge = c->pair_edge[k];
+        inside = e->sided && f.at > 0 && f.at < 1 && side > 0;
+    }
+    return inside ? nearest : 0;
+}
+
+static void watch_side(struct contact *c, int64_t first, int64_t end)
+{
+    int32_t edge = 0;
+    const double far = behind(c, first, end, &edge);
+    const int32_t point = c->pair_point[first];
+    if (far > 0) note_depth(c, point, edge, 1 + far / contact_pair_law(c, point, edge).spacing);
+}
+
+static void watch_pairs(struct contact *c, const struct particles *p, double longest, double span)
+{
+    memset(c->row, 0, (size_t)c->n_solid_points * sizeof *c->row);
+    memset(c->row_damping, 0, (size_t)c->n_solid_points * sizeof *c->row);
+    for (int64_t first = 0, end; first < c->n_pairs; first = end) {
+        for (end = first; end < c->n_pairs && c->pair_point[end] == c->pair_point[first]; end++)
+            watch_pair(c, p, end, longest, span);
+        watch_side(c, first, end);
+    }
+    for (int64_t k = 0; k < c->n_solid_points; k++) {
+        c->omega2 = max2(c->omega2, c->row[k]);
+        c->damping = max2(c->damping, c->row_damping[k]);
+    }
+}
+
+bool contact_watch(struct contact *c, const struct particles *p, double time, double longest,
+                   double span)
+{
+    contact_place(c, p, time);
+    find_means(c);
+    const struct contact_pace pace = pace_of(c);
+    double want[CONTACT_WITH];
+    bool holds = c->known;
+    for (int k = 0; k < CONTACT_WITH; k++) {
+        want[k] = distance_near(c, pace.speed[k], span);
+        holds = holds && c->margin[k] - pace.moved[k] >= want[k];
+    }
+    if (!holds) {
+        for (int k = 0; k < CONTACT_WITH; k++) c->margin[k] = want[k] + SKIN * c->spacing;
+        contact_list(c);
+    }
+    c->near = false;
+    c->omega2 = c->damping = 0;
+    c->approach = (double)INFINITY;
+    c->deepest = (struct contact_depth){0};
+    if (c->n_pairs) watch_pairs(c, p, longest, span);
+    return c->near;
+}
+
+void contact_forget(struct contact *c, const struct particles *walls)
+{
+    /* Walls have been sorted; their numbers tell how they were sampled. */
+    int64_t first = INT64_MAX;
+    for (int64_t i = 0; i < walls->n; i++)
+        if (walls->id[i] < first) first = walls->id[i];
+    for (int64_t i = 0; i < walls->n && c->n_walls; i++) {
+        const int32_t k = c->wall_point[walls->id[i] - first];
+        if (k < c->n_moving_points) continue;
+        c->x[k] = walls->x[i];
+        c->y[k] = walls->y[i];
+    }
+    c->known = false;
+}
+
+void contact_name(const struct contact *c, int body, char text[CONTACT_NAME])
+{
+    if (body < c->n_solids)
+        snprintf(text, CONTACT_NAME, "[solid %s]", c->scene->solid[body].common.name);
+    else
+        snprintf(text, CONTACT_NAME, "[wall %s]", c->scene->wall[body - c->n_solids].common.name);
 }
 
 /* --- the beginning --- */
 
-/* Bodies on lattices that do not fit may start nearer to each other than they like. */
-static void warn_of_overlap(const struct contact *c, const struct particles *p, struct diag *d)
+/* A pressure p leaves an overlap of dp p/(stiffness E + p) (T-61). */
+static void set_law(struct contact *c, const struct scene_contact *from, int a, int b)
 {
-    double most = 0;
-    int64_t at = -1;
-    for (int64_t k = 0; k < c->n_solid_points; k++) {
-        if (p->free[c->index[k]] == 0) continue;
-        for (int m = 0; m < c->n_partners[k]; m++) {
-            const int32_t j = c->partner[k * CONTACT_PARTNERS + m];
-            const struct contact_law *const law = law_of(c, c->body[k], c->body[j]);
-            struct touch t;
-            const double spacing = law->reach - law->gap;
-            if (!touches(c, law, k, j, &t) || t.overlap / spacing <= most) continue;
-            most = t.overlap / spacing;
-            at = k;
-        }
-    }
-    if (most > 1e-3)
-        diag_warn(d,
-                  "bodies start in contact: near (%.6g, %.6g) m particles overlap by %.2g of their "
-                  "spacing and push from the beginning; a common lattice or a gap would mend it",
-                  c->x[at], c->y[at], most);
+    const bool wall = b >= c->n_solids;
+    const struct solid_body *const one = &c->solid->body[a];
+    const double young = wall ? one->young : min2(one->young, c->solid->body[b].young);
+    const double spacing = 0.5 * (one->dp + dp_of(c, b));
+    const int n = c->n_solids + c->n_walls;
+    c->law[a * n + b] = c->law[b * n + a] = (struct contact_law){
+        .on = true,
+        .spacing = spacing,
+        .reach = spacing + from->gap,
+        .stiffness = from->stiffness * young,
+        .damping = from->damping,
+        .friction = from->friction,
+    };
+    c->reach = max2(c->reach, spacing + from->gap);
+    c->spacing = max2(c->spacing, spacing);
 }
 
-static enum err create_points(struct contact *c, struct arena *a, const struct solid *s,
-                              const struct particles *solid, bool moves, struct diag *d)
+static void set_laws(struct contact *c)
 {
-    const size_t most = (size_t)(solid->n + c->wall->n);
-    c->index = arena_alloc(a, most, sizeof *c->index, "contact", d);
-    c->body = arena_alloc(a, most, sizeof *c->body, "contact", d);
-    if (!c->index || !c->body) return ERR_MEMORY;
-    TRY(add_surface(c, a, s, solid, false, d));
-    c->n_solid_points = c->n_points;
-    if (c->wall->n) TRY(add_surface(c, a, s, c->wall, true, d));
-    double **const place[] = {&c->X, &c->Y, &c->x, &c->y, &c->at_x, &c->at_y};
-    for (size_t k = 0; k < COUNT_OF(place); k++) {
-        *place[k] = arena_alloc(a, (size_t)c->n_points, sizeof(double), "contact", d);
-        if (!*place[k]) return ERR_MEMORY;
+    for (int a = 0; a < c->n_solids; a++)
+        for (int b = a; b < c->n_solids + c->n_walls; b++) {
+            const struct scene_contact *const from = scene_contact_of(c->scene, a, b);
+            if (from) set_law(c, from, a, b);
+        }
+}
+
+/* Notes how near points begin to another group, where that is nearer than the reach: bodies on lattices that
+ * do not fit, and what is clamped within a wall, begin without a push and keep that distance. */
+static void note_beginnings(struct contact *c)
+{
+    c->margin[CONTACT_SELF] = -c->reach;
+    c->margin[CONTACT_OTHER] = 0;
+    for (int64_t k = 0; k < c->n_points; k++) c->began_group[k] = -1;
+    contact_list(c);
+    for (int64_t k = 0; k < c->n_pairs; k++) {
+        const int32_t point = c->pair_point[k], group = c->group[c->edge[c->pair_edge[k]].a];
+        const double r = contact_foot(c, point, c->pair_edge[k]).distance;
+        if (c->began_group[point] >= 0 && r >= c->began[point]) continue;
+        c->began[point] = r;
+        c->began_group[point] = group;
     }
-    const size_t n = (size_t)c->n_solid_points;
-    c->partner = arena_alloc(a, n * CONTACT_PARTNERS, sizeof *c->partner, "contact", d);
-    c->n_partners = arena_alloc(a, n, sizeof *c->n_partners, "contact", d);
-    if (!c->partner || !c->n_partners) return ERR_MEMORY;
-    for (int64_t k = 0; k < c->n_points; k++) {
-        const struct particles *const of = k < c->n_solid_points ? solid : c->wall;
-        c->X[k] = c->x[k] = of->X[c->index[k]];
-        c->Y[k] = c->y[k] = of->Y[c->index[k]];
-    }
-    if (moves) {
-        const size_t walls = (size_t)(c->n_points - c->n_solid_points);
-        c->power = arena_alloc(a, n, sizeof *c->power, "contact", d);
-        c->vx = arena_alloc(a, walls, sizeof *c->vx, "contact", d);
-        c->vy = arena_alloc(a, walls, sizeof *c->vy, "contact", d);
-        if (!c->power || !c->vx || !c->vy) return ERR_MEMORY;
-    }
-    c->grid = (struct contact_grid){.side = c->reach + c->skin, .x = c->x, .y = c->y};
-    return grid_create(&c->grid, a, c->n_points, d);
+    c->margin[CONTACT_SELF] = c->margin[CONTACT_OTHER] = 0;
+    c->known = false;
+    c->n_pairs = 0;
+    c->stale = 1;
+}
+
+static enum err create_list(struct contact *c, struct arena *a, struct diag *d)
+{
+    const size_t n = (size_t)c->n_solid_points, edges = (size_t)c->n_edges;
+    const size_t groups = (size_t)c->n_groups, walls = (size_t)c->n_walls;
+    c->most_pairs = 4 * c->n_solid_points + 64;
+    const size_t most = (size_t)c->most_pairs;
+    c->row = arena_alloc(a, n, sizeof *c->row, "contact", d);
+    c->row_damping = arena_alloc(a, n, sizeof *c->row, "contact", d);
+    c->middle_x = arena_alloc(a, edges, sizeof *c->middle_x, "contact", d);
+    c->middle_y = arena_alloc(a, edges, sizeof *c->middle_y, "contact", d);
+    c->skip = arena_alloc(a, edges, sizeof *c->skip, "contact", d);
+    c->mean = arena_alloc(a, groups, sizeof *c->mean, "contact", d);
+    c->motion = arena_alloc(a, walls, sizeof *c->motion, "contact", d);
+    c->pair_point = arena_alloc(a, most, sizeof *c->pair_point, "contact", d);
+    c->pair_edge = arena_alloc(a, most, sizeof *c->pair_edge, "contact", d);
+    c->force = arena_alloc(a, most, sizeof *c->force, "contact", d);
+    if (!c->row || !c->row_damping || !c->middle_x || !c->middle_y || !c->skip || !c->mean ||
+        !c->motion || !c->pair_point || !c->pair_edge || !c->force)
+        return ERR_MEMORY;
+    c->grid.x = c->middle_x;
+    c->grid.y = c->middle_y;
+    return contact_grid_create(&c->grid, a, c->n_edges, d);
+}
+
+static bool meets_walls(const struct scene *s)
+{
+    for (int a = 0; a < s->n_solid; a++)
+        for (int b = 0; b < s->n_wall; b++)
+            if (scene_contact_of(s, a, s->n_solid + b)) return true;
+    return false;
 }
 
 enum err contact_create(struct contact *c, struct arena *a, const struct scene *scene,
-                        const struct solid *s, const struct particles *solid,
-                        const struct particles *wall, struct diag *d)
+                        const struct solid *s, const struct particles *solid, struct diag *d)
 {
-    *c = (struct contact){.scene = scene, .wall = wall, .n_solids = scene->n_solid, .stale = 1};
-    c->n_walls = wall->n ? scene->n_wall : 0;
-    const size_t laws = (size_t)c->n_solids * (size_t)(c->n_solids + c->n_walls);
-    c->law = arena_alloc(a, laws, sizeof *c->law, "contact", d);
-    c->motion = arena_alloc(a, (size_t)c->n_walls, sizeof *c->motion, "contact", d);
-    if (!c->law || !c->motion) return ERR_MEMORY;
-    set_laws(c, s);
-    bound_step(c, s);
-    for (int k = 0; k < c->n_solids; k++) c->largest_dp = max2(c->largest_dp, s->body[k].dp);
-    c->skin = skin_over_dp * s->dp;
-    bool moves = false;
-    for (int k = 0; k < c->n_walls; k++) moves |= scene->wall[k].motion[0] != '\0';
-    TRY(create_points(c, a, s, solid, moves, d));
-    update(c, solid, 0);
-    warn_of_overlap(c, solid, d);
+    *c = (struct contact){.scene = scene, .arena = a, .solid = s, .n_solids = scene->n_solid};
+    c->n_walls = meets_walls(scene) ? scene->n_wall : 0;
+    c->n_groups = scene->n_solid + scene->n_motion + 1;
+    const size_t n = (size_t)(c->n_solids + c->n_walls);
+    c->law = arena_alloc(a, n * n, sizeof *c->law, "contact", d);
+    if (!c->law) return ERR_MEMORY;
+    set_laws(c);
+    TRY(contact_find_surface(c, a, solid, d));
+    TRY(create_list(c, a, d));
+    note_beginnings(c);
     return ERR_OK;
 }

@@ -339,7 +339,7 @@ void solid_forces(const struct solid *s, struct particles *p)
 void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
                      double dt)
 {
-    if (s->contact) s->work += dt * contact_power(s->contact);
+    if (s->contact) s->work += dt * s->contact->power;
     if (s->loads) s->work += loads_work(s->loads, p, vx, vy, dt);
 }
 

@@ -120,14 +120,13 @@ struct solid {
     double omega_max;             /* largest frequency of the linearised operator, 1/s */
     double damping_max;           /* largest rate of its viscous part, 1/s */
     double stable_step;           /* the largest stable step that follows from both, s */
-    double lone_step;             /* the same as if there were no contact, s */
     double paper_step;            /* Eq. 29, s */
     struct spin_barrier *barrier; /* of the threads between two loops */
     struct solid_part *part;      /* [threads], each stepped by a thread; NULL: not cut */
     bool in_parts;                /* the last evaluation was theirs */
     double *scratch[6];           /* room for the search of the step */
     double time; /* of the displacements, s: walls that are touched stand where they are then */
-    /* What acts from outside, each NULL where there is none. */
+    /* What acts from outside, each NULL where there is none; contact: where none is near. */
     struct contact *contact;
     struct loads *loads;
     const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
@@ -135,8 +134,7 @@ struct solid {
     double
         time_since_fluid_eval; /* time since the fluid saw it, at the start of the sub-steps, s */
     double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */
-    double outer_omega2, outer_damping; /* what contact can add to omega_max^2 and damping_max */
-    double work; /* of walls, clamps and loads on the solid since it was last asked for, J/m */
+    double work;      /* of walls, clamps and loads on the solid since it was last asked for, J/m */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are

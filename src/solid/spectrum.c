@@ -155,12 +155,12 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     solid_stress(s, p);
     keep((double *[2]){p->sx, p->sy}, rates[0], rates[1], p->n);
     /* Eigenvalues of two operators together are no larger than the sum of the largest of each. */
-    return solid_step_of(square(*omega) + s->outer_omega2, *damping + s->outer_damping);
+    return solid_step_of(square(*omega), *damping);
 }
 
 void solid_find_step(struct solid *s, struct particles *p)
 {
-    s->stable_step = s->lone_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
+    s->stable_step = solid_stable_step(s, p, &s->omega_max, &s->damping_max);
 }
 
 static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }

@@ -204,15 +204,57 @@ static enum bound lone_bounds(struct simulation *s)
         return BOUND_fixed;
     }
     s->dt_bound[BOUND_solid] = s->dt_lone_solid;
-    if (!(s->effects & FX_CONTACT)) return BOUND_solid;
+    if (!(s->dt_solid < s->dt_lone_solid)) return BOUND_solid;
     s->dt_bound[BOUND_contact] = s->dt_solid;
     return BOUND_contact;
+}
+
+static void advance_lone(struct simulation *s, double dt, int n)
+{
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
+        for (int k = 0; k < n; k++) symplectic_solid(s, dt);
+    } else {
+        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
+        s->state.solid_evaluations += n;
+    }
+}
+
+/* Where something is near each step is looked at for itself, and may be shorter than planned; returns the
+ * time that has gone by, or 0 where all steps were as long as planned. */
+static double advance_near(struct simulation *s, double dt, int n)
+{
+    double gone = 0;
+    bool shorter = false;
+    for (int k = 0; k < n; k++) {
+        if (k) timestep_watch_contact(s, s->solid.time, SOLID_BATCH);
+        const bool cut = !(s->scene->numerics.fixed_step > 0) && s->dt_solid < dt;
+        const double now = cut ? s->dt_solid : dt;
+        advance_lone(s, now, 1);
+        gone += now;
+        shorter |= cut;
+        s->state.dt_min = s->state.steps || k ? min2(s->state.dt_min, now) : now;
+    }
+    return shorter ? gone : 0;
+}
+
+static void book_lone(struct simulation *s, double dt, int n, enum bound binding)
+{
+    struct state *const st = &s->state;
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->dt = dt;
+    st->steps += n;
+    st->solid_substeps += n;
+    st->particle_steps += n * s->kind[KIND_SOLID].n;
+    st->bound_steps[binding] += n;
+    s->substeps = 1;
 }
 
 void solid_only_step(struct simulation *s, double t_limit)
 {
     struct state *const st = &s->state;
     const double start = wall_clock();
+    const bool near = timestep_watch_contact(s, st->time, SOLID_BATCH);
     const enum bound binding = lone_bounds(s);
     const double bound = s->dt_bound[binding];
     const bool pushed = s->push[KIND_SOLID].at != NULL;
@@ -225,22 +267,13 @@ void solid_only_step(struct simulation *s, double t_limit)
     const int n = hits ? (int)steps : batch;
     const bool cut = dt < bound * (1 - 1e-9);
     if (cut) s->dt_bound[BOUND_output] = dt;
-    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
-        for (int k = 0; k < n; k++) symplectic_solid(s, dt);
-    } else {
-        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
-        st->solid_evaluations += n;
-    }
+    double gone = 0;
+    if (near)
+        gone = advance_near(s, dt, n);
+    else
+        advance_lone(s, dt, n);
     place_solid(&s->kind[KIND_SOLID]);
     phase_add(s, PHASE_solid, start);
-
-    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
-    st->dt_max = max2(st->dt_max, dt);
-    st->dt = dt;
-    st->time = hits ? t_limit : st->time + n * dt;
-    st->steps += n;
-    st->solid_substeps += n;
-    st->particle_steps += n * s->kind[KIND_SOLID].n;
-    st->bound_steps[cut ? BOUND_output : binding] += n;
-    s->substeps = 1;
+    st->time = gone > 0 ? st->time + gone : hits ? t_limit : st->time + n * dt;
+    book_lone(s, dt, n, cut ? BOUND_output : binding);
 }

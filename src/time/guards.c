@@ -136,6 +136,37 @@ static struct finding too_fast(const struct simulation *s, const struct particle
     return (struct finding){-1, "", 0};
 }
 
+/* Overlaps in spacings. The law is infinite at 1, which the step does not let pass. */
+#define OVERLAP_WARNING 0.5
+#define OVERLAP_LIMIT 0.98
+
+static enum err check_contact(struct simulation *s, struct diag *d)
+{
+    const struct contact_depth *const at = &s->contact.deepest;
+    char one[CONTACT_NAME], other[CONTACT_NAME];
+    if (s->contact.crowded)
+        return diag_fail(d, ERR_MEMORY, "t = %.6g s: no memory for all pairs in contact",
+                         s->state.time);
+    if (at->overlap < OVERLAP_WARNING || (s->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
+        return ERR_OK;
+    contact_name(&s->contact, at->body, one);
+    contact_name(&s->contact, at->other, other);
+    if (at->overlap >= OVERLAP_LIMIT)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
+            "m, the most that contact can carry: what presses them is stronger than the softer "
+            "one; a larger stiffness in [contact], a stiffer body or a slower motion may help",
+            s->state.time, (long long)s->state.steps, one, other, at->overlap, at->x, at->y);
+    s->guard.warned_contact = true;
+    diag_warn(d,
+              "t = %.6g s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: the "
+              "pressure there exceeds Young's modulus times the stiffness in [contact]; a larger "
+              "stiffness or a smaller dp lessens it, and at 1 the run stops",
+              s->state.time, one, other, at->overlap, at->x, at->y);
+    return ERR_OK;
+}
+
 static enum err check_solid(struct simulation *s, struct diag *d)
 {
     const struct particles *const p = &s->kind[KIND_SOLID];
@@ -146,13 +177,7 @@ static enum err check_solid(struct simulation *s, struct diag *d)
             "beside its body it is faster than ten times the speed of sound: the solid is "
             "unstable (a smaller solid_safety may help), or far too soft for its load",
             d);
-    if (s->contact.crowded)
-        return diag_fail(
-            d, ERR_GUARD,
-            "t = %.6g s, step %lld: more than %d particles push at one particle of a "
-            "solid's surface: bodies have gone into each other; a larger stiffness or a "
-            "smaller gap in [contact] may help",
-            s->state.time, (long long)s->state.steps, CONTACT_PARTNERS);
+    if (s->solid.contact) TRY(check_contact(s, d));
     if (!guards_strain_due(s)) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);

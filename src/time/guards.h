@@ -13,7 +13,8 @@ struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
     double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
     double step_limit;  /* s: a step below this has collapsed */
-    bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy;
+    bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy,
+        warned_contact;
 };
 
 struct simulation;

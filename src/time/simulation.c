@@ -279,20 +279,6 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-static enum err create_contact(struct simulation *s, struct diag *d)
-{
-    static const struct particles none = {0};
-    const bool walls = s->effects & FX_CONTACT_WALL;
-    TRY(contact_create(&s->contact, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID],
-                       walls ? &s->kind[KIND_WALL] : &none, d));
-    s->solid.contact = &s->contact;
-    s->solid.outer_omega2 = s->contact.omega2;
-    s->solid.outer_damping = s->contact.damping;
-    s->solid.stable_step = solid_step_of(square(s->solid.omega_max) + s->contact.omega2,
-                                         s->solid.damping_max + s->contact.damping);
-    return ERR_OK;
-}
-
 static enum err build(struct simulation *s, struct diag *d)
 {
     simulation_warn_of_scene(s, d);
@@ -307,7 +293,9 @@ static enum err build(struct simulation *s, struct diag *d)
         TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
         start_solid(s);
         solid_find_step(&s->solid, &s->kind[KIND_SOLID]);
-        if (s->effects & FX_CONTACT) TRY(create_contact(s, d));
+        if (s->effects & FX_CONTACT)
+            TRY(contact_create(&s->contact, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID],
+                               d));
         if (s->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
             TRY(loads_create(&s->loads, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID], d));
             s->solid.loads = &s->loads;
@@ -436,6 +424,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         return ERR_OK;
     }
     const double speed2_before = s->extremes.speed2;
+    timestep_watch_contact(s, s->state.time, 1);
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
     else if (s->scene->top.integrator == INTEGRATOR_VERLET)
@@ -483,6 +472,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     }
     if (s->effects & FX_SOLID) {
         timestep_set_solid(s);
+        contact_forget(&s->contact, &s->kind[KIND_WALL]);
         solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards look at the last gradients */
     }
     update_extremes(s);

@@ -58,13 +58,15 @@ static double bound_solid(const struct simulation *s, const struct fluid_extreme
 {
     (void)now;
     if (s->effects & FX_MULTIRATE) return (double)INFINITY;
-    return s->effects & FX_CONTACT ? s->dt_lone_solid : s->dt_solid;
+    return s->solid.contact ? s->dt_lone_solid : s->dt_solid;
 }
 
+/* With sub-steps only that nothing passes within the step. */
 static double bound_contact(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return s->effects & FX_MULTIRATE ? (double)INFINITY : s->dt_solid;
+    if (!s->solid.contact) return (double)INFINITY;
+    return s->effects & FX_MULTIRATE ? s->contact.approach : s->dt_solid;
 }
 
 /* Found below, where the time that is left is known. */
@@ -150,9 +152,36 @@ int timestep_substeps(struct simulation *s, double dt)
 
 void timestep_set_solid(struct simulation *s)
 {
-    const double safety = s->scene->numerics.solid_safety;
-    s->dt_solid = safety * s->solid.stable_step * s->state.solid_slowing;
-    s->dt_lone_solid = safety * s->solid.lone_step * s->state.solid_slowing;
+    const double step = s->solid.stable_step * s->state.solid_slowing;
+    /* A body that is clamped all over has no bound, and something may yet be driven into it. */
+    const bool bounded = s->effects & FX_FLUID || isfinite(step);
+    s->dt_solid = s->dt_lone_solid =
+        s->scene->numerics.solid_safety * (bounded ? step : s->solid.paper_step);
+}
+
+/* T-62a: eigenvalues of a sum are no larger than the sum of the largest. */
+static double step_in_contact(const struct simulation *s)
+{
+    const struct contact *const c = &s->contact;
+    const double slowing = s->state.solid_slowing;
+    const double step = solid_step_of(square(s->solid.omega_max / slowing) + c->omega2,
+                                      s->solid.damping_max / slowing + c->damping);
+    return min2(s->scene->numerics.solid_safety * step, c->approach);
+}
+
+bool timestep_watch_contact(struct simulation *s, double time, int steps)
+{
+    if (!(s->effects & FX_CONTACT)) return false;
+    const double start = wall_clock(), fixed = s->scene->numerics.fixed_step;
+    const double longest = fixed > 0               ? fixed
+                           : s->effects & FX_FLUID ? timestep_fluid_limit(s)
+                                                   : s->dt_lone_solid;
+    const bool near =
+        contact_watch(&s->contact, &s->kind[KIND_SOLID], time, longest, steps * longest);
+    s->solid.contact = near ? &s->contact : NULL;
+    s->dt_solid = near ? min2(s->dt_lone_solid, step_in_contact(s)) : s->dt_lone_solid;
+    s->contact.seconds += wall_clock() - start;
+    return near;
 }
 
 /* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses up what

@@ -5,13 +5,15 @@
 
 #include "time/simulation.h"
 
-/* Steps before an output time that are made equal: a change of one in so many is too little to matter. */
+/* Steps before an output time that are made equal: a change of one in so many is too little to
+ * matter. */
 enum { EQUAL_STEPS = 64 };
 
 /* Largest step the fluid can ever take, s: Eq. 28b at rest. */
 double timestep_fluid_limit(const struct simulation *s);
 
-/* C_CFL of Eq. 28b at rest that the largest step has, whatever bounds it; and whether it is longer than that
+/* C_CFL of Eq. 28b at rest that the largest step has, whatever bounds it; and whether it is longer
+ * than that
  * of another. */
 double timestep_courant(const struct simulation *s);
 bool timestep_beyond(const struct simulation *s, double cfl);
@@ -30,11 +32,17 @@ int timestep_substeps(struct simulation *s, double dt);
 /* Sets the solid's step from its bound about the undeformed state and the slowing in s->state. */
 void timestep_set_solid(struct simulation *s);
 
-/* Finds the solid's bound anew where its stiffness has left the range that the last one holds for. Looks
+/* Finds the solid's bound anew where its stiffness has left the range that the last one holds for.
+ * Looks
  * at gradients that are up to date; the state decides, so that a restart does the same. */
 void timestep_recheck_solid(struct simulation *s);
 
 /* Books a step that has been taken: time, counters, statistics. */
 void timestep_book(struct simulation *s, double dt, double t_limit, bool hits);
+
+/* Whether contact can matter in the coming `steps` from `time` on: notes what it does to their
+ * bounds, and lets its
+ * forces act where it can. */
+bool timestep_watch_contact(struct simulation *s, double time, int steps);
 
 #endif

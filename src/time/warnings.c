@@ -6,16 +6,14 @@
 #include "case/case.h"
 #include "time/timestep.h"
 
-/* Contact that a scene may expect and does not ask for. */
+/* Contact that a scene may expect and does not have. */
 static void warn_of_contact(const struct simulation *s, struct diag *d)
 {
-    if (s->effects & FX_CONTACT) return;
-    int loose = 0;
-    for (int k = 0; k < s->scene->n_solid; k++) loose += s->scene->solid[k].clamp.n == 0;
-    if (s->scene->n_solid > 1 || (loose && s->scene->n_wall > 0))
-        diag_warn(d,
-                  "contact is not simulated: solids pass through each other and through walls; a "
-                  "[contact] section calls for it");
+    const struct scene *const c = s->scene;
+    if (s->effects & FX_CONTACT || c->domain.periodic == PERIODIC_NONE || c->n_solid == 0) return;
+    diag_warn(d,
+              "contact is not simulated in a domain with periodic sides: solids may pass through "
+              "each other and through walls; periodic = none simulates it");
 }
 
 /* A body that nothing holds moves away, which is seldom what a case with gravity or a load means. */

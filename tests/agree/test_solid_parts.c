@@ -26,7 +26,7 @@ static const char water[] =
     "[fluid water]\nshape = box 0, 0, 0.1, 0.3\nsound_speed = 20\nsurface = 0.3\n"
     "[wall bed]\nshape = box -0.02, -0.02, 0.2, 0\n"
     "[solid gate]\nshape = box 0.1, 0, 0.12, 0.8\nclamp = box 0.1, 0.75, 0.12, 0.8\n"
-    "density = 1100\nyoung = 4e7\npoisson = 0.4\n";
+    "density = 1100\nyoung = 4e7\npoisson = 0.4\n[contact none]\nenabled = off\n";
 
 static struct rig rig;
 static int threads_before;

@@ -48,32 +48,37 @@ static const struct {
     {TOP FLUID WALL, FX_FLUID | FX_WALL, EFFECT_WALL, "line 6: [wall bed]"},
     {TOP FLUID WALL "motion = m\n[motion m]\nvelocity = 1, 0\n", FX_FLUID | FX_WALL | FX_MOTION,
      EFFECT_MOTION, "line 8: [wall bed] motion"},
-    {TOP PLAIN_SOLID, FX_SOLID, EFFECT_SOLID, "line 3: [solid s]"},
-    {TOP SOLID "artificial_viscosity = 0\n", FX_SOLID | FX_HOURGLASS, EFFECT_HOURGLASS,
+    {TOP PLAIN_SOLID, FX_SOLID | FX_CONTACT, EFFECT_SOLID, "line 3: [solid s]"},
+    {TOP SOLID "artificial_viscosity = 0\n", FX_SOLID | FX_CONTACT | FX_HOURGLASS, EFFECT_HOURGLASS,
      "line 3: [solid s] hourglass"},
-    {TOP SOLID "hourglass = 0\n", FX_SOLID | FX_SOLID_VISCOSITY, EFFECT_SOLID_VISCOSITY,
-     "line 3: [solid s] artificial_viscosity"},
-    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_COUPLING,
-     "line 6: [solid s]"},
-    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE, EFFECT_IMPEDANCE,
-     "default: [numerics] interface"},
-    {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_KELVIN_VOIGT, EFFECT_KELVIN_VOIGT,
-     "line 10: [solid s] damping_time"},
+    {TOP SOLID "hourglass = 0\n", FX_SOLID | FX_CONTACT | FX_SOLID_VISCOSITY,
+     EFFECT_SOLID_VISCOSITY, "line 3: [solid s] artificial_viscosity"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_IMPEDANCE,
+     EFFECT_COUPLING, "line 6: [solid s]"},
+    {TOP FLUID PLAIN_SOLID, FX_FLUID | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_IMPEDANCE,
+     EFFECT_IMPEDANCE, "default: [numerics] interface"},
+    {TOP PLAIN_SOLID "damping_time = 1e-4\n", FX_SOLID | FX_CONTACT | FX_KELVIN_VOIGT,
+     EFFECT_KELVIN_VOIGT, "line 10: [solid s] damping_time"},
     {TOP PLAIN_SOLID "[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\njoined = s\n",
-     FX_SOLID | FX_JOINED, EFFECT_JOINED, "line 13: [solid t] joined"},
+     FX_SOLID | FX_CONTACT | FX_JOINED, EFFECT_JOINED, "line 13: [solid t] joined"},
     {TOP PLAIN_SOLID "[contact c]\n[solid t]\nlike = s\nshape = box 0.15, 0.12, 0.2, 0.16\n",
      FX_SOLID | FX_CONTACT, EFFECT_CONTACT, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID, FX_SOLID | FX_CONTACT, EFFECT_CONTACT, "line 3: [solid s]"},
+    {TOP PLAIN_SOLID "[contact c]\nenabled = off\n", FX_SOLID, EFFECT_SOLID, "line 3: [solid s]"},
+    {TOP PLAIN_SOLID WALL "[contact c]\nbetween = s, bed\nenabled = off\n", FX_SOLID | FX_CONTACT,
+     EFFECT_CONTACT, "line 3: [solid s]"},
     {TOP PLAIN_SOLID "[contact c]\n" WALL, FX_SOLID | FX_CONTACT | FX_CONTACT_WALL,
      EFFECT_CONTACT_WALL, "line 10: [contact c]"},
     {TOP PLAIN_SOLID "[load l]\nbody = s\nshape = box 0.05, 0.12, 0.06, 0.16\nforce = 1, 0\n",
-     FX_SOLID | FX_LOAD, EFFECT_LOAD, "line 10: [load l]"},
+     FX_SOLID | FX_CONTACT | FX_LOAD, EFFECT_LOAD, "line 10: [load l]"},
     {TOP PLAIN_SOLID "clamp = box 0.05, 0.12, 0.07, 0.16\nclamp_motion = m\n[motion m]\n",
-     FX_SOLID | FX_CLAMP_MOTION, EFFECT_CLAMP_MOTION, "line 11: [solid s] clamp_motion"},
+     FX_SOLID | FX_CONTACT | FX_CLAMP_MOTION, EFFECT_CLAMP_MOTION,
+     "line 11: [solid s] clamp_motion"},
     {TOP FLUID WALL "[probe p]\nquantity = force\nbody = bed\n", FX_FLUID | FX_WALL | FX_WALL_FORCE,
      EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
     {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\ninterface = held\n",
-     FX_FLUID | FX_VERLET | FX_SOLID | FX_COUPLING | FX_HELD_FORCE, EFFECT_HELD_FORCE,
+     FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_HELD_FORCE, EFFECT_HELD_FORCE,
      "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
 };
@@ -115,8 +120,8 @@ static void test_a_set_is_named_as_the_caller(void)
     TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity", text);
 }
 
-/* Fluid only: no field of a solid; solid only: no cells, no lanes, no field of a fluid; a wall beside
- * no fluid is nothing. */
+/* Fluid only: no field of a solid; solid only: no cells, no lanes, no field of a fluid; a wall that
+ * neither fluid nor solid meets is nothing. */
 static void test_nothing_is_allocated_that_is_not_needed(void)
 {
     rig_open(&rig, TOP FLUID WALL, NULL);
@@ -126,7 +131,7 @@ static void test_nothing_is_allocated_that_is_not_needed(void)
     TEST_ASSERT_NULL(rig.sim.kind[KIND_WALL].X);
     TEST_ASSERT_NULL(rig.sim.fluid.sticks[KIND_WALL]);
     TEST_ASSERT_EQUAL_INT(PACKED_FIELDS, rig.sim.fluid.packed[KIND_WALL].n);
-    rig_open(&rig, TOP SOLID WALL, NULL);
+    rig_open(&rig, TOP SOLID WALL "[contact none]\nenabled = off\n", NULL);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_FLUID].capacity);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.kind[KIND_WALL].capacity);
     TEST_ASSERT_NULL(rig.sim.cells.kind[KIND_SOLID].start);
@@ -157,9 +162,10 @@ static void test_phases_run_by_need(void)
     check_phases(TOP FLUID WALL, "sort lanes wall fluid update output ");
     check_phases(TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\nshifting = 1\n",
                  "sort lanes slope fluid shift update output ");
-    check_phases(TOP SOLID, "solid update output ");
+    check_phases(TOP SOLID, "solid contact update output ");
+    check_phases(TOP SOLID "[contact none]\nenabled = off\n", "solid update output ");
     check_phases(TOP SOLID "[contact c]\n" WALL, "solid contact update output ");
-    check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid update output ");
+    check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid contact update output ");
 }
 
 int main(void)

@@ -101,8 +101,17 @@ cp "$case" "$dir/moving.cfg"
 sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nvelocity = 0.1, 0\nstart = 0.02 s\n\n&/' \
     "$dir/moving.cfg"
 expect 0 'fork from' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/moving" "${go[@]}"
-expect 1 'fork: .wall .*would jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" "${go[@]}" \
+expect 1 'particle of .wall .*would jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" "${go[@]}" \
     --set push.start=0
+
+# --- fork: a tank that turns goes on where it is; one that would turn by a jump is refused ---
+roll=(cases/rolling_tank.cfg --threads 1 --set dp=depth/8 --set 'roll_period=0.1 s')
+expect 0 'simulated' "${roll[@]}" --until 0.02 --out "$dir/roll"
+expect 0 'fork from' "${roll[@]}" --until 0.022 --fork "$dir/roll" --out "$dir/rolls"
+expect 1 'particle of .wall tank. would jump' "${roll[@]}" --until 0.022 --fork "$dir/roll" \
+    --out "$dir/turns" --set 'roll=4*pi/180 + 0.1'
+expect 1 'particle of .wall tank. would jump' "${roll[@]}" --until 0.022 --fork "$dir/roll" \
+    --out "$dir/starts" --set 'roll.start=0.02 s'
 
 # --- fork: a clamp that stops holds where it stands, on any number of threads; one that would jump ---
 cat >"$dir/still.cfg" <<'CASE'

@@ -309,24 +309,86 @@ static void force_of_pair(const struct twin_solid *t, struct twin_solid_point *a
     a->ay += f[1] / body->density;
 }
 
-/* Every particle of another body nearer than dp pushes: k (dp - r) with k = stiffness E of the softer one,
- * less the dashpot; and the friction, at most Coulomb's. */
-static void touch(const struct twin_solid *t, struct twin_solid_point *a,
-                  const struct twin_solid_point *b)
+/* --- contact of boxes --- */
+
+/* Whether a body has a particle at a place of its lattice. */
+static bool has(const struct twin_solid *t, int body, double X, double Y)
 {
-    const struct scene_solid *const A = &t->body[a->body], *const B = &t->body[b->body];
-    const double x = a->x - b->x, y = a->y - b->y, r = sqrt(x * x + y * y), V = t->dp * t->dp;
-    if (bonded(t, a->body, b->body) || r >= t->dp) return;
+    for (int64_t i = 0; i < t->n; i++)
+        if (t->point[i].body == body && hypot(t->point[i].X - X, t->point[i].Y - Y) < 0.1 * t->dp)
+            return true;
+    return false;
+}
+
+/* Whether the line from a to its neighbour b is a piece of a surface: nothing beside both on one side. */
+static bool is_edge(const struct twin_solid *t, const struct twin_solid_point *a,
+                    const struct twin_solid_point *b)
+{
+    const double x = b->X - a->X, y = b->Y - a->Y;
+    if (a->body != b->body || fabs(hypot(x, y) / t->dp - 1) > 0.1) return false;
+    for (int side = -1; side < 2; side += 2)
+        if (!has(t, a->body, a->X - side * y, a->Y + side * x) &&
+            !has(t, a->body, b->X - side * y, b->Y + side * x))
+            return true;
+    return false;
+}
+
+static bool at_surface(const struct twin_solid *t, const struct twin_solid_point *a)
+{
+    return !has(t, a->body, a->X + t->dp, a->Y) || !has(t, a->body, a->X - t->dp, a->Y) ||
+           !has(t, a->body, a->X, a->Y + t->dp) || !has(t, a->body, a->X, a->Y - t->dp);
+}
+
+static void give(const struct twin_solid *t, struct twin_solid_point *a, double part,
+                 const double f[2])
+{
+    const double mass = t->body[a->body].density * t->dp * t->dp;
+    a->ax += part * f[0] / mass;
+    a->ay += part * f[1] / mass;
+    a->size += fabs(part) * hypot(f[0], f[1]) / mass;
+}
+
+/* What the place at the share s of the way from a to b does to p, times `sign`: half of k dp (dp/r - 1) with
+ * k = stiffness E of the softer one, less the dashpot, and the friction, at most Coulomb's. */
+static void touch(const struct twin_solid *t, struct twin_solid_point *p,
+                  struct twin_solid_point *a, struct twin_solid_point *b, double s, double sign)
+{
+    const struct scene_solid *const A = &t->body[p->body], *const B = &t->body[a->body];
+    const double x = p->x - (1 - s) * a->x - s * b->x, y = p->y - (1 - s) * a->y - s * b->y;
+    const double r = hypot(x, y), V = t->dp * t->dp;
+    if (r >= t->dp) return;
     const double k = t->contact->stiffness * fmin(A->young, B->young);
     const double m = 1 / (1 / (A->density * V) + 1 / (B->density * V)), c = sqrt(k * m);
-    const double u = a->u - b->u, v = a->v - b->v, speed = (u * x + v * y) / r;
-    const double push = fmax(0, k * (t->dp - r) - 2 * t->contact->damping * c * speed);
-    const double across = (v * x - u * y) / r; /* along (-y, x)/r */
-    const double drag = fmin(t->contact->friction * push, c * fabs(across)) * (across > 0 ? 1 : -1);
+    const double u = p->u - (1 - s) * a->u - s * b->u, v = p->v - (1 - s) * a->v - s * b->v;
+    const double speed = (u * x + v * y) / r, across = (v * x - u * y) / r; /* along (-y, x)/r */
+    const double push =
+        fmax(0, k * (t->dp * t->dp / r - t->dp) - 2 * t->contact->damping * c * speed);
     const double on = t->contact->friction > 0 ? 1 : 0;
-    a->ax += (push * x / r + on * drag * y / r) / (A->density * V);
-    a->ay += (push * y / r - on * drag * x / r) / (A->density * V);
-    a->size += push / (A->density * V);
+    const double drag =
+        on * fmin(t->contact->friction * push, c * fabs(across)) * (across > 0 ? 1 : -1);
+    const double f[2] = {0.5 * sign * (push * x + drag * y) / r,
+                         0.5 * sign * (push * y - drag * x) / r};
+    give(t, p, 1, f);
+    give(t, a, s - 1, f);
+    give(t, b, -s, f);
+}
+
+/* T-61a: all edges of other bodies, less the points where two of them meet. */
+static void touch_surfaces(const struct twin_solid *t, struct twin_solid_point *p)
+{
+    if (!at_surface(t, p)) return;
+    for (int64_t i = 0; i < t->n; i++) {
+        struct twin_solid_point *const a = &t->point[i];
+        if (bonded(t, p->body, a->body) || !at_surface(t, a)) continue;
+        touch(t, p, a, a, 0, -1);
+        for (int64_t k = 0; k < i; k++) {
+            struct twin_solid_point *const b = &t->point[k];
+            if (!at_surface(t, b) || !is_edge(t, a, b)) continue;
+            const double x = b->x - a->x, y = b->y - a->y;
+            const double s = ((p->x - a->x) * x + (p->y - a->y) * y) / (x * x + y * y);
+            touch(t, p, a, b, fmin(1, fmax(0, s)), 1);
+        }
+    }
 }
 
 void twin_solid_evaluate(struct twin_solid *t)
@@ -344,6 +406,5 @@ void twin_solid_evaluate(struct twin_solid *t)
         for (int64_t k = 0; k < t->n; k++)
             if (neighbours(t, &t->point[i], &t->point[k], &q))
                 force_of_pair(t, &t->point[i], &t->point[k], &q);
-    for (int64_t i = 0; i < t->n && t->contact; i++)
-        for (int64_t k = 0; k < t->n; k++) touch(t, &t->point[i], &t->point[k]);
+    for (int64_t i = 0; i < t->n && t->contact; i++) touch_surfaces(t, &t->point[i]);
 }

@@ -16,7 +16,7 @@ static const char gate[] =
     "artificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
     "[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.4, 0\n"
     "[solid gate]\nshape = box 0.1, 0, 0.13, 0.15\nclamp = box 0.1, 0.12, 0.13, 0.15\n"
-    "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
+    "density = 1100\nyoung = 1e6\npoisson = 0.4\n[contact none]\nenabled = off\n";
 
 enum { MOST = 128 };
 struct memory {

@@ -1,0 +1,242 @@
+/* SPDX-License-Identifier: MIT
+ * Contact against what is known: restitution, Coulomb's friction, a stack, a pressed disc, bodies that
+ * nothing lets through. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <string.h>
+
+static struct rig rig;
+static struct particles *p;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+/* Mean of a field of a body. */
+static double mean(int body, const double *field)
+{
+    double sum = 0, n = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != body) continue;
+        sum += field[i];
+        n++;
+    }
+    return sum / n;
+}
+
+/* Steps until `time` or until a guard stops the run; returns whether one did. */
+static bool stopped(double time)
+{
+    while (rig.sim.state.time < time) {
+        const enum err e = simulation_step(&rig.sim, time, &rig.diag);
+        if (e) {
+            TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_GUARD, e, rig.diag.text);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* A disc without damping meets a floor at a tenth of its speed of sound: what is missing of its energy
+ * afterwards is the error of the time integration, and its momentum is turned round. The restitution is
+ * that of a real disc, which goes on ringing. */
+static void test_restitution_of_a_disc(void)
+{
+    RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.02, 0.1, 0\n"
+                   "[solid disc]\nshape = circle 0, 0.051, 0.05\ndensity = 1000\nyoung = 1 MPa\n"
+                   "poisson = 0.3\nlaw = neo_hookean\nartificial_viscosity = 0\n"
+                   "velocity = 0, -3\n",
+                   NULL);
+    const double before = simulation_ledger(&rig.sim).kinetic;
+    rig_run(&rig, 0.03);
+    const struct ledger row = simulation_ledger(&rig.sim);
+    const double back = mean(0, p->vy);
+    TEST_ASSERT_TRUE(row.contact == 0 && back > 0);
+    assert_at_most(0.01 * before, fabs(row.dissipated), "energy that does not close");
+    assert_near(0.15, 0.85, back / 3, "restitution");
+    assert_at_most(1e-3, fabs(mean(0, p->vx)), "speed along the floor");
+}
+
+/* A block slides on a floor and comes to rest by friction after v^2/(2 mu g) = 85 mm. */
+static void test_sliding_block(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+                   "[wall floor]\nshape = box -0.1, -0.03, 0.4, 0\n"
+                   "[solid block]\nshape = box 0, 0, 0.12, 0.04\ndensity = 1000\nyoung = 1 MPa\n"
+                   "poisson = 0.3\nvelocity = 0.5, 0\n[contact all]\nfriction = 0.15\n",
+                   NULL);
+    rig_run(&rig, 0.5);
+    const double exact = 0.25 / (2 * 0.15 * 9.81);
+    assert_near(0.02 * exact, exact, mean(0, p->ux), "way until it rests");
+    assert_at_most(1e-3, fabs(mean(0, p->vx)), "speed at the end");
+}
+
+/* Three blocks on each other sink by their strain and by dp p/E at each interface, and stay there.
+ * Friction has no memory: the upper ones, which do not lie above each other, creep at
+ * some 40 micrometres a second. */
+static void test_stack_at_rest(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+                   "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
+                   "[solid a]\nshape = box 0, 0, 0.08, 0.05\ndensity = 1000\nyoung = 1 MPa\n"
+                   "poisson = 0.3\n"
+                   "[solid b]\nlike = a\nshape = box 0.013, 0.05, 0.083, 0.1\n"
+                   "[solid c]\nlike = a\nshape = box -0.004, 0.1, 0.076, 0.15\n"
+                   "[contact all]\nfriction = 0.5\ndamping = 0.5\n",
+                   NULL);
+    rig_run(&rig, 0.5);
+    for (int k = 0; k < 3; k++) {
+        assert_at_most(2e-4, fabs(mean(k, p->ux)), "sideways");
+        assert_at_most(1e-4, hypot(mean(k, p->vx), mean(k, p->vy)), "speed");
+        assert_at_most(1.5e-4, fabs(mean(k, p->uy)), "sinking");
+    }
+}
+
+/* A block meets a wall of four particles, end on, from slow to seven times its speed of sound: either
+ * it is
+ * thrown back, or the run stops and says why. No particle gets behind the wall's surface. */
+static void test_nothing_passes(void)
+{
+    static const char *const speeds[] = {"bullet.velocity=5, 0", "bullet.velocity=20, 0",
+                                         "bullet.velocity=50, 0", "bullet.velocity=200, 0"};
+    for (int k = 0; k < 4; k++) {
+        RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall target]\nshape = box 0, -0.1, 0.02, 0.2\n"
+                       "[solid bullet]\nshape = box -0.11, 0, -0.01, 0.06\ndensity = 1200\n"
+                       "young = 1 MPa\npoisson = 0.3\nlaw = neo_hookean\n",
+                       speeds[k]);
+        const bool gave_up = stopped(0.02);
+        TEST_ASSERT_TRUE(!gave_up || k >= 2);
+        double front = -1;
+        for (int64_t i = 0; i < p->n; i++) front = fmax(front, p->X[i] + p->ux[i]);
+        assert_at_most(0.0025, front, "front");
+        TEST_ASSERT_TRUE(gave_up || mean(0, p->vx) < 0);
+    }
+}
+
+/* Strips of three particles meet corner on corner. */
+static void test_corner_on_corner(void)
+{
+    RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n"
+                   "[solid a]\nshape = box 0, 0, 0.1, 0.015\ndensity = 1000\nyoung = 1 MPa\n"
+                   "poisson = 0.3\nlaw = neo_hookean\nvelocity = 5, 1\n"
+                   "[solid b]\nlike = a\nshape = box 0.11, 0.017, 0.21, 0.032\nvelocity = -5, -1\n",
+                   NULL);
+    rig_run(&rig, 0.02);
+    double nearest = 1;
+    for (int64_t i = 0; i < p->n; i++)
+        for (int64_t k = 0; k < i; k++)
+            if (p->body[i] != p->body[k])
+                nearest = fmin(nearest, hypot(p->X[i] + p->ux[i] - p->X[k] - p->ux[k],
+                                              p->Y[i] + p->uy[i] - p->Y[k] - p->uy[k]));
+    TEST_ASSERT_TRUE(nearest > 0.0025);
+}
+
+/* A wall comes down on a clamped beam, bends it, and carries its end along. */
+static void test_wall_on_a_beam(void)
+{
+    RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall ram]\nshape = box 0.1, 0.02, 0.14, 0.04\n"
+                   "motion = down\n[motion down]\nvelocity = 0, -0.5\n"
+                   "[solid beam]\nshape = box 0, 0, 0.14, 0.02\nclamp = box 0, 0, 0.03, 0.02\n"
+                   "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+                   NULL);
+    rig_run(&rig, 0.05);
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->X[i] > 0.13 && p->Y[i] > 0.015) assert_at_most(-0.024, p->uy[i], "end of the beam");
+}
+
+/* A wall that is driven into what cannot give way stops the run, by name. */
+static void test_wall_into_a_clamp(void)
+{
+    RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall ram]\nshape = box 0, 0.03, 0.04, 0.05\n"
+                   "motion = down\n[motion down]\nvelocity = 0, -0.5\n"
+                   "[solid block]\nshape = box 0, 0, 0.04, 0.02\nclamp = box 0, 0, 0.04, 0.02\n"
+                   "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+                   NULL);
+    TEST_ASSERT_TRUE(stopped(0.1));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[wall ram]"), rig.diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[solid block]"), rig.diag.text);
+    /* Surfaces meet after 10 mm; one spacing of overlap is 5 mm more. */
+    assert_near(2e-4, 0.015, rig.sim.state.time * 0.5, "way of the wall");
+}
+
+/* Line contact: half of the width 2 b over which a disc of radius R touches a flat under a load P per
+ * depth, and
+ * how much its centre comes nearer to the flat (Johnson, Contact Mechanics, 1985, Eqs. 4.43 and
+ * 5.57), with the
+ * compliance of half a spacing of contact under the largest pressure 2 P/(pi b): the other half is
+ * disc. */
+static double approach(double load, double R, double young, double poisson, double dp)
+{
+    const double plane = young / (1 - poisson * poisson), b = sqrt(4 * load * R / (M_PI * plane));
+    const double layer = 0.5 * dp * 2 * load / (M_PI * b * young);
+    return load / (M_PI * plane) * (2 * log(4 * R / b) - 1) + layer;
+}
+
+/* A disc between a floor and a plate that comes down slowly. On the lattice it begins with a flat of
+ * sqrt(R dp) on
+ * both sides of its lowest point, so that the indentation is known to half a spacing. The slope of the
+ * load over it depends on b as 1/(ln(4 R/b) - 1), where a third more of b is an eighth: that is
+ * allowed. */
+static void test_line_contact(void)
+{
+    RIG_OPEN_SOLID("dp = 2.5 mm\nend_time = 1\n[wall floor]\nshape = box -0.05, -0.01, 0.05, 0\n"
+                   "[wall plate]\nshape = box -0.05, 0.1, 0.05, 0.11\nmotion = down\n"
+                   "[motion down]\nvelocity = 0, -0.05\n"
+                   "[solid disc]\nshape = circle 0, 0.05, 0.05\ndensity = 1000\nyoung = 1 MPa\n"
+                   "poisson = 0.3\nartificial_viscosity = 0.5\n",
+                   NULL);
+    double load[2], gone[2];
+    for (int k = 0; k < 2; k++) {
+        rig_run(&rig, k ? 0.1 : 0.04);
+        const double work = rig.sim.state.wall_work, from = rig.sim.state.time;
+        rig_run(&rig, from + 0.02);
+        load[k] = (rig.sim.state.wall_work - work) / (0.05 * 0.02);
+        gone[k] = 0.05 * (from + 0.01);
+    }
+    const double exact[2] = {2 * approach(load[0], 0.05, 1e6, 0.3, 2.5e-3),
+                             2 * approach(load[1], 0.05, 1e6, 0.3, 2.5e-3)};
+    assert_near(2.5e-3, exact[1], gone[1], "indentation");
+    assert_near(0.125 * (exact[1] - exact[0]), exact[1] - exact[0], gone[1] - gone[0],
+                "indentation between two loads");
+}
+
+/* Two arms, one above the other, fold onto each other under gravity. No particle of one arm
+ * gets behind the other, and the account of energy loses no more than viscosity takes. */
+static void test_strip_that_folds(void)
+{
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 2\ngravity = 0, -9.81\n"
+                   "[solid strip]\nshape = box 0, 0, 0.5, 0.04\nshape = box 0, -0.12, 0.04, 0\n"
+                   "shape = box 0, -0.16, 0.5, -0.12\nclamp = box 0, -0.16, 0.5, -0.12\n"
+                   "density = 1000\nyoung = 50 kPa\npoisson = 0.3\nlaw = neo_hookean\n"
+                   "artificial_viscosity = 0.1\n",
+                   NULL);
+    double highest = 0;
+    while (rig.sim.state.time < 1) {
+        rig_run(&rig, rig.sim.state.time + 0.01);
+        highest = fmax(highest, contact_energy(&rig.sim.contact, p, rig.sim.state.time));
+    }
+    TEST_ASSERT_TRUE(highest > 0);
+    double lowest = 1;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->Y[i] > 0 && p->X[i] > 0.1) lowest = fmin(lowest, p->Y[i] + p->uy[i]);
+    /* The lower arm ends at -0.12 m: the last centre of the upper one lies half a spacing above. */
+    assert_near(0.005, -0.115, lowest, "lowest particle of the upper arm");
+    assert_at_most(0.02 * simulation_ledger(&rig.sim).elastic,
+                   -simulation_ledger(&rig.sim).dissipated, "energy gained");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_restitution_of_a_disc);
+    RUN_TEST(test_sliding_block);
+    RUN_TEST(test_stack_at_rest);
+    RUN_TEST(test_nothing_passes);
+    RUN_TEST(test_corner_on_corner);
+    RUN_TEST(test_wall_on_a_beam);
+    RUN_TEST(test_wall_into_a_clamp);
+    RUN_TEST(test_line_contact);
+    RUN_TEST(test_strip_that_folds);
+    return UNITY_END();
+}
