@@ -20,6 +20,28 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
                     (long long)x->simulation.kind[k].n);
 }
 
+/* How bodies are sampled where the lattice is not simply the common one. */
+static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
+{
+    const double degrees = 180 / PI;
+    if (s->lattice.angle != 0)
+        session_say(o, "  fluid and walls are sampled on a lattice at %.4g degrees",
+                    s->lattice.angle * degrees);
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_lattice *const l = &s->solid_lattice[k];
+        int64_t n = 0;
+        for (int64_t i = 0; i < s->points[KIND_SOLID].n; i++)
+            n += s->points[KIND_SOLID].body[i] == k;
+        const double off = (double)n * square(l->dp) / l->area - 1;
+        if (l->angle == 0 && !l->fitted && fabs(off) < 5e-5) continue;
+        session_say(o,
+                    "  [solid %s] lattice at %.4g degrees, cells of %.5g x %.5g m, area off by "
+                    "%.2g %%, bending stiffness of a thin body by about %.2g %%",
+                    s->solid[k].common.name, l->angle * degrees, l->spacing[0], l->spacing[1],
+                    100 * off, 100 * (square(1 + off) * (1 + off) - 1));
+    }
+}
+
 static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
 {
     session_say(o, "effects that are on, and what called for them");
@@ -183,6 +205,7 @@ enum err explain_session(struct session *x, int threads, const struct sphfsi_opt
 {
     struct simulation *s = &x->simulation;
     say_scene(x, o);
+    say_lattices(&x->scene, o);
     say_effects(s, o);
     say_fields(s, o);
     say_output(s, o);

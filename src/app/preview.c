@@ -94,50 +94,85 @@ static int compare_sites(const void *a, const void *b)
     return p->column < q->column ? -1 : p->column > q->column;
 }
 
-/* Collects the particles of a body, clamped ones or the others, by row and column counted from `first`. */
-static int64_t collect(const struct scene_points *p, int body, int clamped, double dp,
-                       struct lattice_site *site, double first[2])
+static const struct scene_lattice *lattice_of(const struct scene *s, enum kind kind, int body)
 {
-    int64_t n = 0;
+    return kind == KIND_SOLID ? &s->solid_lattice[body] : &s->lattice;
+}
+
+/* A rectangle with its lower left corner in the axes of a lattice. */
+static void put_rectangle(const struct drawing *g, const struct scene_lattice *l, double x,
+                          double y, double wide, double high)
+{
+    double at[4][2];
+    for (int k = 0; k < 4; k++)
+        place_of_lattice(l, x + (k == 1 || k == 2 ? wide : 0), y + (k > 1 ? high : 0), at[k]);
+    fprintf(g->file, "M%.2f %.2fL%.2f %.2fL%.2f %.2fL%.2f %.2fz", px(g, at[0][0]), py(g, at[0][1]),
+            px(g, at[1][0]), py(g, at[1][1]), px(g, at[2][0]), py(g, at[2][1]), px(g, at[3][0]),
+            py(g, at[3][1]));
+}
+
+/* The particles of a body, clamped or not, by their cells; false: some are not at the middle of a cell. */
+static bool collect(const struct scene_points *p, int body, int clamped,
+                    const struct scene_lattice *l, struct lattice_site *site, int64_t *n)
+{
+    bool all = true;
+    *n = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body || (p->clamped && p->clamped[i]) != clamped) continue;
-        if (n == 0) first[0] = p->x[i], first[1] = p->y[i];
-        site[n++] = (struct lattice_site){llround((p->y[i] - first[1]) / dp),
-                                          llround((p->x[i] - first[0]) / dp)};
+        double at[2], cell[2];
+        lattice_place(l, p->x[i], p->y[i], at);
+        for (int c = 0; c < 2; c++) {
+            const double cells = (at[c] - l->origin[c]) / l->spacing[c] - 0.5;
+            cell[c] = round(cells);
+            all &= fabs(cells - cell[c]) < 0.01;
+        }
+        site[(*n)++] = (struct lattice_site){(int64_t)cell[1], (int64_t)cell[0]};
     }
-    qsort(site, (size_t)n, sizeof *site, compare_sites);
-    return n;
+    if (all) qsort(site, (size_t)*n, sizeof *site, compare_sites);
+    return all;
 }
 
 /* One rectangle for each row of neighbours, in one path. */
-static void put_rows(const struct drawing *g, const struct lattice_site *site, int64_t n,
-                     const double first[2], const char *style)
+static void put_rows(const struct drawing *g, const struct scene_lattice *l,
+                     const struct lattice_site *site, int64_t n)
 {
-    const double dp = g->s->top.dp;
-    if (n == 0) return;
-    fprintf(g->file, "<path %s d=\"", style);
     for (int64_t k = 0, end; k < n; k = end) {
         for (end = k + 1; end < n && site[end].row == site[k].row &&
                           site[end].column == site[end - 1].column + 1;
              end++) {
         }
-        const double x = first[0] + ((double)site[k].column - 0.5) * dp;
-        const double y = first[1] + ((double)site[k].row + 0.5) * dp;
-        fprintf(g->file, "M%.2f %.2fh%.2fv%.2fh%.2fz", px(g, x), py(g, y),
-                (double)(end - k) * dp * g->scale, dp * g->scale,
-                -(double)(end - k) * dp * g->scale);
+        put_rectangle(g, l, l->origin[0] + (double)site[k].column * l->spacing[0],
+                      l->origin[1] + (double)site[k].row * l->spacing[1],
+                      (double)(end - k) * l->spacing[0], l->spacing[1]);
     }
-    fputs("\"/>\n", g->file);
 }
 
-static struct box body_box(const struct scene_points *p, int body, double dp, int64_t *n)
+/* One rectangle for each particle that lies on no lattice. */
+static void put_singles(const struct drawing *g, const struct scene_lattice *l,
+                        const struct scene_points *p, int body, int clamped)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != body || (p->clamped && p->clamped[i]) != clamped) continue;
+        double at[2];
+        lattice_place(l, p->x[i], p->y[i], at);
+        put_rectangle(g, l, at[0] - 0.5 * l->spacing[0], at[1] - 0.5 * l->spacing[1], l->spacing[0],
+                      l->spacing[1]);
+    }
+}
+
+/* The box around a body's cells, in the axes of a lattice. */
+static struct box body_box(const struct scene_points *p, int body, const struct scene_lattice *l,
+                           int64_t *n)
 {
     struct box b = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+    const double dx = l->spacing[0], dy = l->spacing[1];
     *n = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != body) continue;
-        b.x0 = min2(b.x0, p->x[i] - dp / 2), b.x1 = max2(b.x1, p->x[i] + dp / 2);
-        b.y0 = min2(b.y0, p->y[i] - dp / 2), b.y1 = max2(b.y1, p->y[i] + dp / 2);
+        double at[2];
+        lattice_place(l, p->x[i], p->y[i], at);
+        b.x0 = min2(b.x0, at[0] - dx / 2), b.x1 = max2(b.x1, at[0] + dx / 2);
+        b.y0 = min2(b.y0, at[1] - dy / 2), b.y1 = max2(b.y1, at[1] + dy / 2);
         ++*n;
     }
     return b;
@@ -156,11 +191,20 @@ static void put_body(struct drawing *g, enum kind kind, int body, struct lattice
     const struct scene_points *const p = &g->s->points[kind];
     const bool moves = kind == KIND_WALL && g->s->wall[body].motion[0];
     char style[64];
-    double first[2];
     snprintf(style, sizeof style, "fill=\"%s\"", moves ? "#CC79A7" : fills[kind]);
-    put_rows(g, site, collect(p, body, 0, g->s->top.dp, site, first), first, style);
-    put_rows(g, site, collect(p, body, 1, g->s->top.dp, site, first), first,
-             "fill=\"url(#clamp)\" stroke=\"#000\" stroke-width=\"0.3\"");
+    for (int clamped = 0; clamped < 2; clamped++) {
+        const struct scene_lattice *const l = lattice_of(g->s, kind, body);
+        int64_t n;
+        const bool rows = collect(p, body, clamped, l, site, &n);
+        if (n == 0) continue;
+        fprintf(g->file, "<path %s d=\"",
+                clamped ? "fill=\"url(#clamp)\" stroke=\"#000\" stroke-width=\"0.3\"" : style);
+        if (rows)
+            put_rows(g, l, site, n);
+        else
+            put_singles(g, l, p, body, clamped);
+        fputs("\"/>\n", g->file);
+    }
 }
 
 /* Writes a name: in the middle of a fluid, next to the particle in the middle of a body. */
@@ -169,7 +213,8 @@ static void name_body(struct drawing *g, enum kind kind, int body)
     const struct scene_points *const p = &g->s->points[kind];
     int64_t n, at = 0;
     double nearest = HUGE_VAL;
-    const struct box b = body_box(p, body, g->s->top.dp, &n);
+    const struct scene_lattice upright = {.spacing = {g->s->top.dp, g->s->top.dp}};
+    const struct box b = body_box(p, body, &upright, &n);
     if (n == 0) return;
     for (int64_t i = 0; i < p->n; i++) {
         const double away = hypot(p->x[i] - 0.5 * (b.x0 + b.x1), p->y[i] - 0.5 * (b.y0 + b.y1));
@@ -245,13 +290,21 @@ static void put_axes(const struct drawing *g)
 
 /* --- the list below --- */
 
+static const double degrees = 180 / PI;
+
 static int describe(const struct scene *s, enum kind kind, int body, char *text, size_t size)
 {
     int64_t n;
-    const struct box b = body_box(&s->points[kind], body, s->top.dp, &n);
-    int at =
-        snprintf(text, size, "%s %s: %.4g x %.4g m, %lld particles", kind_names[kind],
-                 body_name(s, kind, body), n ? b.x1 - b.x0 : 0, n ? b.y1 - b.y0 : 0, (long long)n);
+    const struct scene_lattice *const l = lattice_of(s, kind, body);
+    const struct box b = body_box(&s->points[kind], body, l, &n);
+    int at = snprintf(text, size, "%s %s: %.4g x %.4g m", kind_names[kind],
+                      body_name(s, kind, body), n ? b.x1 - b.x0 : 0, n ? b.y1 - b.y0 : 0);
+    if (l->angle != 0)
+        at += snprintf(text + at, size - (size_t)at, " at %.4g degrees", l->angle * degrees);
+    at += snprintf(text + at, size - (size_t)at, ", %lld particles", (long long)n);
+    if (l->dp != s->top.dp)
+        at += snprintf(text + at, size - (size_t)at, " of %.4g x %.4g m", l->spacing[0],
+                       l->spacing[1]);
     char *const rest = text + at;
     const size_t left = size - (size_t)at;
     if (kind == KIND_FLUID) return snprintf(rest, left, "; %g kg/m^3, c0 %.4g m/s", s->rho0, s->c0);
@@ -265,9 +318,11 @@ static int describe(const struct scene *s, enum kind kind, int body, char *text,
     for (int64_t i = 0; i < p->n; i++) clamped += p->body[i] == body && p->clamped && p->clamped[i];
     const int written =
         snprintf(rest, left, "; %g kg/m^3, E %.4g Pa, nu %g; ", m->density, m->young, m->poisson);
-    if (clamped == 0) return snprintf(rest + written, left - (size_t)written, "nothing clamped");
-    return snprintf(rest + written, left - (size_t)written, "%lld clamped (hatched)",
-                    (long long)clamped);
+    char clamps[48] = "nothing clamped";
+    if (clamped) snprintf(clamps, sizeof clamps, "%lld clamped (hatched)", (long long)clamped);
+    const double off = (double)n * square(l->dp) / l->area - 1;
+    if (fabs(off) < 5e-5) return snprintf(rest + written, left - (size_t)written, "%s", clamps);
+    return snprintf(rest + written, left - (size_t)written, "%s; area %+.2f %%", clamps, 100 * off);
 }
 
 static void describe_probe(const struct scene_probe *p, char *text, size_t size)

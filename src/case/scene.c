@@ -27,6 +27,7 @@ int scene_find_solid(const struct scene *s, const char *name)
 
 double scene_solid_dp(const struct scene *s, int solid)
 {
+    if (s->solid_lattice) return s->solid_lattice[solid].dp;
     return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
 }
 

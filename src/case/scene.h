@@ -212,6 +212,32 @@ struct scene_points {
     uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
 };
 
+/* The lattice that a region is sampled on. Cell (i, j) has its centre at origin + ((i, j) + 1/2) spacing in
+ * axes that are turned by `angle`. */
+struct scene_lattice {
+    double angle;      /* rad */
+    double turn[2];    /* its cosine and sine */
+    double origin[2];  /* m, in the turned axes */
+    double spacing[2]; /* m */
+    double dp;         /* m: the root of a cell's area, which a particle stands for */
+    bool fitted;       /* to edges that are no whole number of dp apart */
+    double area;       /* of the shapes, m^2; solids */
+};
+
+/* A place in the axes of a lattice; and the other way round. */
+SPHFSI_INLINE void lattice_place(const struct scene_lattice *l, double x, double y, double at[2])
+{
+    const bool turned = l->angle != 0;
+    at[0] = turned ? x * l->turn[0] + y * l->turn[1] : x;
+    at[1] = turned ? y * l->turn[0] - x * l->turn[1] : y;
+}
+SPHFSI_INLINE void place_of_lattice(const struct scene_lattice *l, double x, double y, double at[2])
+{
+    const bool turned = l->angle != 0;
+    at[0] = turned ? x * l->turn[0] - y * l->turn[1] : x;
+    at[1] = turned ? x * l->turn[1] + y * l->turn[0] : y;
+}
+
 /* A table, loaded from its file: n rows of a time and two values. n == 0: none. */
 struct scene_table {
     int n;
@@ -260,6 +286,7 @@ struct scene {
     struct scene_table gravity_data;
     struct motion_hook *motion_hook; /* [n_motion]; NULL: none */
     struct scene_points points[3];   /* by enum kind of particles/particles.h: fluid, wall, solid */
+    struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
     double domain_lower[2], domain_upper[2]; /* in effect */
@@ -325,7 +352,7 @@ int scene_light_solid(const struct scene *s);
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
-/* Spacing of a solid's particles, m. */
+/* Spacing of a solid's particles, m: that of its lattice, once it is sampled. */
 double scene_solid_dp(const struct scene *s, int solid);
 /* Whether a solid is bonded to another: its thickness is not its own. */
 bool scene_is_bonded(const struct scene *s, int solid);

@@ -10,7 +10,7 @@
 
 static double cells_to(const struct region *region, int c, double x)
 {
-    return (x - region->origin[c]) / region->dp;
+    return (x - region->lattice.origin[c]) / region->lattice.spacing[c];
 }
 
 static bool on_lattice(double cells)
@@ -27,7 +27,7 @@ static double points_between(const struct region *region, int c, double low, dou
 
 static void warn_box(struct sampler *g, const struct region *region, const struct shape *shape)
 {
-    const double dp = region->dp;
+    const struct scene_lattice *const l = &region->lattice;
     char place[LOCATION_TEXT];
     scene_location(g->scene, shape->line, place);
     for (int c = 0; c < 2; c++) {
@@ -35,7 +35,7 @@ static void warn_box(struct sampler *g, const struct region *region, const struc
         const double a = cells_to(region, c, low), b = cells_to(region, c, high);
         if (on_lattice(a) && on_lattice(b)) continue;
         const double n = points_between(region, c, low, high);
-        const double from = region->origin[c] + ceil(a - 0.5 - 1e-6) * dp;
+        const double from = l->origin[c] + ceil(a - 0.5 - 1e-6) * l->spacing[c];
         g->scene->off_lattice = true;
         diag_warn(g->diag,
                   "%s: [%s %s] box from %c = %g to %g m is %.4g dp %s and off the lattice: "
@@ -45,34 +45,75 @@ static void warn_box(struct sampler *g, const struct region *region, const struc
                   n == 1 ? (c ? "row" : "column")
                   : c    ? "rows"
                          : "columns",
-                  from, from + n * dp, region->origin[c] + round(a) * dp,
-                  region->origin[c] + round(b) * dp);
+                  from, from + n * l->spacing[c], l->origin[c] + round(a) * l->spacing[c],
+                  l->origin[c] + round(b) * l->spacing[c]);
     }
 }
 
-/* The first upright or level edge that lies off the lattice. */
+/* The first edge along the lattice that lies between its lines. */
 static void warn_edges(struct sampler *g, const struct region *region, int shape)
 {
+    const struct scene_lattice *const l = &region->lattice;
     for (int k = 0; k < region->add.n; k++) {
         const struct outline *o = &region->add.item[k];
         if (region->add.shape[k] != shape) continue;
         for (int j = 0; j < o->n; j++) {
             const double *a = o->pt[j], *b = o->pt[(j + 1) % o->n];
-            const int c = a[0] == b[0] ? 0 : 1;
+            const double round_off = l->angle == 0 ? 0 : 1e-9 * l->dp;
+            const int c = fabs(a[0] - b[0]) <= round_off ? 0 : 1;
             const double cells = cells_to(region, c, a[c]);
-            if (a[c] != b[c] || on_lattice(cells)) continue;
+            if (fabs(a[c] - b[c]) > round_off || on_lattice(cells)) continue;
             char place[LOCATION_TEXT];
             scene_location(g->scene, region->list->item[shape].line, place);
-            const double fit = region->origin[c] + round(cells) * region->dp;
+            const double fit = l->origin[c] + round(cells) * l->spacing[c];
             g->scene->off_lattice = true;
-            diag_warn(g->diag,
-                      "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
-                      "%c = %g m would fit",
-                      place, kind_names[region->kind], region->name, "xy"[c], a[c], region -> dp,
-                      "xy"[c], fit);
+            if (l->angle == 0)
+                diag_warn(g->diag,
+                          "%s: [%s %s] edge at %c = %g m is off the lattice of dp = %g m; "
+                          "%c = %g m would fit",
+                          place, kind_names[region->kind], region->name, "xy"[c], a[c], l -> dp,
+                          "xy"[c], fit);
+            else
+                diag_warn(g->diag,
+                          "%s: an edge of [%s %s] is %.2g dp off the lattice, which is turned by "
+                          "%.4g degrees",
+                          place, kind_names[region->kind], region->name, fabs(a[c] - fit) / l->dp,
+                          l->angle * (180 / PI));
             return;
         }
     }
+}
+
+/* Bending stiffness of a thin body goes with the third power of its thickness, and with it of its area. */
+static enum err check_area(struct sampler *g, const struct region *region)
+{
+    static const double tolerance = 0.005;
+    const struct scene_lattice *const l = &region->lattice;
+    double area;
+    TRY(outlines_area(&region->add, &region->minus, 0.25 * l->spacing[1], &area, &g->temp,
+                      g->diag));
+    g->scene->solid_lattice[region->body].area = area;
+    const double ratio = (double)region->n * square(l->dp) / area, stiff = ratio * square(ratio);
+    if (fabs(ratio - 1) <= tolerance) return ERR_OK;
+    g->scene->off_lattice = true;
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, region->line, place);
+    diag_warn(g->diag,
+              "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2: in "
+              "bending a thin body would be about %.2g %% too %s; a finer dp or another "
+              "lattice_angle would mend it",
+              place, (long long)region->n, region->name, 100 * fabs(ratio - 1),
+              ratio > 1 ? "more" : "less", area, 100 * fabs(stiff - 1),
+              ratio > 1 ? "stiff" : "soft");
+    return ERR_OK;
+}
+
+/* Whether a shape is sampled in layers, which lie along its faces wherever they are. */
+static bool has_layers(const struct region *region, int shape)
+{
+    for (int k = 0; k < region->add.n; k++)
+        if (region->add.shape[k] == shape && region->layered[k]) return true;
+    return false;
 }
 
 static double thinnest(const struct shape *shape)
@@ -132,24 +173,24 @@ static enum err check_solid(struct sampler *g, const struct region *region)
         across = min2(across, points_between(region, c, region->low[c], region->high[c]));
     for (int k = 0; k < region->list->n; k++)
         if (region->list->item[k].kind == SHAPE_POLYLINE)
-            across = min2(across, round(thinnest(&region->list->item[k]) / region->dp));
+            across = min2(across, round(thinnest(&region->list->item[k]) / region->lattice.dp));
     char place[LOCATION_TEXT];
     scene_location(g->scene, region->line, place);
     if (across < 2)
         return diag_fail(g->diag, ERR_INPUT,
                          "%s: [solid %s] is %.0f particle thick at dp = %g m; "
                          "bending needs at least 2, better 4",
-                         place, region->name, across, region->dp);
+                         place, region->name, across, region->lattice.dp);
     if (across < 4)
         diag_warn(g->diag,
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
                   "will be inaccurate",
-                  place, region->name, across, region->dp);
+                  place, region->name, across, region->lattice.dp);
     warn_held(g, region, across);
     if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
     /* At the default h/dp this is said of two particles across only, which is one warning too many. */
-    if (across > 2 || (across + 1) * region->dp < 2 * g->scene->h)
-        warn_see_through(g, region, region->line, across * region->dp);
+    if (across > 2 || (across + 1) * region->lattice.dp < 2 * g->scene->h)
+        warn_see_through(g, region, region->line, across * region->lattice.dp);
     return ERR_OK;
 }
 
@@ -195,14 +236,17 @@ enum err geometry_check_regions(struct sampler *g)
         const struct region *region = &g->regions[r];
         for (int k = 0; k < region->list->n; k++) {
             const struct shape *shape = &region->list->item[k];
-            if (shape->kind == SHAPE_BOX)
+            if (region->lattice.fitted || has_layers(region, k)) continue;
+            if (shape->kind == SHAPE_BOX && region->lattice.angle == 0)
                 warn_box(g, region, shape);
             else
                 warn_edges(g, region, k);
             if (region->kind == KIND_WALL)
                 warn_see_through(g, region, shape->line, thinnest(shape));
         }
-        if (region->kind == KIND_SOLID) TRY(check_solid(g, region));
+        if (region->kind != KIND_SOLID) continue;
+        TRY(check_solid(g, region));
+        TRY(check_area(g, region));
     }
     warn_slits(g);
     return ERR_OK;

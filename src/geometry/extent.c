@@ -130,6 +130,12 @@ static enum err check_periodic(const struct scene *s, struct diag *d)
     if (s->domain.periodic == PERIODIC_NONE) return ERR_OK;
     char place[LOCATION_TEXT];
     scene_location(s, s->domain.common.line, place);
+    if (s->lattice.angle != 0)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: [domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
+            "at the sides; it must be 0",
+            place, s->numerics.lattice_angle);
     for (int axis = 0; axis < 2; axis++) {
         if (!scene_periodic(s, axis)) continue;
         if (s->domain.lower[axis] >= s->domain.upper[axis])

@@ -185,3 +185,127 @@ bool outline_contains(const struct outline *o, double x, double y, double *scrat
     while (left < n && scratch[left] <= x) left++;
     return left & 1;
 }
+
+enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
+{
+    if (angle == 0) return ERR_OK;
+    const double c = fabs(cos(angle)) < 1e-15 ? 0 : cos(angle), s = sin(angle);
+    struct outline *const item = arena_alloc(a, (size_t)o->n, sizeof *item, "shapes", d);
+    if (!item) return ERR_MEMORY;
+    for (int k = 0; k < o->n; k++) {
+        const struct outline *const from = &o->item[k];
+        struct outline *const to = &item[k];
+        *to = *from;
+        to->centre[0] = c * from->centre[0] + s * from->centre[1];
+        to->centre[1] = c * from->centre[1] - s * from->centre[0];
+        to->pt = arena_alloc(a, (size_t)from->n, sizeof *to->pt, "shapes", d);
+        if (!to->pt) return ERR_MEMORY;
+        for (int j = 0; j < from->n; j++) {
+            to->pt[j][0] = c * from->pt[j][0] + s * from->pt[j][1];
+            to->pt[j][1] = c * from->pt[j][1] - s * from->pt[j][0];
+        }
+        set_bounds(to);
+    }
+    o->item = item;
+    return ERR_OK;
+}
+
+/* --- unions along a line --- */
+
+int outlines_ends(const struct outlines *o)
+{
+    int n = 0;
+    for (int k = 0; k < o->n; k++) n += o->item[k].n > 2 ? o->item[k].n : 2;
+    return n;
+}
+
+static int by_start(const void *a, const void *b)
+{
+    const double *const x = a, *const y = b;
+    if (x[0] != y[0]) return x[0] < y[0] ? -1 : 1;
+    return (x[1] > y[1]) - (x[1] < y[1]);
+}
+
+/* The stretches inside any of the pieces, merged and in order. */
+static int merged(const struct outlines *o, double y, double *to)
+{
+    int n = 0, kept = 0;
+    for (int k = 0; k < o->n; k++) {
+        if (y < o->item[k].low[1] || y > o->item[k].high[1]) continue;
+        n += outline_crossings(&o->item[k], y, to + n);
+    }
+    qsort(to, (size_t)(n / 2), 2 * sizeof *to, by_start);
+    for (int k = 0; k + 1 < n; k += 2) {
+        if (kept && to[k] <= to[kept - 1]) {
+            to[kept - 1] = max2(to[kept - 1], to[k + 1]);
+            continue;
+        }
+        to[kept] = to[k];
+        to[kept + 1] = to[k + 1];
+        kept += 2;
+    }
+    return kept;
+}
+
+int outlines_union(const struct outlines *add, const struct outlines *minus, double y, double *to,
+                   double *scratch)
+{
+    if (!minus || minus->n == 0) return merged(add, y, to);
+    double *const less = scratch + outlines_ends(add);
+    const int n = merged(add, y, scratch), n_less = merged(minus, y, less);
+    int count = 0;
+    for (int k = 0; k < n; k += 2) {
+        double from = scratch[k];
+        for (int j = 0; j < n_less && from < scratch[k + 1]; j += 2) {
+            if (less[j + 1] <= from || less[j] >= scratch[k + 1]) continue;
+            if (less[j] > from) {
+                to[count++] = from;
+                to[count++] = less[j];
+            }
+            from = less[j + 1];
+        }
+        if (from >= scratch[k + 1]) continue;
+        to[count++] = from;
+        to[count++] = scratch[k + 1];
+    }
+    return count;
+}
+
+/* Appends the heights at which the pieces begin, end or bend. */
+static int add_heights(const struct outlines *o, double *to)
+{
+    int n = 0;
+    for (int k = 0; k < o->n; k++) {
+        const struct outline *const piece = &o->item[k];
+        for (int j = 0; j < piece->n; j++) to[n++] = piece->pt[j][1];
+        if (piece->n) continue;
+        to[n++] = piece->low[1];
+        to[n++] = piece->high[1];
+    }
+    return n;
+}
+
+/* Gauss's two points between neighbouring heights, where the width of polygons is linear. */
+enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
+                       double *area, struct arena *a, struct diag *d)
+{
+    const size_t room = (size_t)(outlines_ends(add) + outlines_ends(minus)) + 4;
+    double *const height = arena_alloc(a, room, sizeof *height, "area of shapes", d);
+    double *const line = arena_alloc(a, 2 * room, sizeof *line, "area of shapes", d);
+    if (!height || !line) return ERR_MEMORY;
+    int n = add_heights(add, height);
+    n += add_heights(minus, height + n);
+    qsort(height, (size_t)n, sizeof *height, ascending);
+    *area = 0;
+    for (int k = 0; k + 1 < n; k++) {
+        const double high = height[k + 1] - height[k];
+        const int parts = (int)ceil(high / step);
+        for (int j = 0; j < 2 * parts; j++) {
+            const double part = high / parts, gauss = 0.5 + (j % 2 ? 0.5 : -0.5) / sqrt(3);
+            const double y = height[k] + (j / 2 + gauss) * part;
+            const int ends = outlines_union(add, minus, y, line, line + room);
+            for (int e = 0; e + 1 < ends; e += 2) *area += 0.5 * part * (line[e + 1] - line[e]);
+        }
+    }
+    return ERR_OK;
+}

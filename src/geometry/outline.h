@@ -32,6 +32,22 @@ int outline_crossings(const struct outline *o, double y, double *from);
 /* Room that outline_crossings needs for any piece. */
 int outlines_capacity(const struct outlines *o);
 
+/* Turns pieces into the axes of a lattice at `angle`; the shapes themselves stay as they are. */
+enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* The stretches of the line at height y that are inside `add` and not inside `minus` (NULL: none), as
+ * outline_crossings gives them, merged where they touch. `to` and `scratch` each hold outlines_ends of
+ * both. */
+int outlines_union(const struct outlines *add, const struct outlines *minus, double y, double *to,
+                   double *scratch);
+/* The most numbers that outline_crossings returns for all pieces together. */
+int outlines_ends(const struct outlines *o);
+
+/* Area of `add` less `minus`, by lines no more than `step` apart. */
+enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
+                       double *area, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
 bool outline_contains(const struct outline *o, double x, double y, double *scratch);
 
 #endif

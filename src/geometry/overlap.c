@@ -46,7 +46,7 @@ static void table_insert(struct near_table *t, int64_t k)
 /* Mean of the spacings of two points' lattices. */
 static double spacing(const struct region *regions, const struct samples *p, int64_t a, int64_t b)
 {
-    return 0.5 * (regions[p->region[a]].dp + regions[p->region[b]].dp);
+    return 0.5 * (regions[p->region[a]].lattice.dp + regions[p->region[b]].lattice.dp);
 }
 
 /* The first point in the table, of another region, in one place with point k; -1: none. */
@@ -70,10 +70,26 @@ static int motion_of(const struct scene *s, const struct region *wall)
     return scene_find_motion(s, s->wall[wall->body].motion);
 }
 
-/* Whether point k may simply be left out where point `other` is already. */
+/* Whether a point lies in a region's shapes, as geometry_sample sees it. */
+static bool covers(const struct sampler *g, const struct region *region, double x, double y)
+{
+    double at[2];
+    lattice_place(&region->lattice, x, y, at);
+    at[0] += NUDGE_X * region->lattice.spacing[0];
+    at[1] += NUDGE_Y * region->lattice.spacing[1];
+    for (int k = 0; k < region->minus.n; k++)
+        if (outline_contains(&region->minus.item[k], at[0], at[1], g->scratch)) return false;
+    for (int k = 0; k < region->add.n; k++)
+        if (outline_contains(&region->add.item[k], at[0], at[1], g->scratch)) return true;
+    return false;
+}
+
+/* Whether point k may simply be left out where point `other` is already. Lattices that are turned
+ * differently, and layers, meet at an edge with points on either side of it that are too near. */
 static bool yields_to(const struct sampler *g, const struct samples *p, int64_t k, int64_t other)
 {
     const struct region *mine = &g->regions[p->region[k]], *its = &g->regions[p->region[other]];
+    if (!covers(g, its, p->x[k], p->y[k])) return true;
     if (mine->kind != KIND_WALL) return false;
     if (its->kind == KIND_SOLID) return p->clamped[other];
     return its->kind == KIND_WALL && motion_of(g->scene, mine) == motion_of(g->scene, its);

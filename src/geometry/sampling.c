@@ -2,7 +2,7 @@
  * Sampling of shapes: particles are the centres of the cells of a square lattice. A centre within
  * 1e-6 dp of an edge counts as lying above and to the right of it, whatever the round-off, so
  * shapes that share an edge neither miss nor double a particle. */
-#include "geometry/sampling.h"
+#include "geometry/layers.h"
 #include "geometry/load.h"
 
 #include "case/case.h"
@@ -11,10 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-
-/* Where a centre is taken to be, in dp, relative to where it is. The two differ so that a slanted
- * edge through a row of centres is not met exactly either. */
-static const double nudge_x = 1e-6, nudge_y = 0.618e-6;
 
 /* A rough figure for refusing absurd cases: fields, lists of neighbours and copies of a particle. */
 static const double bytes_per_particle = 300;
@@ -32,30 +28,6 @@ static void bounding_box(struct region *region)
             region->high[c] = max2(region->high[c], region->add.item[k].high[c]);
         }
     }
-}
-
-/* A solid's lattice begins at its lower left corner; it is the common one where that fits. */
-static void choose_lattice(struct sampler *g, struct region *region)
-{
-    const struct scene *s = g->scene;
-    const double dp = region->dp;
-    bool shifted = false;
-    for (int c = 0; c < 2; c++) {
-        region->origin[c] = s->numerics.lattice_origin[c];
-        if (region->kind != KIND_SOLID) continue;
-        const double cells = (region->low[c] - region->origin[c]) / dp;
-        if (fabs(cells - round(cells)) <= 1e-6) continue;
-        region->origin[c] = region->low[c];
-        shifted = true;
-    }
-    if (!shifted) return;
-    g->scene->off_lattice = true;
-    char place[LOCATION_TEXT];
-    scene_location(s, region->line, place);
-    diag_warn(g->diag,
-              "%s: [solid %s] begins at (%.6g, %.6g), off the lattice of dp = %.6g m; "
-              "its own lattice begins there",
-              place, region->name, region->low[0], region->low[1], dp);
 }
 
 static double piece_area(const struct outline *o)
@@ -76,13 +48,13 @@ static enum err check_size(struct sampler *g)
     double total = 0, cells = 0;
     for (int k = 0; k < g->n_regions; k++) {
         const struct region *region = &g->regions[k];
-        const double own = region->dp;
+        const double own = region->lattice.dp;
         for (int j = 0; j < region->add.n; j++)
             total += piece_area(&region->add.item[j]) / square(own);
         double wide[2];
         for (int c = 0; c < 2; c++) {
-            const double low = fabs(region->low[c] - region->origin[c]) / own;
-            const double high = fabs(region->high[c] - region->origin[c]) / own;
+            const double low = fabs(region->low[c] - region->lattice.origin[c]) / own;
+            const double high = fabs(region->high[c] - region->lattice.origin[c]) / own;
             wide[c] = (region->high[c] - region->low[c]) / own + 3;
             if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
         }
@@ -113,7 +85,6 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
     struct region *region = &g->regions[g->n_regions++];
     *region = (struct region){
         .kind = kind, .body = body, .name = common->name, .line = common->line, .list = shape};
-    region->dp = kind == KIND_SOLID ? scene_solid_dp(g->scene, body) : g->scene->top.dp;
     if (shape->n == 0) {
         char place[LOCATION_TEXT];
         scene_location(g->scene, common->line, place);
@@ -122,9 +93,17 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
     }
     TRY(outlines_of(&region->add, g->scene, shape, &g->temp, g->diag));
     TRY(outlines_of(&region->minus, g->scene, minus, &g->temp, g->diag));
-    bounding_box(region);
-    choose_lattice(g, region);
     return ERR_OK;
+}
+
+/* Shapes into the axes of their lattices. */
+static enum err turn_region(struct sampler *g, struct region *region)
+{
+    const double angle = region->lattice.angle;
+    TRY(outlines_turn(&region->add, angle, &g->temp, g->diag));
+    TRY(outlines_turn(&region->minus, angle, &g->temp, g->diag));
+    bounding_box(region);
+    return layers_find(g, region);
 }
 
 static enum err list_regions(struct sampler *g)
@@ -141,6 +120,8 @@ static enum err list_regions(struct sampler *g)
     for (int k = 0; k < s->n_fluid; k++)
         TRY(add_region(g, KIND_FLUID, k, &s->fluid[k].common, &s->fluid[k].shape,
                        &s->fluid[k].minus));
+    TRY(geometry_choose_lattices(g));
+    for (int k = 0; k < n; k++) TRY(turn_region(g, &g->regions[k]));
     return check_size(g);
 }
 
@@ -149,12 +130,13 @@ static enum err list_regions(struct sampler *g)
 /* The first lattice index whose centre lies at or behind x. */
 static int64_t index_from(const struct region *region, int c, double x)
 {
-    return (int64_t)ceil((x - region->origin[c]) / region->dp - 0.5 - nudge_x);
+    const struct scene_lattice *const l = &region->lattice;
+    return (int64_t)ceil((x - l->origin[c]) / l->spacing[c] - 0.5 - NUDGE_X);
 }
 
 static double centre(const struct region *region, int c, int64_t index)
 {
-    return region->origin[c] + ((double)index + 0.5) * region->dp;
+    return region->lattice.origin[c] + ((double)index + 0.5) * region->lattice.spacing[c];
 }
 
 /* x, brought between the region's left and right end. */
@@ -180,12 +162,15 @@ static int64_t mark(struct sampler *g, const struct region *region, const struct
     return marked;
 }
 
-/* Fills the mask for row j; counts the points that each shape covers, if asked. */
-static void mark_row(struct sampler *g, const struct region *region, int64_t j, int64_t *per_shape)
+/* Fills the mask for row j, with pieces that are sampled in layers or without; counts the points that each
+ * shape covers, if asked. */
+static void mark_row(struct sampler *g, const struct region *region, int64_t j, bool with_layered,
+                     int64_t *per_shape)
 {
-    const double y = centre(region, 1, j) + nudge_y * region->dp;
+    const double y = centre(region, 1, j) + NUDGE_Y * region->lattice.spacing[1];
     memset(g->mask, 0, (size_t)region->count[0]);
     for (int k = 0; k < region->add.n; k++) {
+        if (region->layered[k] && !with_layered) continue;
         const int64_t marked = mark(g, region, &region->add.item[k], y, 1);
         if (per_shape) per_shape[region->add.shape[k]] += marked;
     }
@@ -216,15 +201,39 @@ static enum err prepare_rows(struct sampler *g)
     return g->mask && g->scratch ? ERR_OK : ERR_MEMORY;
 }
 
+/* The points of a wall with layers: those of the lattice in the pieces along it, then layers, then the
+ * lattice again behind them. */
+static enum err lay_layers(struct sampler *g, struct region *region)
+{
+    struct layers l;
+    TRY(layers_create(&l, g, region));
+    for (int behind = 0; behind < 2; behind++) {
+        for (int64_t j = region->first[1]; j < region->first[1] + region->count[1]; j++) {
+            mark_row(g, region, j, behind, NULL);
+            for (int64_t i = 0; i < region->count[0]; i++) {
+                if (!g->mask[i]) continue;
+                const double x = centre(region, 0, region->first[0] + i), y = centre(region, 1, j);
+                TRY(behind ? layers_fill(&l, x, y) : layers_take(&l, x, y));
+            }
+        }
+        if (!behind) TRY(layers_trace(&l));
+    }
+    region->n = l.points.n;
+    region->n_layered = l.points.n - l.first;
+    region->layer_point = l.points.pt + l.first;
+    return ERR_OK;
+}
+
 static enum err count_points(struct sampler *g, struct region *region)
 {
     int64_t *per_shape =
         arena_alloc(&g->temp, (size_t)region->list->n, sizeof *per_shape, "sampling", g->diag);
     if (!per_shape) return ERR_MEMORY;
     for (int64_t j = 0; j < region->count[1]; j++) {
-        mark_row(g, region, region->first[1] + j, per_shape);
+        mark_row(g, region, region->first[1] + j, true, per_shape);
         for (int64_t i = 0; i < region->count[0]; i++) region->n += g->mask[i];
     }
+    if (region->has_layers) TRY(lay_layers(g, region));
     char place[LOCATION_TEXT];
     for (int k = 0; k < region->list->n; k++) {
         if (per_shape[k]) continue;
@@ -232,12 +241,23 @@ static enum err count_points(struct sampler *g, struct region *region)
         return diag_fail(g->diag, ERR_INPUT,
                          "%s: shape %d of [%s %s] holds no particle: it is "
                          "narrower than dp = %g m, or lies between the lattice's centres",
-                         place, k + 1, kind_names[region->kind], region->name, region->dp);
+                         place, k + 1, kind_names[region->kind], region->name, region->lattice.dp);
     }
     if (region->n) return ERR_OK;
     scene_location(g->scene, region->line, place);
     return diag_fail(g->diag, ERR_INPUT, "%s: nothing is left of [%s %s] after its `minus`", place,
                      kind_names[region->kind], region->name);
+}
+
+/* Stores a point that is given in the axes of its lattice. */
+static void put_point(const struct sampler *g, const struct region *region, struct samples *p,
+                      int64_t k, double x, double y)
+{
+    double at[2];
+    place_of_lattice(&region->lattice, x, y, at);
+    p->x[k] = at[0];
+    p->y[k] = at[1];
+    p->region[k] = (int32_t)(region - g->regions);
 }
 
 /* Appends a region's points: row by row, or column by column where `upright`. */
@@ -250,55 +270,25 @@ static enum err append_points(struct sampler *g, const struct region *region, bo
             arena_alloc(&g->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling", g->diag);
         if (!next) return ERR_MEMORY;
         for (int64_t j = 0; j < region->count[1]; j++) {
-            mark_row(g, region, region->first[1] + j, NULL);
+            mark_row(g, region, region->first[1] + j, false, NULL);
             for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += g->mask[i];
         }
         for (int64_t i = 0; i < region->count[0]; i++) next[i + 1] += next[i];
     }
     int64_t filled = 0;
     for (int64_t j = 0; j < region->count[1]; j++) {
-        mark_row(g, region, region->first[1] + j, NULL);
+        mark_row(g, region, region->first[1] + j, false, NULL);
         for (int64_t i = 0; i < region->count[0]; i++) {
             if (!g->mask[i]) continue;
             const int64_t k = p->n + (upright ? next[i]++ : filled);
-            p->x[k] = centre(region, 0, region->first[0] + i);
-            p->y[k] = centre(region, 1, region->first[1] + j);
-            p->region[k] = (int32_t)(region - g->regions);
+            put_point(g, region, p, k, centre(region, 0, region->first[0] + i),
+                      centre(region, 1, region->first[1] + j));
             filled++;
         }
     }
     p->n += filled;
-    return ERR_OK;
-}
-
-/* --- clamps --- */
-
-static enum err clamp_points(struct sampler *g, const struct region *region, int64_t from,
-                             struct samples *p)
-{
-    const struct scene *s = g->scene;
-    const struct shape_list *clamps = &s->solid[region->body].clamp;
-    struct outlines o;
-    TRY(outlines_of(&o, s, clamps, &g->temp, g->diag));
-    int64_t *held = arena_alloc(&g->temp, (size_t)clamps->n, sizeof *held, "clamps", g->diag);
-    if (!held) return ERR_MEMORY;
-    for (int64_t k = from; k < p->n; k++) {
-        const double x = p->x[k] + nudge_x * region->dp, y = p->y[k] + nudge_y * region->dp;
-        for (int c = 0; c < o.n; c++) {
-            if (!outline_contains(&o.item[c], x, y, g->scratch)) continue;
-            p->clamped[k] = 1;
-            held[o.shape[c]]++;
-        }
-    }
-    for (int c = 0; c < clamps->n; c++) {
-        if (held[c]) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, clamps->item[c].line, place);
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: clamp %d of [solid %s] holds no particle: it must "
-                         "cover a part of the body",
-                         place, c + 1, region->name);
-    }
+    for (int64_t k = 0; k < region->n_layered; k++)
+        put_point(g, region, p, p->n++, region->layer_point[k][0], region->layer_point[k][1]);
     return ERR_OK;
 }
 
@@ -321,7 +311,7 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
         const int64_t from = p->n;
         const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
         TRY(append_points(g, region, upright, p));
-        if (region->kind == KIND_SOLID) TRY(clamp_points(g, region, from, p));
+        if (region->kind == KIND_SOLID) TRY(geometry_clamp(g, region, from, p));
     }
     return ERR_OK;
 }

@@ -7,7 +7,12 @@
 #include "particles/particles.h"
 #include "geometry/outline.h"
 
-/* What one section covers. Lattice point (i, j) is the centre origin + ((i, j) + 1/2) dp. */
+/* Where a centre is taken to be, in spacings, relative to where it is. The two differ so that a slanted
+ * edge through a row of centres is not met exactly either. */
+#define NUDGE_X 1e-6
+#define NUDGE_Y 0.618e-6
+
+/* What one section covers. Its shapes are held in the axes of its lattice. */
 struct region {
     enum kind kind;
     int body; /* index of the section */
@@ -15,11 +20,14 @@ struct region {
     int line;
     const struct shape_list *list;
     struct outlines add, minus;
-    double dp; /* of its lattice, m */
-    double origin[2];
+    struct scene_lattice lattice;
     double low[2], high[2];     /* bounding box of the shapes */
     int64_t first[2], count[2]; /* lattice points that the box spans */
     int64_t n;                  /* points inside */
+    bool *layered,
+        has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
+    int64_t n_layered;
+    double (*layer_point)[2]; /* those of the layers, after the lattice's */
 };
 
 struct sampler {
@@ -41,6 +49,13 @@ struct samples {
 };
 
 enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
+
+/* Sets every region's lattice, from shapes that are not turned yet, and those of the scene. */
+enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
+
+/* Marks the particles of a solid, from one on, that its clamps hold. */
+enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,
+                        struct samples *p) SPHFSI_CHECKED;
 
 /* Edges off the lattice, thin walls and bodies, gaps too narrow for a particle. */
 enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;

@@ -56,14 +56,31 @@ static enum err find_loaded(struct loads *v, struct load_region *load, const str
     return ERR_OK;
 }
 
-/* Each particle's part of the force, or the traction on the dp of surface that it stands for. */
-static void set_forces(struct loads *v, const struct load_region *load, const struct solid *s,
-                       const struct particles *p)
+/* The length of surface that each of a row of particles stands for: the spacing of their lattice along the
+ * axis in which they extend further. */
+static double row_spacing(const struct loads *v, const struct load_region *load, int body,
+                          const struct particles *p)
+{
+    const struct scene_lattice *const l = &v->scene->solid_lattice[body];
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int64_t k = load->first; k < load->end; k++) {
+        double at[2];
+        lattice_place(l, p->X[v->loaded[k]], p->Y[v->loaded[k]], at);
+        for (int c = 0; c < 2; c++) {
+            low[c] = min2(low[c], at[c]);
+            high[c] = max2(high[c], at[c]);
+        }
+    }
+    return l->spacing[high[1] - low[1] > high[0] - low[0]];
+}
+
+/* Each particle's part of the force, or the traction on the length of surface that it stands for. */
+static void set_forces(struct loads *v, const struct load_region *load, const struct particles *p)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
     const bool traction = from->traction.e[0] != NULL;
     const struct scene_expr *const value = traction ? &from->traction : &from->force;
-    const double share = traction ? s->body[scene_find_solid(v->scene, from->body)].dp
+    const double share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), p)
                                   : 1 / (double)(load->end - load->first);
     for (int64_t k = load->first; k < load->end; k++) {
         const int32_t i = v->loaded[k];
@@ -72,8 +89,8 @@ static void set_forces(struct loads *v, const struct load_region *load, const st
     }
 }
 
-static enum err find_loads(struct loads *v, struct arena *a, const struct solid *s,
-                           const struct particles *p, struct arena *temp, struct diag *d)
+static enum err find_loads(struct loads *v, struct arena *a, const struct particles *p,
+                           struct arena *temp, struct diag *d)
 {
     v->load = arena_alloc(a, (size_t)v->n_loads, sizeof *v->load, "loads", d);
     const size_t most = (size_t)v->n_loads * (size_t)p->n;
@@ -91,17 +108,17 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct solid 
     v->factor = arena_alloc(a, (size_t)v->n_loads, sizeof *v->factor, "loads", d);
     if (!v->loaded || !v->fx || !v->fy || !v->factor) return ERR_MEMORY;
     for (size_t k = 0; k < n; k++) v->loaded[k] = found[k];
-    for (int k = 0; k < v->n_loads; k++) set_forces(v, &v->load[k], s, p);
+    for (int k = 0; k < v->n_loads; k++) set_forces(v, &v->load[k], p);
     return ERR_OK;
 }
 
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
-                      const struct solid *s, struct particles *p, struct diag *d)
+                      struct particles *p, struct diag *d)
 {
     *v = (struct loads){.scene = scene, .n_loads = scene->n_load};
     TRY(find_held(v, a, p, d));
     struct arena temp = {.limit = a->limit};
-    const enum err e = find_loads(v, a, s, p, &temp, d);
+    const enum err e = find_loads(v, a, p, &temp, d);
     arena_free(&temp);
     if (e) return e;
     for (int64_t k = 0; k < v->n_held; k++) p->free[v->held[k]] = 1;

@@ -28,7 +28,7 @@ struct loads {
 
 /* Finds the particles that loads and moving clamps act on. */
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,
-                      const struct solid *s, struct particles *p, struct diag *d) SPHFSI_CHECKED;
+                      struct particles *p, struct diag *d) SPHFSI_CHECKED;
 
 /* Puts the particles of moving clamps where they are at a time, with their velocity. By one thread. */
 void loads_place_clamps(struct loads *v, struct particles *p, double time);

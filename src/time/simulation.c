@@ -297,7 +297,7 @@ static enum err build(struct simulation *s, struct diag *d)
             TRY(contact_create(&s->contact, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID],
                                d));
         if (s->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
-            TRY(loads_create(&s->loads, &s->arena, s->scene, &s->solid, &s->kind[KIND_SOLID], d));
+            TRY(loads_create(&s->loads, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
             s->solid.loads = &s->loads;
         }
         s->solid.gravity = s->gravity_varies ? s->scene : NULL;

@@ -274,6 +274,28 @@ static void preview_shows_the_scene(void)
     TEST_ASSERT_NOT_NULL(strstr(svg, "</svg>"));
 }
 
+/* A body is drawn with cells of its own: their spacings, their angle. */
+static void preview_shows_cells_as_they_are(void)
+{
+    const struct sphfsi_options o = {
+        .case_text = "dp = 2 mm\nend_time = 1\n"
+                     "[solid thin]\nshape = box 0, 0, 10 mm, 70 mm\ndp = 1.25 mm\n"
+                     "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+                     "[solid slanted]\nlike = thin\n"
+                     "shape = polygon 0.2, 0; 0.23, 40 mm; 0.222, 46 mm; 0.192, 6 mm\n",
+        .out = tiny_path("c.svg"),
+        .message = on_message};
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_preview(&o), sphfsi_error());
+    FILE *file = fopen(tiny_path("c.svg"), "r");
+    static char svg[1 << 16];
+    svg[fread(svg, 1, sizeof svg - 1, file)] = '\0';
+    fclose(file);
+    TEST_ASSERT_NOT_NULL(
+        strstr(svg, "solid thin: 0.01 x 0.07 m, 448 particles of 0.00125 x 0.00125 m;"));
+    TEST_ASSERT_NOT_NULL(
+        strstr(svg, "solid slanted: 0.01 x 0.05 m at -36.87 degrees, 320 particles"));
+}
+
 static void preview_to_nowhere_is_reported(void)
 {
     const struct sphfsi_options o = {.case_text = tiny_case, .out = "/nowhere/p.svg"};
@@ -294,6 +316,7 @@ int main(void)
     RUN_TEST(sources_fit_the_scene);
     RUN_TEST(every_key_is_listed);
     RUN_TEST(preview_shows_the_scene);
+    RUN_TEST(preview_shows_cells_as_they_are);
     RUN_TEST(preview_to_nowhere_is_reported);
     return UNITY_END();
 }

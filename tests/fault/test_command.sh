@@ -37,6 +37,9 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 "$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
 "$sphfsi" --keys | grep -qF '| `end_time` | number | s | **needed** |' || fail "--keys"
 "$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "effects that are on" out || fail "--explain"
+"$sphfsi" --explain cantilever.cfg --set "plate.lattice_angle=20 deg" --threads 1 >out 2>err &&
+    grep -q "solid plate\] lattice at 20 degrees, cells of .* area off by .* bending stiffness" out ||
+    fail "--explain of a turned lattice"
 # A report that cannot be written is a failure.
 if [ -c /dev/full ]; then
     for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" \

@@ -5,6 +5,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static struct rig rig;
@@ -85,6 +86,25 @@ static void test_bar_under_traction(void)
         /* The clamp's edge lies at 0.02 m, within dp/2 = 2.8 % of the length; the end's centre is
          * dp/2 short of the end. */
         assert_near(0.03 * 1e-4 * 0.175, 1e-4 * 0.175, p->ux[i], "stretch");
+    }
+}
+
+/* Cells of 1.075 x 1.04 mm: a traction acts on the length of the side that it is drawn on. */
+static void test_traction_on_fitted_cells(void)
+{
+    static const char *const sides[] = {"box 0, 9 mm, 43 mm, 11 mm", "box 42 mm, 0, 44 mm, 11 mm"};
+    const double length[] = {43e-3, 10.4e-3};
+    for (int k = 0; k < 2; k++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "dp = 1.1 mm\nend_time = 1\n[solid bar]\nshape = box 0, 0, 43 mm, 10.4 mm\n"
+                 "density = 1000\nyoung = 1e5\npoisson = 0\n"
+                 "[load side]\nbody = bar\nshape = %s\ntraction = 0, 100\n",
+                 sides[k]);
+        RIG_OPEN_SOLID(text, NULL);
+        double force = 0;
+        for (int64_t n = 0; n < rig.sim.loads.n_loaded; n++) force += rig.sim.loads.fy[n];
+        assert_near(1e-9, 100 * length[k], force, sides[k]);
     }
 }
 
@@ -191,6 +211,7 @@ int main(void)
     RUN_TEST(test_loads_by_hand);
     RUN_TEST(test_work_of_a_load);
     RUN_TEST(test_bar_under_traction);
+    RUN_TEST(test_traction_on_fitted_cells);
     RUN_TEST(test_clamp_moves_the_body);
     RUN_TEST(test_work_of_a_clamp);
     RUN_TEST(test_zero_changes_no_bit);

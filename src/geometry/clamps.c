@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT
+ * Which particles of a solid its clamps hold: those whose centres lie in one. The solid's lattice is fitted
+ * to where its clamps end (geometry/lattice.c). */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+static enum err fail_empty(struct sampler *g, const struct region *region, int clamp)
+{
+    const struct shape_list *const clamps = &g->scene->solid[region->body].clamp;
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, clamps->item[clamp].line, place);
+    return diag_fail(g->diag, ERR_INPUT,
+                     "%s: clamp %d of [solid %s] holds no particle: it must "
+                     "cover a part of the body",
+                     place, clamp + 1, region->name);
+}
+
+enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,
+                        struct samples *p)
+{
+    const struct shape_list *const clamps = &g->scene->solid[region->body].clamp;
+    const double *const spacing = region->lattice.spacing;
+    struct outlines o;
+    TRY(outlines_of(&o, g->scene, clamps, &g->temp, g->diag));
+    TRY(outlines_turn(&o, region->lattice.angle, &g->temp, g->diag));
+    int64_t *held = arena_alloc(&g->temp, (size_t)clamps->n, sizeof *held, "clamps", g->diag);
+    if (!held) return ERR_MEMORY;
+    for (int64_t k = from; k < p->n; k++) {
+        double at[2];
+        lattice_place(&region->lattice, p->x[k], p->y[k], at);
+        for (int c = 0; c < o.n; c++) {
+            if (!outline_contains(&o.item[c], at[0] + NUDGE_X * spacing[0],
+                                  at[1] + NUDGE_Y * spacing[1], g->scratch))
+                continue;
+            p->clamped[k] = 1;
+            held[o.shape[c]]++;
+        }
+    }
+    for (int c = 0; c < clamps->n; c++)
+        if (!held[c]) return fail_empty(g, region, c);
+    return ERR_OK;
+}

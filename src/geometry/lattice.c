@@ -1,0 +1,454 @@
+/* SPDX-License-Identifier: MIT
+ * The lattices that regions are sampled on: which way they are turned, where they begin, and their spacings.
+ * Fluid and walls share one lattice of spacing dp. Each solid, with those bonded to it, has its own. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Directions nearer than this are one, rad; edges nearer than this to the lattice are on it, dp. */
+static const double same_direction = 1e-6, on_lattice = 1e-6;
+
+/* Lines at right angles to an axis, for each spacing, that look for the edges along it. */
+enum { LINES_PER_DP = 4, MAX_LINES = 20000, MAX_EDGES = 24 };
+
+/* --- direction --- */
+
+struct direction {
+    double angle, length;
+};
+
+static int by_angle(const void *a, const void *b)
+{
+    const double x = ((const struct direction *)a)->angle, y = ((const struct direction *)b)->angle;
+    return (x > y) - (x < y);
+}
+
+/* An edge's direction, rad, a right angle counted as none: above -PI/4, up to PI/4. */
+static struct direction direction_of(const double a[2], const double b[2])
+{
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    if (dx == 0 || dy == 0) return (struct direction){0, fabs(dx) + fabs(dy)};
+    double angle = atan2(dy, dx);
+    angle -= 0.5 * PI * round(angle / (0.5 * PI));
+    if (angle < same_direction - 0.25 * PI) angle += 0.5 * PI;
+    return (struct direction){fabs(angle) < same_direction ? 0 : angle, hypot(dx, dy)};
+}
+
+/* Appends the straight edges of shapes; of a polyline both sides, which are taken to be equally long. */
+static int add_directions(const struct shape_list *list, struct direction *to)
+{
+    int n = 0;
+    for (int k = 0; k < list->n; k++) {
+        const struct shape *shape = &list->item[k];
+        const int edges = shape->kind == SHAPE_POLYGON    ? shape->n
+                          : shape->kind == SHAPE_POLYLINE ? shape->n - 1
+                                                          : 0;
+        for (int j = 0; j < edges; j++) {
+            to[n] = direction_of(shape->pt[j], shape->pt[(j + 1) % shape->n]);
+            if (shape->kind == SHAPE_POLYLINE) to[n].length *= 2;
+            n++;
+        }
+        if (shape->kind != SHAPE_BOX) continue;
+        const double *low = shape->pt[0], *high = shape->pt[1];
+        to[n++] = (struct direction){0, 2 * (high[0] - low[0] + high[1] - low[1])};
+    }
+    return n;
+}
+
+/* The direction that more than half of all straight edges have, in length; else 0. */
+static double main_direction(struct direction *all, int n)
+{
+    double total = 0;
+    for (int k = 0; k < n; k++) total += all[k].length;
+    qsort(all, (size_t)n, sizeof *all, by_angle);
+    for (int k = 0, end; k < n; k = end) {
+        double length = 0, moment = 0;
+        for (end = k; end < n && all[end].angle - all[k].angle <= same_direction; end++) {
+            length += all[end].length;
+            moment += all[end].length * (all[end].angle - all[k].angle);
+        }
+        if (length > 0.5 * total * (1 + 1e-9))
+            return all[k].angle == 0 ? 0 : all[k].angle + moment / length;
+    }
+    return 0;
+}
+
+/* --- edges along an axis --- */
+
+/* Positions where lines cross the boundary, gathered into edges at right angles to the axis. */
+struct crossing {
+    double at, weight;
+    bool clamp; /* of a clamp's end within the body, else of the body's own */
+};
+
+static int by_place(const void *a, const void *b)
+{
+    const double x = ((const struct crossing *)a)->at, y = ((const struct crossing *)b)->at;
+    return (x > y) - (x < y);
+}
+
+static int by_weight(const void *a, const void *b)
+{
+    const double x = ((const struct crossing *)a)->weight, y = ((const struct crossing *)b)->weight;
+    return (x < y) - (x > y);
+}
+
+static bool covered(const double *from, int n, double x, double tolerance)
+{
+    for (int k = 0; k + 1 < n; k += 2)
+        if (x >= from[k] - tolerance && x <= from[k + 1] + tolerance) return true;
+    return false;
+}
+
+/* Ends of the body on a line, those within its clamps left out, and ends of clamps within the body: what
+ * bounds the part that is free to move. Appends them, and returns how many. */
+static int free_ends(const struct outlines *body, const struct outlines *minus,
+                     const struct outlines *clamp, double y, double dp, double *buffer, int room,
+                     struct crossing *to)
+{
+    double *const inside = buffer, *const held = buffer + room, *const scratch = held + room;
+    const int n = outlines_union(body, minus, y, inside, scratch);
+    const int n_held = clamp ? outlines_union(clamp, NULL, y, held, scratch) : 0;
+    int count = 0;
+    for (int k = 0; k < n; k++)
+        if (!covered(held, n_held, inside[k], on_lattice * dp))
+            to[count++] = (struct crossing){.at = inside[k]};
+    for (int k = 0; k < n_held; k++)
+        if (covered(inside, n, held[k], -on_lattice * dp))
+            to[count++] = (struct crossing){.at = held[k], .clamp = true};
+    return count;
+}
+
+/* Merges crossings that lie close together into edges, each at its mean place. Left out are edges shorter
+ * than a spacing, curved or slanted ends of a body, and clamps that are spread over more than two spacings:
+ * their rows end on average where they are drawn, on any lattice. */
+static int merge_edges(struct crossing *c, int n, double dp)
+{
+    int kept = 0;
+    qsort(c, (size_t)n, sizeof *c, by_place);
+    for (int k = 0, end; k < n; k = end) {
+        double weight = 0, moment = 0, spread = 0.02 * dp;
+        const double first = c[k].at;
+        for (end = k; end < n && (end == k || c[end].at - c[end - 1].at < 0.1 * dp); end++) {
+            weight += c[end].weight;
+            moment += c[end].weight * (c[end].at - first);
+            if (c[end].clamp) spread = 2 * dp;
+        }
+        if (c[end - 1].at - first > spread || weight < dp) continue;
+        c[kept++] = (struct crossing){.at = first + moment / weight, .weight = weight};
+    }
+    qsort(c, (size_t)kept, sizeof *c, by_weight);
+    return kept < MAX_EDGES ? kept : MAX_EDGES;
+}
+
+/* A group of regions that share a lattice. */
+struct lattice_group {
+    int n;
+    struct region *const *region;
+    double angle, dp;
+};
+
+static enum err turned_outlines(struct outlines *o, const struct outlines *from, double angle,
+                                struct sampler *g)
+{
+    *o = *from;
+    return outlines_turn(o, angle, &g->temp, g->diag);
+}
+
+/* Whether the line before has a crossing of the same kind in nearly the same place: the boundary lies across
+ * the axis there, and is not slanted. */
+static bool goes_on(const struct crossing *before, int n, const struct crossing *c, double dp)
+{
+    for (int k = 0; k < n; k++)
+        if (before[k].clamp == c->clamp && fabs(before[k].at - c->at) < 0.1 * dp) return true;
+    return false;
+}
+
+/* Adds the crossings of one region along the axis at `angle`; only their number if `to` is NULL. */
+static enum err region_crossings(struct sampler *g, const struct region *region, double angle,
+                                 double dp, bool whole, struct crossing **to, int *n)
+{
+    struct outlines body, minus, clamp = {0};
+    TRY(turned_outlines(&body, &region->add, angle, g));
+    TRY(turned_outlines(&minus, &region->minus, angle, g));
+    if (region->kind == KIND_SOLID && !whole) {
+        TRY(outlines_of(&clamp, g->scene, &g->scene->solid[region->body].clamp, &g->temp, g->diag));
+        TRY(outlines_turn(&clamp, angle, &g->temp, g->diag));
+    }
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int k = 0; k < body.n; k++) {
+        low = min2(low, body.item[k].low[1]);
+        high = max2(high, body.item[k].high[1]);
+    }
+    const int room = outlines_ends(&body) + outlines_ends(&minus) + outlines_ends(&clamp) + 4;
+    const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
+    const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
+    const double step = (high - low) / lines;
+    double *const buffer =
+        arena_alloc(&g->temp, 3 * (size_t)room, sizeof *buffer, "sampling", g->diag);
+    struct crossing *const two_lines =
+        arena_alloc(&g->temp, 4 * (size_t)room, sizeof *two_lines, "sampling", g->diag);
+    if (!buffer || !two_lines) return ERR_MEMORY;
+    int64_t total = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        int before = 0;
+        for (int k = 0; k < lines; k++) {
+            struct crossing *const line = two_lines + (k % 2 ? 2 * room : 0), *const last =
+                                                                                  two_lines +
+                                                                                  (k % 2
+                                                                                       ? 0
+                                                                                       : 2 * room);
+            const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL,
+                                        low + (k + 0.5) * step, dp, buffer, room, line);
+            if (pass == 0) total += found;
+            for (int j = 0; pass == 1 && j < found; j++)
+                if (goes_on(last, before, &line[j], dp))
+                    (*to)[(*n)++] = (struct crossing){line[j].at, step, line[j].clamp};
+            before = found;
+        }
+        if (pass == 1) break;
+        if (*n + total > INT32_MAX / 2) return ERR_OK;
+        struct crossing *const more = arena_alloc(&g->temp, (size_t)*n + (size_t)total + 1,
+                                                  sizeof *more, "sampling", g->diag);
+        if (!more) return ERR_MEMORY;
+        if (*n) memcpy(more, *to, (size_t)*n * sizeof *more);
+        *to = more;
+    }
+    return ERR_OK;
+}
+
+/* The edges of a group across one axis; of its free part, or of the whole where nothing is free. */
+static enum err find_edges(struct sampler *g, const struct lattice_group *group, int axis,
+                           struct crossing **edge, int *n)
+{
+    const double angle = group->angle + (axis ? 0.5 * PI : 0);
+    *n = 0;
+    *edge = NULL;
+    for (int whole = 0; whole < 2 && *n == 0; whole++) {
+        for (int k = 0; k < group->n; k++)
+            TRY(region_crossings(g, group->region[k], angle, group->dp, whole, edge, n));
+        *n = merge_edges(*edge, *n, group->dp);
+    }
+    return ERR_OK;
+}
+
+/* --- spacing and origin --- */
+
+/* Mean square of the edges' distances from the lattice lines, in spacings, weighted by length. */
+static double misfit(const struct crossing *edge, int n, double origin, double spacing)
+{
+    double sum = 0, weight = 0;
+    for (int k = 0; k < n; k++) {
+        const double cells = (edge[k].at - origin) / spacing;
+        sum += edge[k].weight * square(cells - round(cells));
+        weight += edge[k].weight;
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+/* The line through (count, place) of the edges, by least squares, where `origin` and `spacing` say which
+ * lattice line is the nearest to each. With `fixed` the spacing stays. */
+static void regress(const struct crossing *edge, int n, bool fixed, double *origin, double *spacing)
+{
+    double w = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (int k = 0; k < n; k++) {
+        const double count = round((edge[k].at - *origin) / *spacing);
+        const double place = edge[k].at - *origin;
+        w += edge[k].weight;
+        x += edge[k].weight * count;
+        y += edge[k].weight * place;
+        xx += edge[k].weight * count * count;
+        xy += edge[k].weight * count * place;
+    }
+    const double spread = w * xx - x * x;
+    const double found = fixed || spread <= 0 ? *spacing : (w * xy - x * y) / spread;
+    *origin += (y - found * x) / w;
+    *spacing = found;
+}
+
+/* The origin and the spacing that fit the edges best, tried from each of them with dp, and from every pair.
+ * Of equal fits the spacing nearest to dp is taken. */
+static void fit_axis(const struct crossing *edge, int n, double dp, bool fixed, double *origin,
+                     double *spacing)
+{
+    double best = misfit(edge, n, *origin, *spacing);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < 2 * n; j++) {
+            const double apart = fabs(edge[j / 2].at - edge[i].at) / dp;
+            const double count = j % 2 ? floor(apart) : ceil(apart);
+            const bool alone = j / 2 == i;
+            if (!alone && (fixed || count < 2)) continue;
+            double o = edge[i].at, d = alone ? dp : apart / count * dp;
+            regress(edge, n, alone, &o, &d);
+            const double off = misfit(edge, n, o, d);
+            const bool better = off < best - 1e-12;
+            if (!better && (off > best + 1e-12 || fabs(d - dp) >= fabs(*spacing - dp))) continue;
+            best = min2(off, best);
+            *origin = o;
+            *spacing = d;
+        }
+    }
+}
+
+/* Corner of the box around a group, in its own axes. */
+static enum err lower_corner(struct sampler *g, const struct lattice_group *group, double corner[2])
+{
+    corner[0] = corner[1] = HUGE_VAL;
+    for (int k = 0; k < group->n; k++) {
+        struct outlines o;
+        TRY(turned_outlines(&o, &group->region[k]->add, group->angle, g));
+        for (int j = 0; j < o.n; j++)
+            for (int c = 0; c < 2; c++) corner[c] = min2(corner[c], o.item[j].low[c]);
+    }
+    return ERR_OK;
+}
+
+static void tell_shift(struct sampler *g, const struct region *region, const double corner[2])
+{
+    char place[LOCATION_TEXT];
+    g->scene->off_lattice = true;
+    scene_location(g->scene, region->line, place);
+    diag_warn(g->diag,
+              "%s: [solid %s] begins at (%.6g, %.6g), off the lattice of dp = %.6g m; "
+              "its own lattice begins there",
+              place, region->name, corner[0], corner[1], region->lattice.dp);
+}
+
+/* A solid's lattice is the common one where that fits. Else it begins at its lower left corner; and where
+ * that leaves edges between lattice lines, it is fitted to them. */
+static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
+{
+    double corner[2];
+    bool shifted = false;
+    struct scene_lattice l = {.angle = group->angle,
+                              .turn = {cos(group->angle), sin(group->angle)},
+                              .spacing = {group->dp, group->dp}};
+    TRY(lower_corner(g, group, corner));
+    for (int c = 0; c < 2; c++) {
+        const struct scene_lattice *const common = &g->scene->lattice;
+        const double cells = (corner[c] - common->origin[c]) / group->dp;
+        const bool same = group->angle == common->angle && fabs(cells - round(cells)) <= on_lattice;
+        l.origin[c] = same ? common->origin[c] : corner[c];
+        struct crossing *edge;
+        int n;
+        TRY(find_edges(g, group, c, &edge, &n));
+        double off = 0;
+        for (int k = 0; k < n; k++) {
+            const double place = (edge[k].at - l.origin[c]) / group->dp;
+            off = max2(off, fabs(place - round(place)));
+        }
+        if (off > on_lattice) {
+            fit_axis(edge, n, group->dp, false, &l.origin[c], &l.spacing[c]);
+            l.fitted = true;
+        } else
+            shifted |= !same;
+    }
+    const bool square_cells = l.spacing[0] == group->dp && l.spacing[1] == group->dp;
+    l.dp = square_cells ? group->dp : sqrt(l.spacing[0] * l.spacing[1]);
+    for (int k = 0; k < group->n; k++) group->region[k]->lattice = l;
+    if (shifted && group->angle == 0 && !l.fitted) tell_shift(g, group->region[0], corner);
+    return ERR_OK;
+}
+
+/* --- groups --- */
+
+static enum err group_direction(struct sampler *g, struct lattice_group *group)
+{
+    size_t most = 1;
+    for (int k = 0; k < group->n; k++)
+        for (int j = 0; j < group->region[k]->list->n; j++)
+            most += (size_t)group->region[k]->list->item[j].n;
+    struct direction *all = arena_alloc(&g->temp, most, sizeof *all, "sampling", g->diag);
+    if (!all) return ERR_MEMORY;
+    int n = 0;
+    for (int k = 0; k < group->n; k++) n += add_directions(group->region[k]->list, all + n);
+    group->angle = main_direction(all, n);
+    return ERR_OK;
+}
+
+/* An angle that is given, as the lattice takes it: a right angle is none. */
+static double given_angle(double angle)
+{
+    const double a[2] = {0, 0}, b[2] = {cos(angle), sin(angle)};
+    return direction_of(a, b).angle;
+}
+
+/* The lattice of fluid and walls. A periodic one cannot be turned. */
+static enum err common_lattice(struct sampler *g, struct region **list)
+{
+    struct scene *s = g->scene;
+    struct lattice_group group = {.region = list, .dp = s->top.dp};
+    for (int k = 0; k < g->n_regions; k++)
+        if (g->regions[k].kind != KIND_SOLID) list[group.n++] = &g->regions[k];
+    if (!isnan(s->numerics.lattice_angle))
+        group.angle = given_angle(s->numerics.lattice_angle);
+    else if (s->domain.periodic == PERIODIC_NONE)
+        TRY(group_direction(g, &group));
+    const double *at = s->numerics.lattice_origin;
+    const double c = cos(group.angle), sine = sin(group.angle);
+    struct scene_lattice *l = &s->lattice;
+    *l = (struct scene_lattice){.angle = group.angle,
+                                .turn = {c, sine},
+                                .spacing = {group.dp, group.dp},
+                                .dp = group.dp};
+    lattice_place(l, at[0], at[1], l->origin);
+    if (group.angle != 0 && !scene_given(s, SECTION_numerics, 0, "lattice_origin")) {
+        for (int axis = 0; axis < 2; axis++) {
+            struct crossing *edge;
+            int n;
+            TRY(find_edges(g, &group, axis, &edge, &n));
+            fit_axis(edge, n, group.dp, true, &l->origin[axis], &l->spacing[axis]);
+        }
+    }
+    for (int k = 0; k < group.n; k++) list[k]->lattice = *l;
+    return ERR_OK;
+}
+
+/* Gives solids that are bonded to one another, directly or by way of others, one number. */
+static void number_bonds(const struct scene *s, int *bond)
+{
+    for (int k = 0; k < s->n_solid; k++) bond[k] = k;
+    for (int k = 0; k < s->n_solid; k++) {
+        if (!s->solid[k].joined[0]) continue;
+        const int a = bond[k], b = bond[scene_find_solid(s, s->solid[k].joined)];
+        for (int j = 0; j < s->n_solid; j++)
+            if (bond[j] == a || bond[j] == b) bond[j] = a < b ? a : b;
+    }
+}
+
+static enum err solid_lattice(struct sampler *g, const int *bond, int number, struct region **list)
+{
+    struct scene *s = g->scene;
+    struct lattice_group group = {.region = list, .dp = scene_solid_dp(s, number)};
+    for (int k = 0; k < s->n_solid; k++)
+        if (bond[k] == number) list[group.n++] = &g->regions[k];
+    if (group.n == 0) return ERR_OK;
+    TRY(group_direction(g, &group));
+    for (int k = group.n - 1; k >= 0; k--) {
+        const double given = s->solid[list[k]->body].lattice_angle;
+        if (!isnan(given)) group.angle = given_angle(given);
+    }
+    return fit_solids(g, &group);
+}
+
+enum err geometry_choose_lattices(struct sampler *g)
+{
+    struct scene *s = g->scene;
+    const size_t n = (size_t)s->n_solid;
+    struct region **list =
+        arena_alloc(&g->temp, (size_t)g->n_regions, sizeof *list, "sampling", g->diag);
+    int *bond = arena_alloc(&g->temp, n, sizeof *bond, "sampling", g->diag);
+    struct scene_lattice *const to =
+        arena_alloc(&s->arena, n, sizeof *s->solid_lattice, "lattice", g->diag);
+    if (!list || !bond || !to) return ERR_MEMORY;
+    number_bonds(s, bond);
+    TRY(common_lattice(g, list));
+    for (int k = 0; k < s->n_solid; k++) TRY(solid_lattice(g, bond, k, list));
+    for (int k = 0; k < s->n_solid; k++) to[k] = g->regions[k].lattice;
+    s->solid_lattice = to;
+    return ERR_OK;
+}

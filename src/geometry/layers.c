@@ -1,0 +1,451 @@
+/* SPDX-License-Identifier: MIT
+ * Layer k of a wall holds the points that are (k + 1/2) dp from the nearest point of its faces: segments
+ * beside edges, cut at convex corners by the next edge's, and arcs around concave corners. Along a layer
+ * the points are evenly spaced, as near to dp as a whole number of them allows. */
+#include "geometry/layers.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Parts of a spacing that faces are cut into. */
+enum { PARTS = 8 };
+/* Nearer than this many dp, two points of a wall stand for one place. */
+static const double too_near = 0.65;
+
+/* --- points in a hash table --- */
+
+static uint64_t slot_of(const struct point_grid *t, int64_t i, int64_t j)
+{
+    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
+    key ^= key >> 29;
+    key *= 0xBF58476D1CE4E5B9u;
+    return (key >> 32) & t->mask;
+}
+
+static void link_point(struct point_grid *t, int64_t k)
+{
+    const uint64_t slot =
+        slot_of(t, (int64_t)floor(t->pt[k][0] / t->side), (int64_t)floor(t->pt[k][1] / t->side));
+    t->next[k] = t->head[slot];
+    t->head[slot] = (int32_t)(k + 1);
+}
+
+static enum err grow(struct point_grid *t, struct sampler *g)
+{
+    const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
+    if (capacity > INT32_MAX / 2)
+        return diag_fail(g->diag, ERR_INPUT, "%s: the faces of walls are too long for dp = %g m",
+                         g->scene->path, g->scene->top.dp);
+    double(*pt)[2] = arena_alloc(&g->temp, (size_t)capacity, sizeof *pt, "walls", g->diag);
+    t->next = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->next, "walls", g->diag);
+    t->head = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->head, "walls", g->diag);
+    if (!pt || !t->next || !t->head) return ERR_MEMORY;
+    if (t->n) memcpy(pt, t->pt, (size_t)t->n * sizeof *pt);
+    t->pt = pt;
+    t->capacity = capacity;
+    t->mask = (uint64_t)capacity - 1;
+    for (int64_t k = 0; k < t->n; k++) link_point(t, k);
+    return ERR_OK;
+}
+
+static enum err add_point(struct point_grid *t, struct sampler *g, double x, double y)
+{
+    if (t->n == t->capacity) TRY(grow(t, g));
+    t->pt[t->n][0] = x;
+    t->pt[t->n][1] = y;
+    link_point(t, t->n++);
+    return ERR_OK;
+}
+
+/* Whether a point of the table is nearer than `distance`. */
+static bool any_within(const struct point_grid *t, double x, double y, double distance)
+{
+    if (t->n == 0) return false;
+    const int64_t i0 = (int64_t)floor((x - distance) / t->side),
+                  i1 = (int64_t)floor((x + distance) / t->side),
+                  j0 = (int64_t)floor((y - distance) / t->side),
+                  j1 = (int64_t)floor((y + distance) / t->side);
+    for (int64_t j = j0; j <= j1; j++)
+        for (int64_t i = i0; i <= i1; i++)
+            for (int32_t n = t->head[slot_of(t, i, j)]; n; n = t->next[n - 1])
+                if (square(t->pt[n - 1][0] - x) + square(t->pt[n - 1][1] - y) < square(distance))
+                    return true;
+    return false;
+}
+
+/* --- which pieces --- */
+
+/* Whether a shape's edges all lie along the lattice. Of a polyline the joints between its segments do not
+ * count. */
+static bool along_lattice(const struct shape *shape, const struct region *region)
+{
+    const double c = region->lattice.turn[0], s = region->lattice.turn[1],
+                 tolerance = 1e-9 * region->lattice.dp;
+    if (shape->kind == SHAPE_CIRCLE) return false;
+    if (shape->kind == SHAPE_BOX) return region->lattice.angle == 0;
+    const int edges = shape->kind == SHAPE_POLYGON ? shape->n : shape->n - 1;
+    for (int k = 0; k < edges; k++) {
+        const double *a = shape->pt[k], *b = shape->pt[(k + 1) % shape->n];
+        const double dx = b[0] - a[0], dy = b[1] - a[1];
+        if (fabs(c * dx + s * dy) > tolerance && fabs(c * dy - s * dx) > tolerance) return false;
+    }
+    return true;
+}
+
+enum err layers_find(struct sampler *g, struct region *region)
+{
+    region->layered =
+        arena_alloc(&g->temp, (size_t)region->add.n, sizeof *region->layered, "walls", g->diag);
+    if (!region->layered) return ERR_MEMORY;
+    if (region->kind != KIND_WALL) return ERR_OK;
+    const struct shape_list *const minus = &g->scene->wall[region->body].minus;
+    bool all = false;
+    for (int k = 0; k < minus->n; k++) all |= !along_lattice(&minus->item[k], region);
+    for (int k = 0; k < region->add.n; k++) {
+        const struct shape *const shape = &region->list->item[region->add.shape[k]];
+        region->layered[k] = all || !along_lattice(shape, region);
+        region->has_layers |= region->layered[k];
+    }
+    return ERR_OK;
+}
+
+/* --- loops --- */
+
+/* An outline with the wall on its left. */
+struct loop {
+    int n;
+    double (*pt)[2];
+    bool open; /* no edge from the last point to the first */
+};
+
+static int edges_of(const struct loop *o) { return o->open ? o->n - 1 : o->n; }
+
+static double twice_area(const struct loop *o)
+{
+    double sum = 0;
+    for (int k = 0; k < o->n; k++) {
+        const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n], *base = o->pt[0];
+        sum += (a[0] - base[0]) * (b[1] - base[1]) - (b[0] - base[0]) * (a[1] - base[1]);
+    }
+    return sum;
+}
+
+static enum err loop_of_circle(const struct outline *o, double dp, struct loop *to,
+                               struct sampler *g)
+{
+    const double wanted = 2 * PI * o->radius / dp * PARTS;
+    to->n = wanted < 32 ? 32 : wanted > 1e6 ? 1000000 : (int)wanted;
+    to->pt = arena_alloc(&g->temp, (size_t)to->n, sizeof *to->pt, "walls", g->diag);
+    if (!to->pt) return ERR_MEMORY;
+    for (int k = 0; k < to->n; k++) {
+        to->pt[k][0] = o->centre[0] + o->radius * cos(2 * PI * k / to->n);
+        to->pt[k][1] = o->centre[1] + o->radius * sin(2 * PI * k / to->n);
+    }
+    return ERR_OK;
+}
+
+static void turn_round(struct loop *o)
+{
+    for (int k = 0; 2 * k < o->n - 1; k++) {
+        double kept[2];
+        memcpy(kept, o->pt[k], sizeof kept);
+        memcpy(o->pt[k], o->pt[o->n - 1 - k], sizeof kept);
+        memcpy(o->pt[o->n - 1 - k], kept, sizeof kept);
+    }
+}
+
+/* The outline of a piece, or the drawn side of a polyline, from its pieces `first` to `end`. */
+static enum err make_loop(const struct outlines *o, int first, int end, bool polyline,
+                          bool wall_inside, double dp, struct loop *to, struct sampler *g)
+{
+    const struct outline *const piece = &o->item[first];
+    *to = (struct loop){.n = polyline ? end - first + 1 : piece->n, .open = polyline};
+    if (piece->n == 0)
+        TRY(loop_of_circle(piece, dp, to, g));
+    else {
+        to->pt = arena_alloc(&g->temp, (size_t)to->n, sizeof *to->pt, "walls", g->diag);
+        if (!to->pt) return ERR_MEMORY;
+        for (int k = 0; k < to->n; k++)
+            memcpy(to->pt[k],
+                   !polyline       ? piece->pt[k]
+                   : k < to->n - 1 ? piece[k].pt[0]
+                                   : piece[k - 1].pt[1],
+                   sizeof *to->pt);
+    }
+    const struct loop quad = {.n = piece->n, .pt = piece->pt};
+    if ((twice_area(polyline ? &quad : to) > 0) != wall_inside) turn_round(to);
+    return ERR_OK;
+}
+
+/* --- faces --- */
+
+static bool in_any(const struct outlines *o, const bool *which, double x, double y, double *scratch)
+{
+    for (int k = 0; k < o->n; k++)
+        if ((!which || which[k]) && outline_contains(&o->item[k], x, y, scratch)) return true;
+    return false;
+}
+
+static bool in_wall(const struct layers *l, double x, double y)
+{
+    return in_any(&l->region->add, NULL, x, y, l->g->scratch) &&
+           !in_any(&l->region->minus, NULL, x, y, l->g->scratch);
+}
+
+/* Whether a point is in a piece that is sampled on the lattice. */
+static bool on_the_lattice(const struct layers *l, double x, double y)
+{
+    const struct region *const r = l->region;
+    for (int k = 0; k < r->add.n; k++)
+        if (!r->layered[k] && outline_contains(&r->add.item[k], x, y, l->g->scratch)) return true;
+    return false;
+}
+
+/* One edge of a loop. */
+struct edge {
+    double a[2], along[2], in[2], length;
+    int parts;
+};
+
+static struct edge edge_of(const struct loop *o, int k, double dp)
+{
+    const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n];
+    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    struct edge e = {.a = {a[0], a[1]}, .length = length};
+    if (length <= 1e-9 * dp) return e;
+    e.along[0] = (b[0] - a[0]) / length;
+    e.along[1] = (b[1] - a[1]) / length;
+    e.in[0] = -e.along[1];
+    e.in[1] = e.along[0];
+    e.parts = 1 + (int)min2(1e8, length / dp * PARTS);
+    return e;
+}
+
+static void part_of(const struct edge *e, int k, double depth, double at[2])
+{
+    const double s = (k + 0.5) * e->length / e->parts;
+    for (int c = 0; c < 2; c++) at[c] = e->a[c] + s * e->along[c] + depth * e->in[c];
+}
+
+/* Whether a part of an edge is a face: wall on its left, none on its right. */
+static bool exposed(const struct layers *l, const struct edge *e, int k)
+{
+    double left[2], right[2];
+    part_of(e, k, 1e-3 * l->dp, left);
+    part_of(e, k, -1e-3 * l->dp, right);
+    return in_wall(l, left[0], left[1]) && !in_wall(l, right[0], right[1]);
+}
+
+static enum err add_faces(struct layers *l, struct face_set *set, const struct loop *o)
+{
+    for (int k = 0; k < edges_of(o); k++) {
+        const struct edge e = edge_of(o, k, l->dp);
+        for (int j = 0; j < e.parts; j++) {
+            double at[2];
+            part_of(&e, j, 0, at);
+            if (exposed(l, &e, j)) TRY(add_point(&set->grid, l->g, at[0], at[1]));
+        }
+    }
+    return ERR_OK;
+}
+
+/* --- layers --- */
+
+/* Points of a layer before they are spaced evenly. */
+struct trace {
+    const struct face_set *set;
+    double depth;
+    int64_t n, capacity;
+    double (*pt)[2];
+};
+
+static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
+{
+    if (any_within(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
+        !in_wall(l, at[0], at[1]) || on_the_lattice(l, at[0], at[1]))
+        return ERR_OK;
+    if (t->n == t->capacity) {
+        const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
+        double(*pt)[2] =
+            arena_alloc(&l->g->temp, (size_t)capacity, sizeof *pt, "walls", l->g->diag);
+        if (!pt) return ERR_MEMORY;
+        if (t->n) memcpy(pt, t->pt, (size_t)t->n * sizeof *pt);
+        t->pt = pt;
+        t->capacity = capacity;
+    }
+    memcpy(t->pt[t->n++], at, 2 * sizeof *at);
+    return ERR_OK;
+}
+
+/* The arc around a concave corner between two edges. */
+static enum err trace_corner(struct layers *l, struct trace *t, const struct edge *e,
+                             const struct edge *next)
+{
+    const double depth = t->depth;
+    const double turn = atan2(e->along[0] * next->along[1] - e->along[1] * next->along[0],
+                              e->along[0] * next->along[0] + e->along[1] * next->along[1]);
+    if (!(turn < 0) || !exposed(l, e, e->parts - 1) || !exposed(l, next, 0)) return ERR_OK;
+    const int parts = 1 + (int)(-turn * depth / l->dp * PARTS);
+    for (int k = 0; k < parts; k++) {
+        const double angle = turn * (k + 0.5) / parts, c = cos(angle), s = sin(angle);
+        const double at[2] = {next->a[0] + depth * (c * e->in[0] - s * e->in[1]),
+                              next->a[1] + depth * (c * e->in[1] + s * e->in[0])};
+        TRY(trace_add(l, t, at));
+    }
+    return ERR_OK;
+}
+
+static enum err trace_loop(struct layers *l, struct trace *t, const struct loop *o)
+{
+    const int edges = edges_of(o);
+    for (int k = 0; k < edges; k++) {
+        const bool last = o->open && k == edges - 1;
+        const struct edge e = edge_of(o, k, l->dp), next = edge_of(o, (k + 1) % edges, l->dp);
+        for (int j = 0; j < e.parts; j++) {
+            double at[2];
+            part_of(&e, j, t->depth, at);
+            if (exposed(l, &e, j)) TRY(trace_add(l, t, at));
+        }
+        if (e.parts && next.parts && !last) TRY(trace_corner(l, t, &e, &next));
+    }
+    return ERR_OK;
+}
+
+static double gap(const struct trace *t, int64_t a, int64_t b)
+{
+    a %= t->n;
+    b %= t->n;
+    return hypot(t->pt[b][0] - t->pt[a][0], t->pt[b][1] - t->pt[a][1]);
+}
+
+/* Adds a point unless another one stands for its place already. */
+static enum err offer(struct layers *l, double x, double y)
+{
+    if (any_within(&l->points, x, y, too_near * l->dp)) return ERR_OK;
+    return add_point(&l->points, l->g, x, y);
+}
+
+/* Points at equal distances along the trace from `first` to `last`. */
+static enum err space_out(struct layers *l, const struct trace *t, int64_t first, int64_t last)
+{
+    double length = 0;
+    for (int64_t k = first; k < last; k++) length += gap(t, k, k + 1);
+    const double count = max2(1, round(length / l->dp)), step = length / count;
+    double passed = 0, wanted = 0.5 * step;
+    int64_t k = first;
+    for (double n = 0; n < count; n++, wanted += step) {
+        while (k < last - 1 && passed + gap(t, k, k + 1) < wanted) {
+            passed += gap(t, k, k + 1);
+            k++;
+        }
+        const double *a = t->pt[k % t->n], *b = t->pt[(k < last ? k + 1 : k) % t->n];
+        const double between = gap(t, k, k < last ? k + 1 : k);
+        const double share = between > 0 ? (wanted - passed) / between : 0;
+        TRY(offer(l, a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])));
+    }
+    return ERR_OK;
+}
+
+/* A trace is cut where it leaps; one that nowhere does is closed. */
+static enum err space_runs(struct layers *l, const struct trace *t)
+{
+    const double leap = 0.5 * l->dp;
+    int64_t start = 0;
+    while (start < t->n && gap(t, start + t->n - 1, start) <= leap) start++;
+    if (start == t->n) return t->n ? space_out(l, t, 0, t->n) : ERR_OK;
+    for (int64_t k = start; k < start + t->n;) {
+        int64_t last = k;
+        while (last + 1 < start + t->n && gap(t, last, last + 1) <= leap) last++;
+        TRY(space_out(l, t, k, last));
+        k = last + 1;
+    }
+    return ERR_OK;
+}
+
+/* --- all of it --- */
+
+static const struct shape *shape_of(const struct region *r, int piece)
+{
+    return &r->list->item[r->add.shape[piece]];
+}
+
+static bool is_polyline(const struct region *r, int piece)
+{
+    return shape_of(r, piece)->kind == SHAPE_POLYLINE;
+}
+
+typedef enum err visitor(struct layers *, struct face_set *, const struct loop *);
+
+/* Calls for each loop of a set; `minus` bounds those that are no polylines. */
+static enum err each_loop(struct layers *l, struct face_set *set, visitor *visit)
+{
+    const struct region *const r = l->region;
+    struct loop loop;
+    if (set->end > set->first) {
+        TRY(make_loop(&r->add, set->first, set->end, true, true, l->dp, &loop, l->g));
+        return visit(l, set, &loop);
+    }
+    for (int k = 0; k < r->add.n; k++) {
+        if (!r->layered[k] || is_polyline(r, k)) continue;
+        TRY(make_loop(&r->add, k, k + 1, false, true, l->dp, &loop, l->g));
+        TRY(visit(l, set, &loop));
+    }
+    for (int k = 0; k < r->minus.n; k++) {
+        TRY(make_loop(&r->minus, k, k + 1, false, false, l->dp, &loop, l->g));
+        TRY(visit(l, set, &loop));
+    }
+    return ERR_OK;
+}
+
+enum err layers_create(struct layers *l, struct sampler *g, const struct region *region)
+{
+    const double dp = region->lattice.dp;
+    *l = (struct layers){.g = g, .region = region, .dp = dp, .points = {.side = dp}};
+    l->set = arena_alloc(&g->temp, (size_t)region->add.n + 1, sizeof *l->set, "walls", g->diag);
+    if (!l->set) return ERR_MEMORY;
+    l->set[l->n_sets++] =
+        (struct face_set){.spacing = dp, .depth = dp * (1 + ceil(2 * g->scene->h / dp))};
+    for (int k = 0, end; k < region->add.n; k = end) {
+        for (end = k + 1; end < region->add.n && region->add.shape[end] == region->add.shape[k];)
+            end++;
+        if (!region->layered[k] || !is_polyline(region, k)) continue;
+        const double thick = fabs(shape_of(region, k)->size), count = max2(1, round(thick / dp));
+        l->set[l->n_sets++] =
+            (struct face_set){.spacing = thick / count, .depth = thick, .first = k, .end = end};
+    }
+    for (int k = 0; k < l->n_sets; k++) {
+        l->set[k].grid.side = dp;
+        TRY(each_loop(l, &l->set[k], add_faces));
+    }
+    return ERR_OK;
+}
+
+enum err layers_take(struct layers *l, double x, double y)
+{
+    TRY(add_point(&l->points, l->g, x, y));
+    l->first = l->points.n;
+    return ERR_OK;
+}
+
+static enum err trace_all(struct layers *l, struct face_set *set, const struct loop *o)
+{
+    for (double layer = 0.5; layer * set->spacing < set->depth; layer++) {
+        struct trace t = {.set = set, .depth = layer * set->spacing};
+        TRY(trace_loop(l, &t, o));
+        TRY(space_runs(l, &t));
+    }
+    return ERR_OK;
+}
+
+enum err layers_trace(struct layers *l)
+{
+    for (int k = 0; k < l->n_sets; k++) TRY(each_loop(l, &l->set[k], trace_all));
+    return ERR_OK;
+}
+
+enum err layers_fill(struct layers *l, double x, double y)
+{
+    for (int k = 0; k < l->n_sets; k++)
+        if (any_within(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
+    return offer(l, x, y);
+}
