@@ -1,6 +1,6 @@
 # sphfsi: two-dimensional fluid-structure interaction with smoothed particle hydrodynamics
 #
-#   make                 ./sphfsi and build/release/libsphfsi.a
+#   make                 ./sphfsi, build/release/libsphfsi.a and libsphfsi.so
 #   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
 #   make test            build and run the tests           (FILTER=cells for some of them)
 #   make test-sanitize   the quick tests under ASan and UBSan
@@ -60,7 +60,7 @@ PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
 # --- flags (CMakeLists.txt lists the same ones; tools/check_style.py compares them) ---
 # No contraction, no reassociation: the same bits from every compiler and instruction set.
-COMMON := -std=gnu11 -pthread -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
+COMMON := -std=gnu11 -pthread -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
 WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
 OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
@@ -96,7 +96,11 @@ DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
 FULL_VERSION := $(VERSION)$(if $(DESCRIBE),+$(DESCRIBE))
 
 # --- files ---
+# What programs link shows sphfsi_... alone; CORE, for tests and benches, shows all between files.
+CORE    := $(B)/core.a
 LIB     := $(B)/libsphfsi.a
+SHARED  := $(B)/libsphfsi.so
+ABI     := $(basename $(VERSION))
 # One of a build folder of its own (B=...) must not take the place of ./sphfsi.
 PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
 LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/*.c))) \
@@ -117,7 +121,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(PROGRAM) $(LIB)
+all: $(PROGRAM) $(LIB) $(SHARED)
 
 help:
 	@sed -n '/^#/!q; s/^# \{0,1\}//p' Makefile
@@ -146,8 +150,20 @@ $(B)/src/app/embedded.c: tools/embed.sh $(EMBEDDED) $(B)/embedded
 $(B)/src/app/embedded.o: $(B)/src/app/embedded.c $(B)/flags
 	$(Q)$(COMPILE) -MMD -MP -c -o $@ $<
 
-$(LIB): $(LIB_OBJ)
+$(CORE): $(LIB_OBJ)
 	$(Q)rm -f $@ && $(AR) qcs $@ $^
+
+# One object, in which what is hidden is local. Apple's linker does that itself.
+DARWIN := $(filter Darwin,$(shell uname))
+LD_R   := $(if $(DARWIN),$(CC) -r -nostdlib,$(shell $(CC) -print-prog-name=ld) -r)
+LOCAL  := $(if $(DARWIN),true,$(shell $(CC) -print-prog-name=objcopy) --localize-hidden)
+$(LIB): $(LIB_OBJ)
+	$(Q)$(LD_R) -o $(@:.a=.o) $^ && $(LOCAL) $(@:.a=.o) && rm -f $@ && $(AR) rcs $@ $(@:.a=.o)
+
+$(SHARED): $(LIB_OBJ)
+	$(Q)$(COMPILE) $(LDFLAGS) -shared -o $@ $^ \
+	  $(if $(DARWIN),,-Wl$(comma)-soname$(comma)libsphfsi.so.$(ABI) -Wl$(comma)--exclude-libs$(comma)ALL) \
+	  $(HDF5_LIBS) -lm
 
 $(PROGRAM): $(B)/src/app/main.o $(LIB)
 	$(Q)$(LINK)
@@ -159,17 +175,17 @@ $(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
 	$(Q)$(COMPILE) $(UNITY_CFLAGS) -w -include stdio.h '-DUNITY_OUTPUT_CHAR(c)=fputc(c, stderr)' \
 	  -c -o $@ $<
 
-$(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(LIB)
+$(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(CORE)
 	$(Q)$(LINK) $(WRAP)
 
 # Puts itself between the program and its memory (CMakeLists.txt, too).
 $(B)/tests/fault/test_alloc: private WRAP := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc \
   aligned_alloc free fopen fdopen opendir)
 
-$(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(LIB)
+$(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(CORE)
 	$(Q)$(LINK)
 
-test: $(PROGRAM) $(TESTS) $(BENCHES)
+test: $(PROGRAM) $(SHARED) $(TESTS) $(BENCHES)
 	@SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER='$(FILTER)' tests/run.sh $(B)
 
 test-neon:
@@ -267,8 +283,8 @@ validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
 	$(Q)BUILD='$(B)' OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py --program '$(PROGRAM)' \
 	  $(if $(QUICK),--quick) $(if $(KEEP),--keep) $(ARGS)
 
-check: $(PROGRAM) $(LIB)
-	@$(PROJECT_PYTHON) tools/check_style.py --archive $(LIB)
+check: $(PROGRAM) $(LIB) $(SHARED)
+	@$(PROJECT_PYTHON) tools/check_style.py --library $(LIB) --library $(SHARED)
 	@$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM) --check
 
 docs: $(PROGRAM)
@@ -282,17 +298,19 @@ info:
 	@echo "sphfsi   $(FULL_VERSION)"; echo "compile  $(COMPILE)"; echo "link     $(HDF5_LIBS) -lm"; \
 	 echo "python   $(PROJECT_PYTHON)"; echo "unity    $(or $(UNITY_SRC),not looked for yet)"
 
-install: $(PROGRAM) $(LIB)
+install: $(PROGRAM) $(LIB) $(SHARED)
 	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin lib/pkgconfig lib/cmake/sphfsi include)
 	install -m 755 $(PROGRAM) $(DESTDIR)$(PREFIX)/bin/sphfsi
 	install -m 644 $(LIB) $(DESTDIR)$(PREFIX)/lib
+	install -m 755 $(SHARED) $(DESTDIR)$(PREFIX)/lib/libsphfsi.so.$(VERSION)
+	ln -sf libsphfsi.so.$(VERSION) $(DESTDIR)$(PREFIX)/lib/libsphfsi.so.$(ABI)
+	ln -sf libsphfsi.so.$(ABI) $(DESTDIR)$(PREFIX)/lib/libsphfsi.so
 	install -m 644 include/sphfsi.h $(DESTDIR)$(PREFIX)/include
-	@sed -e 's|@CMAKE_INSTALL_PREFIX@|$(PREFIX)|' -e 's|@PROJECT_VERSION@|$(VERSION)|' \
+	@for f in sphfsi.pc:pkgconfig sphfsiConfig.cmake:cmake/sphfsi sphfsiConfigVersion.cmake:cmake/sphfsi; do \
+	   sed -e 's|@CMAKE_INSTALL_PREFIX@|$(PREFIX)|' -e 's|@PROJECT_VERSION@|$(VERSION)|' \
 	     -e 's|@SPHFSI_LINK@|$(HDF5_LIBS) $(OMP) -pthread -lm|' -e 's|@CMAKE_INSTALL_LIBDIR@|lib|' \
-	     tools/sphfsi.pc.in >$(DESTDIR)$(PREFIX)/lib/pkgconfig/sphfsi.pc
-	@sed 's|@SPHFSI_OPENMP@|$(if $(filter serial,$(CONFIG)),OFF,ON)|' tools/sphfsiConfig.cmake.in \
-	  >$(DESTDIR)$(PREFIX)/lib/cmake/sphfsi/sphfsiConfig.cmake
-	@echo 'set(PACKAGE_VERSION $(VERSION))' >$(DESTDIR)$(PREFIX)/lib/cmake/sphfsi/sphfsiConfigVersion.cmake
+	     -e 's|@SPHFSI_OPENMP@|$(if $(filter serial,$(CONFIG)),OFF,ON)|' -e 's|@SPHFSI_ABI@|$(ABI)|' \
+	     tools/$${f%:*}.in >$(DESTDIR)$(PREFIX)/lib/$${f#*:}/$${f%:*}; done
 
 dist:
 	@mkdir -p build

@@ -86,15 +86,16 @@ def check_flags():
 
 
 def check_symbols(library):
-    """What the library shows to the linker's dynamic side begins with sphfsi_."""
+    """What the library shows to programs that are linked with it begins with sphfsi_."""
     tool = shutil.which("readelf")
     if not tool:
         print("exported symbols not checked: no readelf here")
         return
-    table = subprocess.run([tool, "-sW", library], capture_output=True, text=True, check=True)
+    which = "--dyn-syms" if library.suffix == ".so" else "-s"
+    table = subprocess.run([tool, which, "-W", library], capture_output=True, text=True, check=True)
     for line in table.stdout.splitlines():
         column = line.split()
-        if len(column) == 8 and column[4] in ("GLOBAL", "WEAK") and column[5] == "DEFAULT" \
+        if len(column) == 8 and column[4] in ("GLOBAL", "WEAK") \
                 and column[6] != "UND" and not column[7].startswith("sphfsi_"):
             report(library, 0, f"exports {column[7]}; hide it or name it sphfsi_...")
 
@@ -134,7 +135,8 @@ def check_format(paths):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--archive", type=Path, help="library whose exported symbols to check")
+    parser.add_argument("--library", type=Path, action="append", default=[],
+                        help="library whose exported symbols to check")
     args = parser.parse_args()
 
     code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases", "examples")
@@ -150,8 +152,8 @@ def main():
     check_flags()
     check_commits()
     check_format([path for path in code if path.suffix in (".c", ".h")])
-    if args.archive:
-        check_symbols(args.archive.resolve())
+    for library in args.library:
+        check_symbols(library.resolve())
     print(f"style: {errors} error{'s' * (errors != 1)}")
     return errors > 0
 

@@ -31,7 +31,12 @@ ways=0
 if command -v pkg-config >/dev/null; then
     export PKG_CONFIG_PATH=$dir/usr/lib/pkgconfig
     cc spring_wall.c $(pkg-config --cflags --libs sphfsi) -o spring_wall || fail "pkg-config"
-    moves pkg-config
+    readelf -d spring_wall 2>/dev/null | grep -q 'NEEDED.*hdf5' && fail "pkg-config: links HDF5 by itself"
+    LD_LIBRARY_PATH=$dir/usr/lib moves pkg-config
+    rm spring_wall
+    cc spring_wall.c $(pkg-config --cflags --static --libs sphfsi | sed 's/-lsphfsi/-l:libsphfsi.a/') \
+        -o spring_wall || fail "pkg-config --static"
+    moves pkg-config-static
     rm spring_wall
     ways=$((ways + 1))
 fi
@@ -39,14 +44,25 @@ if command -v cmake >/dev/null; then
     cat >CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.20)
 project(coupled LANGUAGES C)
-find_package(sphfsi REQUIRED)
+find_package(sphfsi 0.1 REQUIRED COMPONENTS ${parts})
 add_executable(spring_wall spring_wall.c)
-target_link_libraries(spring_wall PRIVATE sphfsi::sphfsi)
+target_link_libraries(spring_wall PRIVATE sphfsi::${library})
 END
-    cmake -B build -DCMAKE_PREFIX_PATH="$dir/usr" >cmake.log 2>&1 && cmake --build build >>cmake.log 2>&1 ||
-        { cat cmake.log; fail "find_package"; }
-    cp build/spring_wall .
-    [ $ways -gt 0 ] || moves cmake # the program is the same
+    for library in sphfsi static; do
+        cmake -B build-$library -DCMAKE_PREFIX_PATH="$dir/usr" -Dlibrary=$library \
+            -Dparts="$([ $library = sphfsi ] || echo static)" >cmake.log 2>&1 &&
+            cmake --build build-$library >>cmake.log 2>&1 ||
+            { cat cmake.log; fail "find_package: sphfsi::$library"; }
+        cp build-$library/spring_wall .
+        moves cmake-$library
+    done
     ways=$((ways + 1))
 fi
 [ $ways -gt 0 ] || { echo "neither pkg-config nor cmake is here"; exit 77; }
+
+# Symbols: programs see sphfsi_... and nothing else.
+if command -v nm >/dev/null; then
+    { nm -g --defined-only usr/lib/libsphfsi.a; nm -D --defined-only usr/lib/libsphfsi.so; } |
+        awk 'NF == 3 { n++; if ($3 !~ /^sphfsi_/) { print $3; bad = 1 } } END { exit bad || n < 40 }' ||
+        fail "names without sphfsi_ are seen, or none"
+fi
