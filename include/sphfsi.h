@@ -9,10 +9,30 @@
  *     if (!sphfsi_field(s, SPHFSI_FLUID, "x", &x)) printf("%g m\n", ((const double *)x.data)[0]);
  *     sphfsi_free(s);
  *
- * All units are SI; extensive quantities are per metre of depth. Functions that can fail return 0 or an
- * enum sphfsi_status; sphfsi_error() then returns one sentence. The library does not print, does not exit
- * and installs no signal handlers; notes and warnings go to the message callback. Different simulations may
- * be used from different threads at the same time; one simulation only by one thread at a time. */
+ * Units: all are SI; extensive quantities are per metre of depth. Numbers are read and written with a
+ * decimal point, whatever the locale of the program.
+ *
+ * Errors: functions that can fail return 0 or an enum sphfsi_status; sphfsi_error() then returns one
+ * sentence. The library does not print, does not exit and installs no signal handlers; notes and warnings
+ * go to the message callback.
+ *
+ * NULL: a pointer must not be NULL unless its description allows it; the function then returns SPHFSI_INPUT.
+ * Without a simulation sphfsi_time, sphfsi_end_time and sphfsi_time_step return NaN; sphfsi_steps,
+ * sphfsi_count and sphfsi_hash return 0.
+ *
+ * Threads: different simulations may be used from different threads at the same time; one simulation only
+ * by one thread at a time, not always the same one. A second call into a simulation during a call returns
+ * SPHFSI_INPUT. A simulation keeps the number of threads that it was created with. The locale and the
+ * OpenMP settings of the calling thread are the same after a call, and in callbacks, as before the call.
+ *
+ * Callbacks: the thread that called the library calls them, before that call returns and outside of parallel
+ * regions. A callback may call the library. For the simulation or run that it serves, it may only call
+ * sphfsi_time, sphfsi_end_time, sphfsi_time_step, sphfsi_steps, sphfsi_count and sphfsi_field_name. It must
+ * return: neither longjmp nor a C++ exception may leave it.
+ *
+ * Ownership: the caller owns its arguments and may free them after the call; contexts of forces and motions
+ * must exist as long as these are set. The library owns what it returns: texts are constant or valid until
+ * the next call, views until the next step, advance or free. sphfsi_free frees what sphfsi_create made. */
 #ifndef SPHFSI_H
 #define SPHFSI_H
 
@@ -67,7 +87,7 @@ struct sphfsi_requests {
 };
 
 /** What to simulate and how. Zero-initialise, then set what is needed. The library does not refer to it after
- * the call; only sphfsi_create keeps the message callback and its context. */
+ * the call. */
 struct sphfsi_options {
     const char
         *case_path; /**< case file; with case_text: the name in messages and the path that file
@@ -75,7 +95,7 @@ struct sphfsi_options {
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", replace values of the case */
     int n_sets;
-    int threads;  /**< 0: as many as OpenMP offers */
+    int threads;  /**< 0: as many as OpenMP offers to the calling thread */
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 
     /* Of sphfsi_run only. */
@@ -92,12 +112,13 @@ struct sphfsi_options {
     void *context; /**< first argument of the callbacks */
 };
 
-/** A view of a field: no copy, owned by the simulation, read only. Valid until the next step,
- * advance or free; the order of fluid particles changes between steps, their `id` stays. */
+/** A view of a field: owned by the simulation, read only. Valid until the next step, advance or
+ * free; the order of fluid particles changes between steps, their `id` stays. */
 struct sphfsi_view {
-    const void *data; /**< [count] items of the type */
-    int64_t count;
+    const void *data; /**< [count][components] items of the type */
+    int64_t count;    /**< particles */
     enum sphfsi_type type;
+    int components;   /**< 1; of a vector 3, of a stress 6, as in fields.vtkhdf */
     const char *unit; /**< such as "m/s" */
     const char *meaning;
 };
@@ -125,8 +146,9 @@ SPHFSI_API const char *sphfsi_nearest(const char *word, const char *const *names
  * *result with sphfsi_free; on failure *result is NULL. */
 SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,
                                             const struct sphfsi_options *options);
-/** Frees a simulation; NULL is allowed. */
-SPHFSI_API void sphfsi_free(struct sphfsi_simulation *s);
+/** Frees a simulation; NULL is allowed. SPHFSI_INPUT: a callback of the simulation has called it, or
+ * another thread is in a call; the simulation stays. */
+SPHFSI_API enum sphfsi_status sphfsi_free(struct sphfsi_simulation *s);
 
 /** Takes one time step, which ends at `limit` (s) at the latest. SPHFSI_INPUT: `limit` is not later than the
  * time. SPHFSI_GUARD: the state is not sound; the simulation can be read and freed, but not stepped. */
@@ -144,11 +166,19 @@ SPHFSI_API double sphfsi_time_step(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
 
-/** Gives a view of a field by its name: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens
- * (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y (m) and others. p and ddens (1/s) are updated to the present
- * positions first. SPHFSI_INPUT: this kind has no such field in this scene. */
+/** Gives a view of a field by its name; sphfsi_field_name lists the names. Arrays of the particles are not
+ * copied: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y
+ * (m), fx, fy (N/m, the present force of the fluid on the particle) and others. The fields of fields.vtkhdf
+ * are computed in the call: velocity (m/s), density (kg/m^3), pressure (Pa), stress (Pa: xx yy zz xy yz xz),
+ * von_mises (Pa), displacement (m), det_F. Fields that follow from positions, such as p, fx and ddens, are
+ * updated to the present positions first; the state does not change. SPHFSI_INPUT: this kind has no such
+ * field in this scene. */
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
+
+/** Name of the k-th field (from 0) that particles of a kind have in this scene; NULL behind the last. */
+SPHFSI_API const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind,
+                                         int k);
 
 /** Values of a probe of the case now, by the name of its section: as many as the quantity has columns
  * (docs/cases.md), at most SPHFSI_PROBE_COLUMNS. SPHFSI_INPUT: no such probe. */
@@ -166,9 +196,9 @@ struct sphfsi_particles {
     const double *vx, *vy; /**< m/s */
 };
 
-/** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before. It is called at every
- * evaluation of the rates, once or twice a step, and also when pressure is read. So it should depend on its
- * arguments only. The energy ledger does not contain its work. */
+/** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before; n may be 0. It is called
+ * at every evaluation of the rates, once or twice a step, and also when pressure is read. So it should depend
+ * on its arguments only. The energy ledger does not contain its work. */
 typedef void sphfsi_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay);
 
 /** Sets the force on fluid or solid; NULL removes it. Clamped particles do not move. */
@@ -176,7 +206,8 @@ SPHFSI_API enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum
                                                sphfsi_force *force, void *context);
 
 /** A motion of walls at a time: displacement from their position in the case (m), velocity and acceleration;
- * all are zero before. The acceleration enters the pressure on the wall. */
+ * all are zero before. The acceleration enters the pressure on the wall. Times may go back. While one is set,
+ * the calling thread alone steps solids that have moving clamps or contact. */
 typedef void sphfsi_motion(void *context, double time, double d[2], double v[2], double a[2]);
 
 /** Replaces [motion NAME] of the case by a user's motion, from the next step on; NULL restores it. */
@@ -204,6 +235,9 @@ SPHFSI_API enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options
  * nothing but a cache of costs. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
 
+/** Prints the same as one JSON text through the message callback; docs/formats.md lists its keys. */
+SPHFSI_API enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options);
+
 /** Writes the case in effect, every default spelled out, to a file ("/dev/stdout" is one). */
 SPHFSI_API enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options,
                                                const char *path);
@@ -217,10 +251,10 @@ SPHFSI_API enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options);
 
 /** Prints, line by line through the message callback, every section and key of a case file, in Markdown. The
  * other options may be zero. */
-SPHFSI_API void sphfsi_keys(const struct sphfsi_options *options);
+SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 
 /** A commented case as a template; NULL, with the known names in sphfsi_error(), if no template has this
- * name. sphfsi_template_name: the k-th name; NULL at the end of the list. */
+ * name. sphfsi_template_name: the k-th name; NULL behind the last. */
 SPHFSI_API const char *sphfsi_template(const char *name);
 SPHFSI_API const char *sphfsi_template_name(int k);
 

@@ -1,18 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * The functions of include/sphfsi.h. */
-#include "app/budget.h"
-#include "app/explain.h"
-#include "base/files.h"
-#include "app/forecast.h"
-#include "app/inspect.h"
-#include "app/manual.h"
-#include "case/params.h"
-#include "app/preview.h"
+ * The functions of include/sphfsi.h on a simulation that the calling program steps. */
+#include "app/call.h"
 #include "output/probes.h"
-#include "app/refine.h"
-#include "app/run.h"
+#include "app/session.h"
+#include "output/snapshot.h"
 
-#include <stdio.h>
+#include <math.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,125 +19,209 @@ _Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)
                    (int)SPHFSI_SOLID == (int)KIND_SOLID,
                "the public kinds are those of particles.h");
 
-/* A force that the calling program has set. */
-struct user_force {
+/* A force or a motion that the calling program has set. */
+struct user_function {
+    struct sphfsi_simulation *of;
     sphfsi_force *force;
+    sphfsi_motion *motion;
     void *context;
 };
 
 struct sphfsi_simulation {
     struct session session;
     struct probes probes;
-    struct user_force force[KIND_COUNT];
-    bool stopped; /* by a guard */
+    struct user_function force[KIND_COUNT];
+    struct user_function *motion;          /* [n_motion]; NULL: none */
+    double *computed[KIND_COUNT][D_COUNT]; /* fields that are computed when they are asked for */
+    int threads;                           /* of its parallel regions */
+    struct host host;                      /* what the call that is going on gives back */
+    atomic_bool busy;                      /* a call is going on */
+    bool stopped;                          /* by a guard */
 };
 
-static _Thread_local char last_error[sizeof((struct diag *)0)->text];
-static _Thread_local char more_errors[sizeof((struct diag *)0)->more];
+/* --- a call --- */
 
-static enum sphfsi_status result(const struct diag *d, enum err e)
+/* Begins a call of a function that takes the whole simulation; `end` ends it, unless this has failed. */
+static enum err begin(struct sphfsi_simulation *s, const char *name, struct diag *d)
 {
-    if (e) snprintf(last_error, sizeof last_error, "%s", d->text);
-    if (e) snprintf(more_errors, sizeof more_errors, "%s", d->more);
-    return (enum sphfsi_status)e;
+    *d = (struct diag){.code = ERR_OK};
+    if (!s) return diag_fail(d, ERR_INPUT, "%s: the simulation is NULL", name);
+    if (atomic_exchange(&s->busy, true))
+        return diag_fail(d, ERR_INPUT,
+                         "%s: this simulation is within another call, of another thread or one "
+                         "that has called back; call it after that has returned",
+                         name);
+    const enum err e = host_enter(&s->host, s->threads, d);
+    if (e) atomic_store(&s->busy, false);
+    return e;
 }
 
-const char *sphfsi_version(void) { return SPHFSI_VERSION; }
-
-const char *sphfsi_error(void) { return last_error; }
-
-const char *sphfsi_more_errors(void) { return more_errors; }
-
-int sphfsi_exit_status(enum sphfsi_status status, int signal_number)
+static enum sphfsi_status end(struct sphfsi_simulation *s, const struct diag *d, enum err e)
 {
-    if (status == SPHFSI_INTERRUPT && signal_number > 0) return 128 + signal_number;
-    return err_status((enum err)status);
+    host_use(s->host);
+    atomic_store(&s->busy, false);
+    return call_result(d, e);
 }
 
-const char *sphfsi_nearest(const char *word, const char *const *names, int n)
+static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi_options *o,
+                                struct diag *d)
 {
-    struct nearest best = {0};
-    for (int k = 0; k < n; k++) nearest_offer(&best, word, names[k]);
-    return best.name;
+    TRY(session_open(&s->session, o, d));
+    struct simulation *const sim = &s->session.simulation;
+    const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
+    if (e) session_close(&s->session);
+    s->threads = thread_count();
+    return e;
 }
 
-enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result_,
+enum sphfsi_status sphfsi_create(struct sphfsi_simulation **created,
                                  const struct sphfsi_options *options)
 {
-    struct diag d = session_diag(options);
-    *result_ = NULL;
+    struct call c;
+    if (!created) return call_without("create", "place of the result");
+    *created = NULL;
+    enum err e = call_begin(&c, "create", options);
+    if (e) return call_end(&c, e);
     struct sphfsi_simulation *s = calloc(1, sizeof *s);
     if (!s)
-        return result(&d,
-                      diag_fail(&d, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *s));
-    enum err e = session_open(&s->session, options, &d);
-    if (!e) {
-        struct simulation *const sim = &s->session.simulation;
-        e = probes_create(&s->probes, sim, &sim->arena, &d);
-        if (e) session_close(&s->session);
-    }
+        e = diag_fail(&c.diag, ERR_MEMORY, "simulation: no memory for %zu bytes", sizeof *s);
+    else
+        e = open_simulation(s, &c.options, &c.diag);
     if (e)
         free(s);
     else
-        *result_ = s;
-    return result(&d, e);
+        *created = s;
+    return call_end(&c, e);
 }
 
-void sphfsi_free(struct sphfsi_simulation *s)
+enum sphfsi_status sphfsi_free(struct sphfsi_simulation *s)
 {
-    if (!s) return;
+    struct diag d;
+    if (!s) return SPHFSI_OK;
+    const enum err e = begin(s, "free", &d);
+    if (e) return call_result(&d, e);
+    const enum sphfsi_status status = end(s, &d, ERR_OK);
     session_close(&s->session);
     free(s);
+    return status;
+}
+
+static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
+{
+    struct simulation *const sim = &s->session.simulation;
+    if (s->stopped)
+        return diag_fail(d, ERR_GUARD,
+                         "step: a guard has stopped this simulation; create a new one");
+    if (!(limit > sim->state.time))
+        return diag_fail(d, ERR_INPUT,
+                         "step: the limit %.17g s is not later than the simulated time %.17g s",
+                         limit, sim->state.time);
+    const enum err e = simulation_step(sim, limit, d);
+    s->stopped = e == ERR_GUARD;
+    return e;
 }
 
 enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
 {
-    struct diag d = {.code = ERR_OK};
-    struct simulation *const sim = &s->session.simulation;
-    if (s->stopped)
-        return result(&d, diag_fail(&d, ERR_GUARD,
-                                    "step: a guard has stopped this simulation; create a new one"));
-    if (!(limit > sim->state.time))
-        return result(&d, diag_fail(&d, ERR_INPUT,
-                                    "step: the limit %.17g s is not later than the "
-                                    "simulated time %.17g s",
-                                    limit, sim->state.time));
-    const enum err e = simulation_step(sim, limit, &d);
-    s->stopped = e == ERR_GUARD;
-    return result(&d, e);
+    struct diag d;
+    enum err e = begin(s, "step", &d);
+    if (e) return call_result(&d, e);
+    e = step(s, limit, &d);
+    return end(s, &d, e);
 }
 
 enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time)
 {
+    struct diag d;
+    enum err e = begin(s, "advance", &d);
+    if (e) return call_result(&d, e);
+    if (!isfinite(time))
+        e = diag_fail(&d, ERR_INPUT, "advance: the time %g s is not a finite number", time);
     do {
-        const enum sphfsi_status status = sphfsi_step(s, time);
-        if (status) return status;
-    } while (sphfsi_time(s) < time);
-    return SPHFSI_OK;
+        if (!e) e = step(s, time, &d);
+    } while (!e && sphfsi_time(s) < time);
+    return end(s, &d, e);
 }
 
-double sphfsi_time(const struct sphfsi_simulation *s) { return s->session.simulation.state.time; }
+double sphfsi_time(const struct sphfsi_simulation *s)
+{
+    return s ? s->session.simulation.state.time : (double)NAN;
+}
 
-double sphfsi_end_time(const struct sphfsi_simulation *s) { return s->session.scene.top.end_time; }
+double sphfsi_end_time(const struct sphfsi_simulation *s)
+{
+    return s ? s->session.scene.top.end_time : (double)NAN;
+}
 
 double sphfsi_time_step(const struct sphfsi_simulation *s)
 {
-    return s->session.simulation.state.dt;
+    return s ? s->session.simulation.state.dt : (double)NAN;
 }
 
 int64_t sphfsi_steps(const struct sphfsi_simulation *s)
 {
-    return s->session.simulation.state.steps;
+    return s ? s->session.simulation.state.steps : 0;
 }
 
 int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind)
 {
-    return (unsigned)kind < KIND_COUNT ? s->session.simulation.kind[kind].n : 0;
+    return s && (unsigned)kind < KIND_COUNT ? s->session.simulation.kind[kind].n : 0;
 }
 
 uint64_t sphfsi_hash(struct sphfsi_simulation *s)
 {
-    return simulation_hash(&s->session.simulation);
+    struct diag d;
+    const enum err e = begin(s, "hash", &d);
+    if (e) return call_result(&d, e), 0;
+    const uint64_t hash = simulation_hash(&s->session.simulation);
+    end(s, &d, ERR_OK);
+    return hash;
+}
+
+/* --- fields --- */
+
+/* The arrays of snapshots that the particles have under another name, or not at all. */
+#define POINTDATA(NAME, name, item, width, choice) {D_##NAME, #name, width},
+static const struct {
+    enum data what;
+    const char *name;
+    int width;
+} file_field[] = {
+#include "case/pointdata.def"
+};
+#undef POINTDATA
+
+static bool has_file_field(const struct simulation *s, enum kind kind, enum data what)
+{
+    const struct particles *const p = &s->kind[kind];
+    const bool solid = kind == KIND_SOLID;
+    switch (what) {
+    case D_VELOCITY: return true;
+    case D_DENSITY: return solid || p->dens;
+    case D_PRESSURE: return p->p;
+    case D_STRESS:
+    case D_VON_MISES:
+    case D_DET_F: return solid;
+    case D_DISPLACEMENT: return solid || p->X;
+    default: return false; /* an array of the particles has the name */
+    }
+}
+
+/* The name of the k-th field of a kind, first the arrays of particles; NULL behind the last. */
+static const char *field_name(const struct simulation *s, enum kind kind, int k)
+{
+    if (s->kind[kind].capacity == 0) return NULL;
+    for (int f = 0; f < field_count; f++)
+        if (field_array(&s->kind[kind], &field_table[f]) && k-- == 0) return field_table[f].name;
+    for (size_t f = 0; f < COUNT_OF(file_field); f++)
+        if (has_file_field(s, kind, file_field[f].what) && k-- == 0) return file_field[f].name;
+    return NULL;
+}
+
+const char *sphfsi_field_name(const struct sphfsi_simulation *s, enum sphfsi_kind kind, int k)
+{
+    if (!s || (unsigned)kind >= KIND_COUNT || k < 0) return NULL;
+    return field_name(&s->session.simulation, (enum kind)kind, k);
 }
 
 static enum sphfsi_type type_of(const struct field_info *f)
@@ -152,226 +230,206 @@ static enum sphfsi_type type_of(const struct field_info *f)
     return f->size == 8 ? SPHFSI_INT64 : SPHFSI_INT32;
 }
 
+/* What an evaluation finds and integrators then weigh or exchange. */
+static bool is_evaluated(const struct field_info *f)
+{
+    return f->keep == KEEP_DERIVED || strcmp(f->name, "ax") == 0 || strcmp(f->name, "ay") == 0;
+}
+
+static bool view_array(struct simulation *s, enum kind kind, const char *name,
+                       struct sphfsi_view *view)
+{
+    const struct particles *const p = &s->kind[kind];
+    for (int k = 0; k < field_count; k++) {
+        const struct field_info *f = &field_table[k];
+        if (strcmp(f->name, name) != 0 || !field_array(p, f)) continue;
+        if (is_evaluated(f)) simulation_refresh(s);
+        const void *const data = field_array(p, f); /* integrators exchange arrays */
+        if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
+            solid_show(&s->solid, &s->kind[KIND_SOLID]);
+        if (kind == KIND_FLUID && data == p->p) fluid_show(&s->fluid, &s->kind[KIND_FLUID]);
+        *view = (struct sphfsi_view){data, p->n, type_of(f), 1, f->unit, f->meaning};
+        return true;
+    }
+    return false;
+}
+
+static const char *unit_of(enum data what)
+{
+    switch (what) {
+    case D_VELOCITY: return "m/s";
+    case D_DENSITY: return "kg/m^3";
+    case D_PRESSURE:
+    case D_STRESS:
+    case D_VON_MISES: return "Pa";
+    case D_DISPLACEMENT: return "m";
+    default: return "1";
+    }
+}
+
+static enum err compute(struct sphfsi_simulation *s, enum kind kind, const char *name,
+                        enum data what, int width, struct diag *d)
+{
+    struct simulation *const sim = &s->session.simulation;
+    double **const to = &s->computed[kind][what];
+    const size_t room = (size_t)sim->kind[kind].capacity * (size_t)width;
+    if (!*to) *to = arena_alloc(&sim->arena, room, sizeof **to, name, d);
+    if (!*to) return ERR_MEMORY;
+    simulation_refresh(sim);
+    for (int64_t i = 0; i < sim->kind[kind].n; i++)
+        for (int c = 0; c < width; c++)
+            (*to)[i * width + c] = snapshot_value(what, sim, kind, i, c);
+    return ERR_OK;
+}
+
+static enum err view_computed(struct sphfsi_simulation *s, enum kind kind, const char *name,
+                              struct sphfsi_view *view, struct diag *d)
+{
+    const struct simulation *const sim = &s->session.simulation;
+    for (size_t k = 0; k < COUNT_OF(file_field); k++) {
+        const enum data what = file_field[k].what;
+        if (strcmp(file_field[k].name, name) != 0 || !has_file_field(sim, kind, what)) continue;
+        const int width = file_field[k].width;
+        TRY(compute(s, kind, name, what, width, d));
+        *view = (struct sphfsi_view){s->computed[kind][what], sim->kind[kind].n,
+                                     SPHFSI_DOUBLE,           width,
+                                     unit_of(what),           "as in fields.vtkhdf"};
+        return ERR_OK;
+    }
+    struct nearest best = {0};
+    const char *known;
+    for (int k = 0; (known = field_name(sim, kind, k)); k++) nearest_offer(&best, name, known);
+    return diag_fail(d, ERR_INPUT, "field: %s particles have no field '%.60s' in this scene%s%s",
+                     kind_names[kind], name, best.name ? "; the nearest name is " : "",
+                     best.name ? best.name : "");
+}
+
+static enum err find_field(struct sphfsi_simulation *s, enum sphfsi_kind kind, const char *name,
+                           struct sphfsi_view *view, struct diag *d)
+{
+    if (!name || !view)
+        return diag_fail(d, ERR_INPUT, "field: the %s is NULL", name ? "view" : "name");
+    if ((unsigned)kind >= KIND_COUNT)
+        return diag_fail(d, ERR_INPUT,
+                         "field: %d is no kind of particles; from 0 to %d are possible", (int)kind,
+                         KIND_COUNT - 1);
+    if (view_array(&s->session.simulation, (enum kind)kind, name, view)) return ERR_OK;
+    return view_computed(s, (enum kind)kind, name, view, d);
+}
+
 enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                 const char *name, struct sphfsi_view *view)
 {
-    struct diag d = {.code = ERR_OK};
-    struct simulation *const sim = &s->session.simulation;
-    const struct particles *p = (unsigned)kind < KIND_COUNT ? &sim->kind[kind] : NULL;
-    if (p && (strcmp(name, "p") == 0 || strcmp(name, "ddens") == 0)) simulation_refresh(sim);
-    for (int k = 0; p && k < field_count; k++) {
-        const struct field_info *f = &field_table[k];
-        const void *data = strcmp(f->name, name) == 0 ? field_array(p, f) : NULL;
-        if (!data) continue;
-        if (f->group == G_SOLID && f->keep == KEEP_DERIVED)
-            solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
-        if (kind == SPHFSI_FLUID && data == p->p) fluid_show(&sim->fluid, &sim->kind[KIND_FLUID]);
-        *view = (struct sphfsi_view){data, p->n, type_of(f), f->unit, f->meaning};
-        return SPHFSI_OK;
-    }
-    struct nearest best = {0};
-    for (int k = 0; p && k < field_count; k++)
-        if (field_array(p, &field_table[k])) nearest_offer(&best, name, field_table[k].name);
-    return result(&d,
-                  diag_fail(&d, ERR_INPUT,
-                            "field: %s particles have no field '%.60s' in this "
-                            "scene%s%s",
-                            p ? kind_names[kind] : "these", name,
-                            best.name ? "; the nearest name is " : "", best.name ? best.name : ""));
+    struct diag d;
+    enum err e = begin(s, "field", &d);
+    if (e) return call_result(&d, e);
+    e = find_field(s, kind, name, view, &d);
+    return end(s, &d, e);
 }
 
-enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
-                                double values[SPHFSI_PROBE_COLUMNS])
+/* --- probes --- */
+
+static enum err find_probe(struct sphfsi_simulation *s, const char *name, double *values,
+                           struct diag *d)
 {
-    struct diag d = {.code = ERR_OK};
     const struct scene *const scene = &s->session.scene;
     struct nearest near = {0};
+    if (!name || !values)
+        return diag_fail(d, ERR_INPUT, "probe: the %s NULL", name ? "values are" : "name is");
     for (int k = 0; k < scene->n_probe; k++) {
         const char *const candidate = scene->probe[k].common.name;
         nearest_offer(&near, name, candidate);
         if (strcmp(candidate, name) != 0) continue;
         probes_values(&s->probes, &s->session.simulation, k, values);
-        return SPHFSI_OK;
+        return ERR_OK;
     }
-    return result(&d,
-                  diag_fail(&d, ERR_INPUT, "probe: the case has no [probe %.60s]%s%s", name,
-                            near.name ? "; the nearest name is " : "", near.name ? near.name : ""));
+    return diag_fail(d, ERR_INPUT, "probe: the case has no [probe %.60s]%s%s", name,
+                     near.name ? "; the nearest name is " : "", near.name ? near.name : "");
 }
+
+enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
+                                double values[SPHFSI_PROBE_COLUMNS])
+{
+    struct diag d;
+    enum err e = begin(s, "probe", &d);
+    if (e) return call_result(&d, e);
+    e = find_probe(s, name, values, &d);
+    return end(s, &d, e);
+}
+
+/* --- forces and motions of the program --- */
 
 static void add_user_force(void *context, double time, const struct particles *p, double *ax,
                            double *ay)
 {
-    const struct user_force *const user = context;
+    const struct user_function *const user = context;
     const struct sphfsi_particles view = {time, p->n, p->id, p->body, p->x, p->y, p->vx, p->vy};
+    const struct host mine = host_use(user->of->host);
     user->force(user->context, &view, ax, ay);
+    host_use(mine);
+}
+
+static enum err set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind, sphfsi_force *force,
+                          void *context, struct diag *d)
+{
+    struct simulation *const sim = &s->session.simulation;
+    if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
+        return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
+                         (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
+    s->force[kind] = (struct user_function){.of = s, .force = force, .context = context};
+    return simulation_push(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind], d);
 }
 
 enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                     sphfsi_force *force, void *context)
 {
-    struct diag d = {.code = ERR_OK};
-    struct simulation *const sim = &s->session.simulation;
-    if ((kind != SPHFSI_FLUID && kind != SPHFSI_SOLID) || sim->kind[kind].capacity == 0)
-        return result(&d, diag_fail(&d, ERR_INPUT,
-                                    "force: must act on fluid or solid of the scene, not on %s",
-                                    (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this"));
-    s->force[kind] = (struct user_force){force, context};
-    return result(&d, simulation_push(sim, (enum kind)kind, force ? add_user_force : NULL,
-                                      &s->force[kind], &d));
+    struct diag d;
+    enum err e = begin(s, "force", &d);
+    if (e) return call_result(&d, e);
+    e = set_force(s, kind, force, context, &d);
+    return end(s, &d, e);
 }
 
-enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
-                                     sphfsi_motion *motion, void *context)
+static void apply_user_motion(void *context, double time, double d[2], double v[2], double a[2])
 {
-    struct diag d = {.code = ERR_OK};
+    const struct user_function *const user = context;
+    const struct host mine = host_use(user->of->host);
+    user->motion(user->context, time, d, v, a);
+    host_use(mine);
+}
+
+static enum err set_motion(struct sphfsi_simulation *s, const char *name, sphfsi_motion *motion,
+                           void *context, struct diag *d)
+{
     struct scene *const scene = &s->session.scene;
+    if (!name) return diag_fail(d, ERR_INPUT, "motion: the name is NULL");
     const int at = scene_find_motion(scene, name);
     struct nearest near = {0};
     for (int k = 0; k < scene->n_motion; k++)
         nearest_offer(&near, name, scene->motion[k].common.name);
     if (at < 0)
-        return result(&d, diag_fail(&d, ERR_INPUT, "motion: the case has no [motion %.60s]%s%s",
-                                    name, near.name ? "; the nearest name is " : "",
-                                    near.name ? near.name : ""));
-    if (!scene->motion_hook)
-        scene->motion_hook = arena_alloc(&scene->arena, (size_t)scene->n_motion,
-                                         sizeof *scene->motion_hook, "motions", &d);
-    if (!scene->motion_hook) return result(&d, ERR_MEMORY);
-    scene->motion_hook[at] = (struct motion_hook){motion, context};
-    return SPHFSI_OK;
+        return diag_fail(d, ERR_INPUT, "motion: the case has no [motion %.60s]%s%s", name,
+                         near.name ? "; the nearest name is " : "", near.name ? near.name : "");
+    const size_t n = (size_t)scene->n_motion;
+    struct motion_hook **const hook = &scene->motion_hook;
+    if (!s->motion) s->motion = arena_alloc(&scene->arena, n, sizeof *s->motion, "motions", d);
+    if (!*hook) *hook = arena_alloc(&scene->arena, n, sizeof **hook, "motions", d);
+    if (!s->motion || !*hook) return ERR_MEMORY;
+    s->motion[at] = (struct user_function){.of = s, .motion = motion, .context = context};
+    (*hook)[at] = (struct motion_hook){motion ? apply_user_motion : NULL, &s->motion[at]};
+    struct simulation *const sim = &s->session.simulation;
+    sim->evaluated = false;
+    sim->solid.calls_out = false;
+    for (int k = 0; k < scene->n_motion; k++) sim->solid.calls_out |= (*hook)[k].at != NULL;
+    return ERR_OK;
 }
 
-enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
+enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *name,
+                                     sphfsi_motion *motion, void *context)
 {
-    struct diag d = session_diag(options);
-    return result(&d, run_case(options, &d));
-}
-
-enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs, double ratio)
-{
-    struct diag d = session_diag(options);
-    return result(&d, refine_case(options, runs, ratio, &d));
-}
-
-enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds)
-{
-    struct diag d = session_diag(options);
-    if (!(seconds > 0 && seconds <= 1e9))
-        return result(&d, diag_fail(&d, ERR_INPUT,
-                                    "budget = %g s: from above 0 to 1e9 are possible", seconds));
-    struct session *x = calloc(1, sizeof *x);
-    if (!x)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "budget: no memory for %zu bytes", sizeof *x));
-    int threads;
-    enum err e = forecast_open(x, options, &threads, &d);
-    if (!e) {
-        e = budget_session(x, threads, seconds, options, &d);
-        forecast_close(x, threads);
-    }
-    free(x);
-    return result(&d, e);
-}
-
-enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
-{
-    struct diag d = session_diag(options);
-    struct session *x = calloc(1, sizeof *x);
-    if (!x)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "explain: no memory for %zu bytes", sizeof *x));
-    int threads;
-    enum err e = forecast_open(x, options, &threads, &d);
-    if (!e) {
-        e = explain_session(x, threads, options, &d);
-        forecast_close(x, threads);
-    }
-    free(x);
-    return result(&d, e);
-}
-
-enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
-{
-    struct diag d = session_diag(options);
-    struct session *x = calloc(1, sizeof *x);
-    if (!x)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "case: no memory for %zu bytes", sizeof *x));
-    enum err e = session_read(x, options, &d);
-    if (!e) {
-        e = scene_write(&x->scene, path, &d);
-        scene_free(&x->scene);
-    }
-    free(x);
-    return result(&d, e);
-}
-
-enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
-{
-    struct diag d = session_diag(options);
-    return result(&d, inspect_file(file, options, &d));
-}
-
-static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
-{
-    const char *name = o->case_path ? o->case_path : "case";
-    if (strrchr(name, '/')) name = strrchr(name, '/') + 1;
-    const size_t length = strlen(name);
-    const bool cfg = length > 4 && strcmp(name + length - 4, ".cfg") == 0;
-    if (o->out)
-        snprintf(path, PATH_BYTES, "%s", o->out);
-    else
-        snprintf(path, PATH_BYTES, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
-}
-
-enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
-{
-    struct diag d = session_diag(options);
-    char path[PATH_BYTES];
-    struct session *x = calloc(1, sizeof *x);
-    if (!x)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "preview: no memory for %zu bytes", sizeof *x));
-    enum err e = session_read(x, options, &d);
-    if (!e) {
-        preview_path(options, path);
-        e = preview_draw(&x->scene, path, &d);
-        if (!e) session_say(options, "%s: the scene as it would start; any browser shows it", path);
-        scene_free(&x->scene);
-    }
-    free(x);
-    return result(&d, e);
-}
-
-enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
-{
-    struct diag d = session_diag(options);
-    struct session *x = calloc(1, sizeof *x);
-    if (!x)
-        return result(&d, diag_fail(&d, ERR_MEMORY, "cite: no memory for %zu bytes", sizeof *x));
-    const enum err e = session_read(x, options, &d);
-    if (!e) {
-        manual_cite(&x->scene, effects_of_scene(&x->scene), options);
-        scene_free(&x->scene);
-    }
-    free(x);
-    return result(&d, e);
-}
-
-void sphfsi_keys(const struct sphfsi_options *options) { manual_keys(options); }
-
-const char *sphfsi_template_name(int k) { return manual_template_name(k); }
-
-const char *sphfsi_template(const char *name)
-{
-    struct diag d = {.code = ERR_OK};
-    struct nearest near = {0};
-    char list[256] = "";
-    const char *const text = manual_template(name);
-    if (text) return text;
-    for (int k = 0; manual_template_name(k); k++) {
-        const size_t at = strlen(list);
-        snprintf(list + at, sizeof list - at, "%s%s", k ? ", " : "", manual_template_name(k));
-        nearest_offer(&near, name, manual_template_name(k));
-    }
-    result(&d,
-           diag_fail(&d, ERR_INPUT, "there is no template '%.60s'%s%s; known: %s", name,
-                     near.name ? "; the nearest name is " : "", near.name ? near.name : "", list));
-    return NULL;
+    struct diag d;
+    enum err e = begin(s, "motion", &d);
+    if (e) return call_result(&d, e);
+    e = set_motion(s, name, motion, context, &d);
+    return end(s, &d, e);
 }

@@ -10,4 +10,8 @@
 enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
                          struct diag *d) SPHFSI_CHECKED;
 
+/* The same as one text in JSON. */
+enum err explain_data(struct session *x, int threads, const struct sphfsi_options *o,
+                      struct diag *d) SPHFSI_CHECKED;
+
 #endif

@@ -67,7 +67,7 @@ static void write_section(struct json *j, enum section_id id, const void *sectio
 }
 
 /* Keys of the top of the case first; then sections by word, and named ones by name below their word. */
-static void write_parameters(struct json *j, const struct scene *scene)
+void report_parameters(struct json *j, const struct scene *scene)
 {
     json_open(j, "parameters", '{');
     write_section(j, SECTION_top, section_at(scene, SECTION_top, 0));
@@ -86,7 +86,7 @@ static void write_parameters(struct json *j, const struct scene *scene)
     json_close(j, '}');
 }
 
-static void write_derived(struct json *j, const struct scene *scene)
+void report_derived(struct json *j, const struct scene *scene)
 {
     json_open(j, "derived", '{');
     json_number(j, "h", scene->h);
@@ -97,7 +97,7 @@ static void write_derived(struct json *j, const struct scene *scene)
     json_close(j, '}');
 }
 
-static void write_effects(struct json *j, const struct simulation *s)
+void report_effects(struct json *j, const struct simulation *s)
 {
     json_open(j, "effects", '[');
     for (int k = 0; k < EFFECT_COUNT; k++)
@@ -251,7 +251,7 @@ enum err report_summary(const char *folder, struct simulation *s, const struct r
     json_close(&j, '}');
     json_integer(&j, "fluid_left_domain", s->state.lost);
     write_cost(&j, s, r);
-    write_effects(&j, s);
+    report_effects(&j, s);
     write_time_step(&j, s);
     write_extremes(&j, s);
     write_drift(&j, s, r);
@@ -262,8 +262,8 @@ enum err report_summary(const char *folder, struct simulation *s, const struct r
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)simulation_hash(s));
     json_text(&j, "state_hash", hash);
     if (r->score) references_write(&j, r->references, r->score);
-    write_derived(&j, s->scene);
-    write_parameters(&j, s->scene);
+    report_derived(&j, s->scene);
+    report_parameters(&j, s->scene);
     json_close(&j, '}');
     return atomic_file_commit(&out, d);
 }

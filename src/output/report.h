@@ -3,6 +3,7 @@
 #ifndef SPHFSI_OUTPUT_REPORT_H
 #define SPHFSI_OUTPUT_REPORT_H
 
+#include "output/json.h"
 #include "output/reference.h"
 #include "time/simulation.h"
 
@@ -26,6 +27,11 @@ struct record {
 /* Writes summary.json to the folder of the run, atomically. */
 enum err report_summary(const char *folder, struct simulation *s, const struct record *r,
                         struct diag *d) SPHFSI_CHECKED;
+
+/* Parts of the summary: every value in effect; effects and the keys that call for them; derived values. */
+void report_parameters(struct json *j, const struct scene *scene);
+void report_effects(struct json *j, const struct simulation *s);
+void report_derived(struct json *j, const struct scene *scene);
 
 /* Particle steps (fluid and solid) per second of wall time of this process. */
 double report_rate(const struct simulation *s, const struct record *r);

@@ -29,9 +29,8 @@ static double vector_value(double x, double y, int column)
     return column == 0 ? x : column == 1 ? y : 0;
 }
 
-/* Value of one particle in a floating dataset. */
-static double real_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
-                         int column)
+double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+                      int column)
 {
     const struct particles *p = &s->kind[kind];
     double sigma[4] = {0}, det = 1;
@@ -107,7 +106,7 @@ static void values_of(const void *context, enum data what, int column, int64_t f
                 integer[row] = integer_value(what, s, (enum kind)kind, i);
                 continue;
             }
-            const double value = real_value(what, s, (enum kind)kind, i, column);
+            const double value = snapshot_value(what, s, (enum kind)kind, i, column);
             real[row] = unit > 0 ? nearbyint(value / unit) * unit : value;
         }
         first -= most;

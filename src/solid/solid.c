@@ -252,6 +252,12 @@ static void vary_gravity(const struct solid *s, struct particles *p, double time
     }
 }
 
+/* Whether what acts from outside may ask a motion of the program, which belongs to the calling thread. */
+static bool calls_program(const struct solid *s)
+{
+    return s->calls_out && (s->contact || s->loads);
+}
+
 /* What acts on the solid from outside, each a pass of its own. */
 static void outer_forces(const struct solid *s, struct particles *p, double time)
 {
@@ -328,7 +334,7 @@ void solid_stress(struct solid *s, struct particles *p)
 
 void solid_forces(const struct solid *s, struct particles *p)
 {
-#pragma omp parallel num_threads(s->threads)
+#pragma omp parallel num_threads(s->threads) if (!calls_program(s))
     {
         const struct chunk own = chunk_of(s, p);
         force_sweeps(&own);
@@ -407,7 +413,7 @@ static void begin_impedance(const struct solid *s, struct particles *p, double d
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     bool in_parts = false;
-#pragma omp parallel num_threads(s->threads)
+#pragma omp parallel num_threads(s->threads) if (!calls_program(s))
     {
         if (s->impedance > 0) begin_impedance(s, p, dt, n);
         if (steps_parts(s, n)) {

@@ -129,6 +129,7 @@ struct solid {
     /* What acts from outside, each NULL where there is none; contact: where none is near. */
     struct contact *contact;
     struct loads *loads;
+    bool calls_out;              /* a motion may be the program's own, which its own thread calls */
     const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
     const double *push[2];       /* accelerations, x and y, m/s^2 */
     double

@@ -342,6 +342,7 @@ enum err simulation_push(struct simulation *s, enum kind kind, push_function *at
     if (!push->ax || !push->ay) return ERR_MEMORY;
     push->at = at;
     push->context = context;
+    s->evaluated = false; /* without it */
     if (kind == KIND_SOLID) s->solid.push[0] = at ? push->ax : NULL;
     if (kind == KIND_SOLID) s->solid.push[1] = at ? push->ay : NULL;
     return ERR_OK;
