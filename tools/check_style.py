@@ -139,7 +139,8 @@ def main():
                         help="library whose exported symbols to check")
     args = parser.parse_args()
 
-    code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases", "examples")
+    code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases", "examples",
+                                "python")
             for path in sorted((ROOT / folder).rglob("*"))
             if path.suffix in (".c", ".h", ".def", ".py", ".sh", ".cfg")]
     for path in code + [ROOT / "Makefile", ROOT / "CMakeLists.txt"] + sorted(ROOT.glob("*.md")):

@@ -5,32 +5,17 @@
 import argparse
 import csv
 import itertools
-import re
 import sys
-import textwrap
 from pathlib import Path
 
 import runfiles
-from runfiles import BadFile, Reference, np, plt
+from runfiles import BadFile, Reference
+from sphfsi import draw_probes
 
 EXAMPLE = """example:
   tools/plot_m1.py runs/gate runs/gate-dp0.5mm --out m1.pdf --csv m1.csv
   tools/plot_m1.py runs/gate --column M1_dy_m --reference lab.csv --label "Lab, test 3"
 """
-WORDS = {"dx": "horizontal displacement", "dy": "vertical displacement", "p": "pressure",
-         "vx": "horizontal velocity", "vy": "vertical velocity", "level": "water level",
-         "sxx": "stress $\\sigma_{xx}$", "syy": "stress $\\sigma_{yy}$",
-         "szz": "stress $\\sigma_{zz}$", "sxy": "stress $\\sigma_{xy}$",
-         "mises": "von Mises stress", "front": "front", "q": "flux",
-         "fx": "horizontal force", "fy": "vertical force", "mz": "moment",
-         "kinetic": "kinetic energy", "elastic": "strain energy", "hourglass": "hourglass energy"}
-UNITS = {"SI": "SI", "m_per_s": "m/s", "N_per_m": "N/m", "Nm_per_m": "N m/m", "J_per_m": "J/m",
-         "m2_per_s": "m²/s"}
-DASHES = [(0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (8, 3))]
-GREYS = ["0.25", "0.45", "0.35", "0.55"]
-MARKERS = "osD^v<>"
-RESULTS = ["points", "rms", "peak", "peak_time_s", "ref_peak", "ref_peak_time_s",
-           "peak_difference", "peak_time_difference_s"]
 
 
 def arguments():
@@ -56,145 +41,6 @@ def arguments():
     return args
 
 
-def choose_columns(args, runs, tables, refs):
-    shared = [name for name in tables[0] if all(name in t for t in tables)]
-    for run, table in zip(runs, tables):
-        for name in args.column:
-            if name not in table:
-                raise BadFile(f"{run.folder}: no column {name} in its probes*.csv; "
-                              f"there are {', '.join(table)}")
-    named = [name for name in shared if any(ref.probe == name for ref in refs)]
-    usual = [name for name in ("M1_dx_m", "M1_dy_m") if name in shared]
-    chosen = args.column or named or usual or shared[:1]
-    if not chosen:
-        raise BadFile("the runs have no column of probes.csv in common")
-    return chosen
-
-
-def case_references(runs):
-    """References of all cases, each once."""
-    refs = [ref for run in runs for ref in runfiles.references(run)]
-    return list({(ref.probe, ref.name, ref.label): ref for ref in refs}.values())
-
-
-def peak(time, value, sign):
-    """The first local peak of that sign within 0.5 % of the largest: one cycle of an oscillation
-    is as high as the next up to noise, and the first of them is meant."""
-    height = sign * value
-    k = int(np.argmax(height >= height.max() - 0.005 * abs(height.max())))
-    while k + 1 < len(height) and height[k + 1] >= height[k]:
-        k += 1
-    return time[k], value[k]
-
-
-def common(time, ref):
-    """The points of a reference within the time of a run."""
-    inside = (ref.time >= time[0]) & (ref.time <= time[-1]) & np.isfinite(ref.value)
-    return ref.time[inside], ref.value[inside]
-
-
-def compare(time, value, ref):
-    """RMS difference and peaks where both curves exist, or None where they do not."""
-    t, v = common(time, ref)
-    if not len(t):
-        return None
-    own = (time >= t.min()) & (time <= t.max())
-    sign = 1.0 if v[np.argmax(np.abs(v))] >= 0 else -1.0
-    run_peak = peak(time[own], value[own], sign) if own.any() else (time[-1], value[-1])
-    ref_peak = peak(t, v, sign)
-    rms = np.sqrt(np.mean((np.interp(t, time, value) - v) ** 2))
-    return dict(zip(RESULTS, (len(t), rms, run_peak[1], run_peak[0], ref_peak[1], ref_peak[0],
-                              run_peak[1] - ref_peak[1], run_peak[0] - ref_peak[0])))
-
-
-def reference_style(refs):
-    """Black markers for measurements, grey dashes for computations."""
-    measured = [ref for ref in refs if ref.measured]
-    computed = [ref for ref in refs if not ref.measured]
-    styles = {}
-    for k, ref in enumerate(measured):
-        styles[ref] = dict(color="black", linestyle="none", marker=MARKERS[k % len(MARKERS)],
-                           markersize=3.6, markerfacecolor="white" if k else "black", zorder=4,
-                           markeredgewidth=0.8)
-    for k, ref in enumerate(computed):
-        styles[ref] = dict(color=GREYS[k % len(GREYS)], linestyle=DASHES[k % len(DASHES)], zorder=2)
-    return styles
-
-
-def column_words(column, size):
-    """Words for the axis, factor and name of the unit of a column <probe>_<quantity>_<unit>."""
-    parts = re.fullmatch(rf"(.+?)_({'|'.join(WORDS)})_([^_]+(?:_per_[^_]+)?)", column)
-    scale, unit = runfiles.scaled_unit(parts[3] if parts else "", size)
-    words = f"{parts[1]} {WORDS[parts[2]]}" if parts else column
-    unit = UNITS.get(unit or "SI", unit)
-    return f"{words} ({unit})", scale, unit
-
-
-def draw_column(above, below, column, curves, refs, legend):
-    """One column of the figure: the curves, and below them their differences from the references.
-    Adds to `legend` what it draws; gives the factor and name of the unit."""
-    words, scale, unit = column_words(column, max(np.abs(value).max() for _, _, value in curves))
-    styles = reference_style(refs)
-    # Where something was measured, only that is worth a difference.
-    judges = [ref for ref in refs if ref.measured] or refs
-    for ref in refs:
-        line, = above.plot(ref.time, scale * ref.value, **styles[ref])
-        legend.setdefault(ref.label, line)
-    for k, (run, time, value) in enumerate(curves):
-        colour = runfiles.COLOURS[k % len(runfiles.COLOURS)]
-        # Each is thinner than the one below, so that curves that agree are seen as well.
-        width = 1.1 + 2.4 * (1 - k / max(1, len(curves) - 1)) * (len(curves) > 1)
-        line, = above.plot(time, scale * value, color=colour, zorder=3, linewidth=width)
-        legend[run.label()] = line
-        if run.failure():
-            above.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
-                       markeredgewidth=2, zorder=5)
-        for ref in judges if below else []:
-            t, v = common(time, ref)
-            style = dict(styles[ref], color=colour, markeredgecolor=colour, linewidth=0.8)
-            if ref.measured:
-                style.update(linestyle="-", markersize=2.6)
-                style["markerfacecolor"] = "white" if style["markerfacecolor"] == "white" else colour
-            below.plot(t, scale * (np.interp(t, time, value) - v), **style)
-    end = max(time[-1] for _, time, _ in curves)
-    above.set(ylabel=words, xlim=(0, 1.02 * end or 1))
-    above.axhline(0, color="0.8", linewidth=0.6, zorder=1)
-    (below or above).set_xlabel("Time (s)")
-    if below:
-        below.set_ylabel(f"Difference ({unit})", fontsize=8)
-        below.axhline(0, color="0.6", linewidth=0.6, zorder=1)
-    return scale, unit
-
-
-def draw_figure(columns, curves, refs):
-    """All columns side by side and one legend below them, which the citations make long."""
-    refs = [ref for ref in refs if ref.probe in columns]
-    names = [run.label() for run, _, _ in curves[columns[0]]]
-    names += dict.fromkeys(ref.label for ref in refs)
-    ncol = 2 if len(names) > 2 and max(map(len, names)) <= 48 else 1
-    texts = {name: textwrap.fill(name, 100) for name in names}
-    lines = sum(text.count("\n") + 1 for text in texts.values())
-    below, top = 0.5 + 0.16 * -(-lines // ncol), 0.12
-    height = below + top + (3.6 if refs else 2.6)
-    fig, axes = plt.subplots(2 if refs else 1, len(columns), figsize=(runfiles.WIDTH, height),
-                             squeeze=False, sharex="col",
-                             gridspec_kw={"height_ratios": [2.6, 1] if refs else [1]})
-    fig.subplots_adjust(left=0.08, right=0.985, top=1 - top / height, bottom=below / height,
-                        wspace=0.25, hspace=0.07)
-    legend, units = {}, {}
-    for k, column in enumerate(columns):
-        own = [ref for ref in refs if ref.probe == column]
-        if refs and not own:
-            axes[1, k].set_visible(False)
-            axes[0, k].tick_params(labelbottom=True)
-        units[column] = draw_column(axes[0, k], axes[1, k] if own else None, column,
-                                    curves[column], own, legend)
-        fig.align_ylabels(axes[:, k])
-    fig.legend([legend[name] for name in names], [texts[name] for name in names], ncol=ncol,
-               loc="lower center", bbox_to_anchor=(0.53, 0.0))
-    return fig, units
-
-
 def print_table(rows, units):
     """A line for each run and reference; values in the unit of the figure, times in s."""
     print(f"{'run':<20} {'reference':<20} {'column':<10} {'points':>6} {'unit':>5} {'RMS':>9}"
@@ -206,7 +52,7 @@ def print_table(rows, units):
             continue
         scale, unit = units[ref.probe]
         points, *numbers = [result[key] * (1 if "time" in key or key == "points" else scale)
-                            for key in RESULTS]
+                            for key in draw_probes.RESULTS]
         print(head, f"{points:6d} {unit:>5} {numbers[0]:9.4g}",
               *(f"{number:{form}}" for number, form in zip(
                   numbers[1:], ("9.4g", "8.4g", "9.4g", "8.4g", "+9.3g", "+9.3g"))))
@@ -216,11 +62,11 @@ def write_csv(path, rows):
     try:
         with open(path, "w", newline="", encoding="utf-8") as file:
             out = csv.writer(file, lineterminator="\n")
-            out.writerow(["run", "reference", "column", *RESULTS])
+            out.writerow(["run", "reference", "column", *draw_probes.RESULTS])
             for run, ref, result in rows:
                 if result is not None:
                     out.writerow([run.label(), ref.name, ref.probe,
-                                  *(f"{result[key]:.9g}" for key in RESULTS)])
+                                  *(f"{result[key]:.9g}" for key in draw_probes.RESULTS)])
     except OSError as problem:
         raise BadFile(f"cannot write {path}: {problem.strerror}") from None
 
@@ -228,22 +74,14 @@ def write_csv(path, rows):
 def main():
     args = arguments()
     runs = runfiles.make_runs(args.run)
-    tables = [run.probes() for run in runs]
-    refs = case_references(runs)
-    columns = choose_columns(args, runs, tables, refs)
+    tables = [run.curves() for run in runs]
+    refs = draw_probes.case_references(runs)
+    columns = draw_probes.choose_columns(runs, tables, refs, args.column)
     refs += [Reference(columns[0], path, Path(path).stem, label or Path(path).stem, sort=True)
              for path, label in itertools.zip_longest(args.reference, args.label)]
-    curves = {}
-    for column in columns:
-        curves[column] = []
-        for run, table in zip(runs, tables):
-            time, value = table[column]
-            sound = np.isfinite(value)
-            if not sound.any():
-                raise BadFile(f"{run.folder}: {column} holds no number")
-            curves[column].append((run, time[sound], value[sound]))
-    figure, units = draw_figure(columns, curves, refs)
-    rows = [(run, ref, compare(time, value, ref)) for column in columns
+    curves = draw_probes.curves_of(runs, tables, columns)
+    figure, units = draw_probes.draw_figure(columns, curves, refs)
+    rows = [(run, ref, draw_probes.compare(time, value, ref)) for column in columns
             for run, time, value in curves[column] for ref in refs if ref.probe == column]
     if rows:
         print_table(rows, units)

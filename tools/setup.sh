@@ -133,7 +133,7 @@ find_python() {
         return
     done
     lacks "Python 3 with numpy, matplotlib and h5py" \
-        "python3-numpy python3-matplotlib python3-h5py" "python numpy python-matplotlib"
+        "python3-numpy python3-matplotlib python3-h5py python3-cffi" "python numpy python-matplotlib"
 }
 
 # A virtual environment from the first python that can make one and reach the package index.
@@ -142,7 +142,7 @@ make_venv() {
     for p in $(pythons); do
         "$p" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 8))' 2>/dev/null ||
             continue
-        say "installing numpy, matplotlib and h5py into .venv"
+        say "installing numpy, matplotlib, h5py and cffi into .venv"
         rm -rf .venv
         "$p" -m venv .venv >/dev/null 2>&1 &&
             .venv/bin/python -m pip install --quiet --disable-pip-version-check --retries 1 \

@@ -6,8 +6,8 @@ Each returns the value that was found (None where it is a whole curve) and its r
 
 import metrics
 from runfiles import BadFile, Run, np, read_table
-from snapshots import KINDS as PARTICLES
-from snapshots import Snapshots
+from sphfsi.snapshots import KINDS as PARTICLES
+from sphfsi.snapshots import Snapshots
 
 # kind: keys that its [[case.NAME.error]] must have
 KINDS = {

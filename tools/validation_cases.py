@@ -2,8 +2,8 @@
 """The sections of the validation report on the paper's five cases."""
 
 import metrics
-from plot_m1 import peak
 from runfiles import COLOURS, WIDTH, BadFile, Reference, np, plt, read_table
+from sphfsi.draw_probes import peak
 from validation_measures import Missing, bore, contact, front_speed, pressed_in
 from validation_report import COST, cost, ledgers, series, starting
 from validation_runs import BY_NAME, ROOT

@@ -8,7 +8,7 @@ import json
 import metrics
 from plot_ledger import energy_shares, read_ledger
 from runfiles import BadFile, np, read_text
-from snapshots import Snapshots
+from sphfsi.snapshots import Snapshots
 
 G = 9.81
 FILE = "measured.json"

@@ -9,11 +9,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 TOOLS = ROOT / "tools"
-PACKAGES = ("h5py", "matplotlib", "numpy", "PIL", "tomllib")
+PYTHON = ROOT / "python"  # the package
+PACKAGES = ("cffi", "h5py", "matplotlib", "numpy", "PIL", "tomllib")
 PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(TOOLS))
+if os.environ.get("SPHFSI_PACKAGE") != "installed":
+    sys.path.insert(0, str(PYTHON))
 
 
 @contextlib.contextmanager

@@ -196,7 +196,7 @@ def test_rates(tmp):
                header="time_s,load_fx_N_per_m,load_fy_N_per_m,load_mz_Nm_per_m", comments="")
     draws(run / "m1.png", "plot_m1", run, "--column", "load_fx_N_per_m", "--column", "M1_dx_m")
     refuses("load_mz_Nm_per_m", "plot_m1", run, "--column", "load_mz")
-    from plot_m1 import column_words
+    from sphfsi.draw_probes import column_words
     assert column_words("a_b_mz_Nm_per_m", 1.0) == ("a_b moment (N m/m)", 1.0, "N m/m")
     assert column_words("gauge_level_m", 0.1)[0] == "gauge water level (mm)"
     assert column_words("Q_q_m2_per_s", 1.0)[2] == "m²/s"
@@ -213,7 +213,7 @@ def test_case_sections(good):
 
 def test_vorticity():
     """Exact for a linear velocity, at a free surface and out of order too; none in a row."""
-    from snapshots import vorticity
+    from sphfsi.snapshots import vorticity
     random = np.random.default_rng(1)
     x = lattice(-1, 1, -0.5, 0.5, 0.05)
     x = random.permutation(x + random.uniform(-0.01, 0.01, x.shape))

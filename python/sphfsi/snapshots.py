@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Snapshots of a run (fields.vtkhdf) and the fields that are drawn of them."""
 
-from runfiles import BadFile, np
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .files import BadFile
 
 KINDS = {"fluid": 0, "wall": 1, "solid": 2}
 
@@ -20,16 +26,17 @@ FIELDS = {
 class Snapshots:
     """A temporal VTKHDF file: all steps one behind the other, found through the Steps group."""
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path):
         try:
             import h5py
         except ImportError:
-            raise BadFile("h5py is missing; pip install -r tools/requirements.txt") from None
-        self.path = path
+            raise BadFile("h5py is missing; pip install h5py") from None
+        self.path = path = Path(path)
         if not path.is_file():
             raise BadFile(f"cannot read {path}: no such file")
         try:
-            self.root = h5py.File(path, "r")["VTKHDF"]
+            self.file = h5py.File(path, "r")
+            self.root = self.file["VTKHDF"]
             steps = self.root["Steps"]
             self.times = steps["Values"][:]
             counts = self.root["NumberOfPoints"][:]
@@ -43,11 +50,18 @@ class Snapshots:
         if not 0 < len(self.times) <= min(len(self.counts), len(self.starts)):
             raise BadFile(f"{path}: no complete snapshot in it")
 
-    def nearest(self, time):
+    def __enter__(self) -> Snapshots:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.file.close()
+
+    def nearest(self, time: float) -> int:
+        """Index of the snapshot nearest to a time (s)."""
         return int(np.argmin(np.abs(self.times - time)))
 
-    def load(self, step, name):
-        """The positions ("Points") or an array of PointData at a step."""
+    def load(self, step: int, name: str) -> np.ndarray:
+        """The positions ("Points", m) or an array of PointData at a step; docs/formats.md has the units."""
         start = self.starts[step]
         if name == "Points":
             data = self.root[name]
