@@ -167,12 +167,12 @@ SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
 
 /** Gives a view of a field by its name; sphfsi_field_name lists the names. Arrays of the particles are not
- * copied: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens (rho/rho0 - 1), p (Pa), ux, uy (m), X, Y
- * (m), fx, fy (N/m, the present force of the fluid on the particle) and others. The fields of fields.vtkhdf
- * are computed in the call: velocity (m/s), density (kg/m^3), pressure (Pa), stress (Pa: xx yy zz xy yz xz),
- * von_mises (Pa), displacement (m), det_F. Fields that follow from positions, such as p, fx and ddens, are
- * updated to the present positions first; the state does not change. SPHFSI_INPUT: this kind has no such
- * field in this scene. */
+ * copied: x, y (m), vx, vy (m/s), id, body; if the kind has them, dens (rho/rho0 - 1), p (Pa), ux, uy (m),
+ * X, Y (m), fx, fy (N/m, the present force of the fluid on the particle) and others. The fields of
+ * fields.vtkhdf are computed in the call: velocity (m/s), density (kg/m^3), pressure (Pa), stress (Pa: xx yy
+ * zz xy yz xz), von_mises (Pa), displacement (m), det_F. Fields that follow from positions, such as p, fx and
+ * ddens, are updated to the present positions first; the state does not change. SPHFSI_INPUT: this kind has
+ * no such field in this scene. */
 SPHFSI_API enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind kind,
                                            const char *name, struct sphfsi_view *view);
 
@@ -196,9 +196,9 @@ struct sphfsi_particles {
     const double *vx, *vy; /**< m/s */
 };
 
-/** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before; n may be 0. It is called
- * at every evaluation of the rates, once or twice a step, and also when pressure is read. So it should depend
- * on its arguments only. The energy ledger does not contain its work. */
+/** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before; n may be 0. It is
+ * called at every evaluation of the rates, once or twice a step, and also when pressure is read. So it
+ * should depend on its arguments only. The energy ledger does not contain its work. */
 typedef void sphfsi_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay);
 
 /** Sets the force on fluid or solid; NULL removes it. Clamped particles do not move. */

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs a case over a grid or a sample of values: writes folders and a Snakemake workflow, which runs locally or
-on a cluster and goes on after a kill, and gathers one table and one plot."""
+"""Runs a case over a grid or a sample of values: writes folders and a Snakemake workflow, which runs locally
+or on a cluster and continues after a kill, and gathers one table and one plot."""
 
 import argparse
 import itertools
 import json
+import os
 import re
 import shlex
 import shutil
@@ -48,7 +49,8 @@ def arguments():
     parser.add_argument("--go", nargs="?", const=1, type=int, metavar="CORES",
                         help="run it here with snakemake, on so many cores")
     parser.add_argument("--one", type=int, metavar="K", help=argparse.SUPPRESS)
-    parser.add_argument("--gather", action="store_true", help="only make table.csv and sweep.png of --out anew")
+    parser.add_argument("--gather", action="store_true",
+                        help="only make table.csv and sweep.png of --out anew")
     args = parser.parse_args()
     if not args.case and args.one is None and not args.gather:
         parser.print_help()
@@ -203,8 +205,10 @@ def write_plan(args, out):
 
 
 def snakemake():
+    """The program: named by SNAKEMAKE, beside this Python, or in the path; None where there is none."""
     beside = Path(sys.executable).parent / "snakemake"
-    return str(beside) if beside.is_file() else shutil.which("snakemake")
+    named = os.environ.get("SNAKEMAKE")
+    return named or (str(beside) if beside.is_file() else shutil.which("snakemake"))
 
 
 # --- a run ---

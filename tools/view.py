@@ -64,7 +64,7 @@ def as_bytes(values, low, high):
 
 
 def packed_places(x, window):
-    """Positions as 16 bits over the window, high bytes first; what lies outside of it is moved to its edge."""
+    """Positions as 16 bits over the window, high bytes first; what lies outside is moved to its edge."""
     low, high = np.array(window[::2]), np.array(window[1::2])
     places = np.clip(np.rint(65535 * (x - low) / (high - low)), 0, 65535).astype(np.uint16)
     parts = []

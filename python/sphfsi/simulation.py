@@ -108,8 +108,9 @@ class Simulation:
 
     def __init__(self, call: Call):
         made = ffi.new("struct sphfsi_simulation **")
-        call.finish(lib.sphfsi_create(made, call.options))
-        self._handle = ffi.gc(made[0], lib.sphfsi_free)
+        status = lib.sphfsi_create(made, call.options)
+        self._handle = ffi.gc(made[0], lib.sphfsi_free)  # also if a warning is an error
+        call.finish(status)
         self._callbacks: dict[Any, Any] = {}
         self._problem: BaseException | None = None
         self.fluid, self.wall, self.solid = (Particles(self, kind, name) for name, kind in KINDS.items())

@@ -222,7 +222,7 @@ def test_interrupt():
 def test_errors():
     raises(sphfsi.InputError, "unknown key `yung`", sphfsi.Case(TINY, gate={"yung": 1}).simulation)
     raises(sphfsi.InputError, "nowhere.cfg", sphfsi.Case("nowhere.cfg").effective)
-    raises(sphfsi.InputError, "neither a case file nor its text", sphfsi.Case().effective)
+    raises(sphfsi.InputError, "case_path or case_text", sphfsi.Case().effective)
     raises(OSError, "", sphfsi.Case(TINY).preview, "/nowhere/x.svg")
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The page that tools/view.py writes holds the run: its numbers are looked at here, its script runs in node, the
-whole page in a headless Chromium, as far as these are there. Exit 77: a package is missing."""
+"""The page that tools/view.py writes holds the run: its numbers are checked here, its script runs in node,
+the whole page in a headless Chromium, as far as these are installed. Exit 77: a package is missing."""
 
 import base64
 import json
@@ -57,7 +57,8 @@ for (let i = 0; i < fluid.n; i++) {
   out.values.push(view.value(film.groups.fluid.fields[0], fluid.fields[0][i]));
 }
 const hit = view.nearest(film, last, out.places[7][0], out.places[7][1], film.dp);
-out.hit = [hit.name, hit.i, view.nearest(film, last, 5, 5, film.dp) === null, view.nearest_index(film.times, 0.011)];
+out.hit = [hit.name, hit.i, view.nearest(film, last, 5, 5, film.dp) === null,
+           view.nearest_index(film.times, 0.011)];
 console.log(JSON.stringify(out));
 """
 
@@ -145,8 +146,8 @@ def main():
         if browser:
             check_browser(browser, page)
             done.append("the page in a browser")
-        few = subprocess.run([*tool, folder / "run", "--every", "2", "--out", folder / "few.html"], check=True,
-                             capture_output=True, text=True).stdout
+        few = subprocess.run([*tool, folder / "run", "--every", "2", "--out", folder / "few.html"],
+                             check=True, capture_output=True, text=True).stdout
         assert "3 frames" in few, few
         bad = subprocess.run([*tool, folder / "none"], capture_output=True, text=True)
         assert bad.returncode == 1 and "no such folder" in bad.stderr
