@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Scenes that are hardly meant are warned of, and sound ones are not. */
-#include "case/scene.h"
+#include "geometry/load.h"
 #include "particles/particles.h"
 #include "unity.h"
 
