@@ -15,6 +15,7 @@
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
+#   make verify-fluid    small scenes of rest, waves, impact, with both schemes: docs/fluid_verification.md
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
 #   make performance     the same, longest steps and the gate: docs/performance.md
@@ -48,7 +49,7 @@ IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
-             $(if $(filter gate accuracy forecast validate bench performance,$(GOALS)),plot))
+             $(if $(filter gate accuracy forecast validate verify-fluid bench performance,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -229,6 +230,9 @@ fuzz:
 mutants:
 	@$(PROJECT_PYTHON) tools/mutants.py $(ARGS)
 
+verify-fluid: $(PROGRAM)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_fluid.py $(ARGS)
+
 stability: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
 
@@ -271,7 +275,7 @@ gallery: $(PROGRAM)
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
-.PHONY: accuracy forecast
+.PHONY: accuracy forecast verify-fluid
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
 	@$(MAKE) --no-print-directory all

@@ -42,6 +42,32 @@ static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
     }
 }
 
+/* What the scheme has set, as far as the case has left it. */
+static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
+{
+    if (c->n_fluid == 0) return;
+    char name[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "scheme"), c->top.scheme, name);
+    session_say(o,
+                c->top.scheme == SCHEME_PAPER
+                    ? "scheme %s: the defaults of all keys, the article's fluid"
+                    : "scheme %s sets",
+                name);
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *const p = &param_table[k];
+        double value;
+        if (!scene_scheme_sets(c, p->section, p->key, &value)) continue;
+        char text[SCENE_NAME];
+        if (p->type == PARAM_CHOICE)
+            param_choice_name(p, (int)value, text);
+        else
+            snprintf(text, sizeof text, "%g", value);
+        const bool given = scene_given(c, p->section, 0, p->key) != NULL;
+        session_say(o, "  %s.%s = %s%s", section_table[p->section].word, p->key, text,
+                    given ? ", but the case gives it" : "");
+    }
+}
+
 static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
 {
     session_say(o, "effects that are on, and what called for them");
@@ -206,6 +232,7 @@ enum err explain_session(struct session *x, int threads, const struct sphfsi_opt
     struct simulation *s = &x->simulation;
     say_scene(x, o);
     say_lattices(&x->scene, o);
+    say_scheme(&x->scene, o);
     say_effects(s, o);
     say_fields(s, o);
     say_output(s, o);

@@ -59,7 +59,7 @@ static uint64_t cache_key(const struct simulation *s)
                          s->solid.sweeps ? s->solid.sweeps->lanes : 0,
                          c->numerics.suction};
     h = hash_bytes(h, words, sizeof words);
-    const double numbers[] = {c->numerics.h_over_dp, c->numerics.skin};
+    const double numbers[] = {c->numerics.h_over_dp, c->numerics.solid_h_over_dp, c->numerics.skin};
     h = hash_bytes(h, numbers, sizeof numbers);
     for (int k = 0; k < c->n_solid; k++) {
         const int form[] = {c->solid[k].law, c->solid[k].gradient, c->solid[k].hourglass_form};

@@ -105,6 +105,7 @@ static enum err check_fluid(struct reader *r, const struct scene_fluid *f, doubl
         {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
         {"tensile_control", f->tensile_control, first->tensile_control},
         {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
+        {"acoustic_damper", f->acoustic_damper, first->acoustic_damper},
         {"shifting", f->shifting, first->shifting},
         {"shifting_speed", f->shifting_speed, first->shifting_speed},
         {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
@@ -468,10 +469,25 @@ static void choose_cfl(struct scene *s)
     s->numerics.cfl = leaps ? CFL_LEAPFROG : CFL_PAPER;
 }
 
+/* 0 stands for h_over_dp, which has the same bounds. */
+static enum err check_solid_h(struct reader *r)
+{
+    const double value = r->scene->numerics.solid_h_over_dp;
+    if (value == 0 || value >= 1.1) return ERR_OK;
+    const struct scene_given *const at =
+        scene_given(r->scene, SECTION_numerics, 0, "solid_h_over_dp");
+    return bad_line(
+        r, at ? at->line : 1,
+        "solid_h_over_dp = %g: between 0 and 1.1 particles have too few neighbours; give "
+        "0 for h_over_dp, or 1.1 to 2",
+        value);
+}
+
 enum err case_check(struct reader *r)
 {
     struct scene *const s = r->scene;
     choose_cfl(s);
+    TRY(check_solid_h(r));
     if (s->n_fluid == 0 && s->n_solid == 0)
         return bad_line(r, 1,
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "

@@ -70,6 +70,15 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
                     name, effect_table[rule->other].name, its, line_of(s, &other), rule->reason);
 }
 
+/* Whether a section has the value that the scheme gives a key. */
+static bool set_by_scheme(const struct scene *s, const struct param *p, const void *section)
+{
+    double value;
+    const void *const at = (const char *)section + p->offset;
+    return p->type == PARAM_CHOICE && scene_scheme_sets(s, p->section, p->key, &value) &&
+           *(const int *)at == (int)value;
+}
+
 static enum err check_owned(struct reader *r, const struct owned *row)
 {
     const struct scene *const s = r->scene;
@@ -77,7 +86,8 @@ static enum err check_owned(struct reader *r, const struct owned *row)
     struct effect_caller by;
     if (effect_called(s, row->effect, &by)) return ERR_OK;
     for (int k = 0; k < section_count(s, row->section); k++) {
-        if (param_is_default(p, section_at(s, row->section, k))) continue;
+        const void *const section = section_at(s, row->section, k);
+        if (param_is_default(p, section) || set_by_scheme(s, p, section)) continue;
         char text[NAME_TEXT];
         by = (struct effect_caller){row->section, k, row->key};
         name_of(s, &by, text);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "case/effects.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -85,7 +86,7 @@ bool effect_called(const struct scene *s, enum effect effect, struct effect_call
     return calls[effect](s, by);
 }
 
-static const unsigned effect_bits[EFFECT_COUNT] = {
+static const effect_set effect_bits[EFFECT_COUNT] = {
 #define EFFECT(name, when, key, equation, groups, kind, meaning) FX_##name,
 #include "case/effects.def"
 #undef EFFECT

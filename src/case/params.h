@@ -102,6 +102,10 @@ const struct expr *param_in_time(const struct param *p, const void *section, int
 /* Whether a section has the value that the key has when it is left out. */
 bool param_is_default(const struct param *p, const void *section);
 
+/* Whether the scene's `scheme` sets a key, and to what (case/presets.def). */
+bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
+                       double *value);
+
 /* The name of a CHOICE's value, copied into `name`. */
 void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
 

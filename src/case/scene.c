@@ -25,6 +25,12 @@ int scene_find_solid(const struct scene *s, const char *name)
     return -1;
 }
 
+double scene_solid_h(const struct scene *s, int solid)
+{
+    const double own = s->numerics.solid_h_over_dp;
+    return (own > 0 ? own : s->numerics.h_over_dp) * scene_solid_dp(s, solid);
+}
+
 double scene_solid_dp(const struct scene *s, int solid)
 {
     if (s->solid_lattice) return s->solid_lattice[solid].dp;

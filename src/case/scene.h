@@ -158,7 +158,13 @@ struct scene_reference {
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
 enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
-enum scene_kind { SCENE_SOLID, SCENE_FLUID, SCENE_COUPLED }; /* what presets are told apart by */
+enum scene_kind {
+    SCENE_SOLID,
+    SCENE_FLUID,
+    SCENE_COUPLED,
+    SCENE_EITHER
+}; /* what presets are told apart by */
+enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
@@ -171,6 +177,7 @@ enum snapshot_failure { SNAPSHOT_FAILURE_STOP, SNAPSHOT_FAILURE_GO_ON };
 enum snapshot_precision { SNAPSHOT_PRECISION_SINGLE, SNAPSHOT_PRECISION_DOUBLE };
 enum shifting_speed { SHIFTING_OWN, SHIFTING_LARGEST };
 enum diffusion_form { DIFFUSION_MOLTENI, DIFFUSION_FOURTAKAS, DIFFUSION_ANTUONO };
+enum particle_mass { MASS_EQUAL, MASS_HYDROSTATIC };
 enum law { LAW_PAPER, LAW_SVK, LAW_NEO_HOOKEAN };
 enum plane { PLANE_STRAIN, PLANE_STRESS };
 enum gradient_order { GRADIENT_LINEAR, GRADIENT_QUADRATIC };
@@ -354,6 +361,8 @@ int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
 /* Spacing of a solid's particles, m: that of its lattice, once it is sampled. */
 double scene_solid_dp(const struct scene *s, int solid);
+/* Its smoothing length, m. */
+double scene_solid_h(const struct scene *s, int solid);
 /* Whether a solid is bonded to another: its thickness is not its own. */
 bool scene_is_bonded(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);

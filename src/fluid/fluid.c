@@ -8,7 +8,7 @@
 
 static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
 {
-    const unsigned wanted = f->effects & PAIR_EFFECTS;
+    const effect_set wanted = f->effects & PAIR_EFFECTS;
     while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted)) table++;
     f->sweeps = table;
 }
@@ -29,6 +29,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? s->c0 / 10 : 0,
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
+        .damper = fluid->acoustic_damper,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
         .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
     };

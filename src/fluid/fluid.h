@@ -18,6 +18,7 @@ struct fluid_constants {
     double shifting_speed; /* m/s, for all particles alike; 0: each its own */
     double nu;             /* laminar viscosity, m^2/s */
     double delta;          /* Eq. 6 */
+    double damper;         /* alpha_D of the acoustic damper */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };

@@ -55,6 +55,13 @@ SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_const
     return pressure;
 }
 
+/* Acoustic damper (Sun, Pilloton, Antuono and Colagrossi 2023; T-9a): the pressure -alpha_D rho0 c0 h div v
+ * of four, where -div v = `swell` is the relative rate of the density. */
+SPHFSI_INLINE four_double damper_pressure(four_double swell, const struct fluid_constants *k)
+{
+    return k->damper * k->rho0 * k->c0 * k->h * swell;
+}
+
 /* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
 SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
                                 const double centre[2], real *out)
@@ -65,8 +72,12 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p
     put_four(out, PACKED_Y, (FOUR(p->y, i) - centre[1]) * inv_h);
     put_four(out, PACKED_U, FOUR(p->vx, i));
     put_four(out, PACKED_V, FOUR(p->vy, i));
-    put_four(out, PACKED_VOLUME, volume / (1 + dens));
-    put_four(out, PACKED_P, pressure_of(dens, &f->k));
+    four_double own = volume / (1 + dens);
+    if (f->effects & FX_MASSES) own = FOUR(p->m, i) * own;
+    put_four(out, PACKED_VOLUME, own);
+    four_double pressure = pressure_of(dens, &f->k);
+    if (f->effects & FX_DAMPER) pressure = pressure + damper_pressure(FOUR(p->swell, i), &f->k);
+    put_four(out, PACKED_P, pressure);
     put_four(out, PACKED_DENS, dens);
 }
 

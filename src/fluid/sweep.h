@@ -74,18 +74,25 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 }
 
 /* Writes the rates of `count` particles from i on, which `left` has sums of: the factors that they lack. */
-SPHFSI_INLINE void rates_store(const struct fluid_constants *k, struct particles *p, int32_t i,
-                               int count, const struct cluster_sums *s, real *deferred,
-                               effect_set fx, double acceleration2[CLUSTER])
+SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32_t i, int count,
+                               const struct cluster_sums *s, real *deferred, effect_set fx,
+                               double acceleration2[CLUSTER])
 {
+    const struct fluid_constants *const k = &f->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
-    const double push = slope / k->rho0, mix = 2 * k->delta * k->c0;
-    const four_double full = 1 + FOUR(p->dens, i);
+    const double mix = 2 * k->delta * k->c0;
+    four_double full = 1 + FOUR(p->dens, i), push = slope / k->rho0 + 0 * full;
+    four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
+    if (f->effects & FX_MASSES) { /* all sums have the volume of the particle itself */
+        push = push / FOUR(p->m, i);
+        full = full / FOUR(p->m, i);
+    }
+    if (f->effects & FX_DAMPER)
+        store_four(p->swell + i, -slope * full * (rate / (1 + FOUR(p->dens, i))), count);
     const four_double ax =
         push * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
     const four_double ay =
         push * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
-    four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
     if (fx & FX_DIFFUSION)
         rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
     store_four(p->ax + i, ax, count);
@@ -141,9 +148,9 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
     if (count == CLUSTER) /* a number that the compiler knows */
-        rates_store(&f->k, p, i, CLUSTER, &s, deferred, fx, top->acceleration2);
+        rates_store(f, p, i, CLUSTER, &s, deferred, fx, top->acceleration2);
     else
-        rates_store(&f->k, p, i, count, &s, deferred, fx, top->acceleration2);
+        rates_store(f, p, i, count, &s, deferred, fx, top->acceleration2);
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,

@@ -80,7 +80,7 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
 {
     const int body = pr->body;
     const struct particles *p = &s->kind[KIND_SOLID];
-    const double h = s->scene->numerics.h_over_dp * scene_solid_dp(s->scene, body), reach = 2 * h;
+    const double h = scene_solid_h(s->scene, body), reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
     if (!(distance < h))
         return diag_fail(

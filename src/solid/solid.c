@@ -16,7 +16,7 @@
 static struct solid_body body_of(const struct scene *scene, int k)
 {
     const struct scene_solid *const c = &scene->solid[k];
-    const double dp = scene_solid_dp(scene, k), h = scene->numerics.h_over_dp * dp;
+    const double dp = scene_solid_dp(scene, k), h = scene_solid_h(scene, k);
     const double E = c->young, nu = c->poisson, on = c->gravity ? 1 : 0;
     const double bulk = E / (3 * (1 - 2 * nu));
     return (struct solid_body){

@@ -171,7 +171,8 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
         const double along = x * tx + y * ty, across = x * ty - y * tx;
         if (along < 0 || along > length || fabs(across) >= reach) continue;
         const double bell = 0.5 / reach * (1 + cos(PI * across / reach));
-        sum += bell * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
+        const double m = p->m ? p->m[i] : 1;
+        sum += bell * m * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
     }
     return sum;
 }

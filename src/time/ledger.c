@@ -11,18 +11,19 @@
 enum { ABREAST = 8 };
 struct fluid_sums {
     double speed2[ABREAST], height[ABREAST], energy[ABREAST];
-    double vx[ABREAST], vy[ABREAST], extreme[ABREAST];
+    double vx[ABREAST], vy[ABREAST], mass[ABREAST], extreme[ABREAST];
 };
 
 SPHFSI_INLINE void sum_particle(struct fluid_sums *s, int r, const struct particles *p, int64_t i,
                                 const struct fluid_constants *k, const double g[2])
 {
-    const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i];
-    s->speed2[r] += square(vx) + square(vy);
-    s->height[r] -= g[0] * p->x[i] + g[1] * p->y[i];
-    s->energy[r] += eos_energy(dens, k->c0);
-    s->vx[r] += vx;
-    s->vy[r] += vy;
+    const double vx = p->vx[i], vy = p->vy[i], dens = p->dens[i], m = p->m ? p->m[i] : 1;
+    s->speed2[r] += m * (square(vx) + square(vy));
+    s->height[r] -= m * (g[0] * p->x[i] + g[1] * p->y[i]);
+    s->energy[r] += m * eos_energy(dens, k->c0);
+    s->vx[r] += m * vx;
+    s->vy[r] += m * vy;
+    s->mass[r] += m;
     s->extreme[r] = max2(s->extreme[r], fabs(dens));
 }
 
@@ -38,15 +39,17 @@ static void add_fluid(const struct simulation *s, struct ledger *row)
 #pragma omp simd
         for (int r = 0; r < ABREAST; r++) sum_particle(&sums, r, p, i + r, k, g);
     for (; i < p->n; i++) sum_particle(&sums, 0, p, i, k, g);
+    double mass = 0;
     for (int r = 0; r < ABREAST; r++) {
         row->kinetic += 0.5 * k->mass * sums.speed2[r];
         row->potential += k->mass * sums.height[r];
         row->internal += k->mass * sums.energy[r];
         row->momentum_x += k->mass * sums.vx[r];
         row->momentum_y += k->mass * sums.vy[r];
+        mass += sums.mass[r];
         row->dens_extreme = max2(row->dens_extreme, sums.extreme[r]);
     }
-    row->mass += k->mass * (double)p->n;
+    row->mass += k->mass * mass;
 }
 
 static void add_solid(const struct simulation *s, struct ledger *row)

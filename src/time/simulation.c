@@ -60,6 +60,7 @@ static void start_fluid(struct simulation *s)
         const double pressure =
             expr_or(f->pressure.e[0], x, y, -s->scene->rho0 * s->scene->top.gravity[1] * depth);
         p->dens[i] = eos_dens(pressure, s->scene->rho0, s->scene->c0);
+        if (p->m) p->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + p->dens[i] : 1;
         p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
         p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
         if (p->vx_half) {
@@ -156,8 +157,10 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
 {
     const struct fluid_constants *const k = &s->fluid.k;
     const double *const g = s->scene->top.gravity;
-    return k->mass * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] -
-                      g[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+    const double m = p->m ? p->m[i] : 1;
+    return m * k->mass *
+           (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] - g[1] * p->y[i] +
+            eos_energy(p->dens[i], k->c0));
 }
 
 /* What gravity along joined sides gives to fluid that comes in again opposite. */

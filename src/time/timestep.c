@@ -39,6 +39,13 @@ static double bound_artificial(const struct simulation *s, const struct fluid_ex
     return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
 }
 
+/* T-33c. */
+static double bound_damper(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    return 0.1 * s->fluid.k.h / (s->fluid.k.damper * s->fluid.k.c0);
+}
+
 /* L-8: half of the stable 2/omega between two dummies where L-7 is steepest. */
 static double bound_repulsion(const struct simulation *s, const struct fluid_extremes *now)
 {
@@ -89,7 +96,7 @@ static bound_function *const bound_functions[BOUND_COUNT] = {
 #include "time/bounds.def"
 #undef BOUND
 };
-static const unsigned bound_effects[BOUND_COUNT] = {
+static const effect_set bound_effects[BOUND_COUNT] = {
 #define FX_NONE 0u
 #define BOUND(name, effect, source) FX_##effect,
 #include "time/bounds.def"

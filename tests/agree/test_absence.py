@@ -27,7 +27,7 @@ ALLOWED = 0.01
 STEPS = 24
 STEP = 1e-4  # s: fixed, so that the number of steps does not depend on anything
 
-TOP = f"dp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = {STEP}\n"
+TOP = f"scheme = paper\ndp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = {STEP}\n"
 FLUID = "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
 WATER = FLUID + "surface = 0.1\nartificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
 WALL = "[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.4, 0; 0.4, 0.2\n"

@@ -163,6 +163,54 @@ static void test_default_cfl(void)
     TEST_ASSERT_EQUAL_DOUBLE_MESSAGE(0.4, scene.numerics.cfl, "none of three is light");
 }
 
+#define WATER "[fluid w]\nshape = box 0, 30 mm, 10 mm, 40 mm\nsound_speed = 20\n"
+
+/* What case/presets.def sets, beside fluid alone and beside a solid. */
+static void test_scheme(void)
+{
+    parse(TOP WATER, 0, NULL);
+    TEST_ASSERT_EQUAL_INT(SCHEME_STANDARD, scene.top.scheme);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 2);
+    TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0.1);
+    TEST_ASSERT_EQUAL_INT(DIFFUSION_ANTUONO, scene.fluid[0].diffusion_form);
+    TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 0.25);
+    TEST_ASSERT_EQUAL_INT(MASS_HYDROSTATIC, scene.fluid[0].particle_mass);
+    TEST_ASSERT_TRUE(scene.fluid[0].wall_repulsion == 0.3);
+    parse(TOP WATER BLOCK, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.5);
+    TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.35e-3, scene_solid_h(&scene, 0));
+    parse(TOP BLOCK, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.35e-3, scene_solid_h(&scene, 0));
+    parse("scheme = paper\n" TOP WATER, 0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
+    TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0);
+    TEST_ASSERT_TRUE(scene.fluid[0].wall_repulsion == 0);
+    TEST_ASSERT_EQUAL_INT(MASS_EQUAL, scene.fluid[0].particle_mass);
+}
+
+/* A key that the case gives wins, and leaves no other key of the scheme in the way; the effective case, which
+ * gives them all, is the same scene. */
+static void test_a_key_wins_over_the_scheme(void)
+{
+    parse(TOP "[numerics]\nh_over_dp = 1.6\nsolid_h_over_dp = 1.8\n" WATER
+              "density_diffusion = 0\nwall_repulsion = 0\n" BLOCK,
+          0, NULL);
+    TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.6);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.8e-3, scene_solid_h(&scene, 0));
+    TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_write(&scene, effective, &diag));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT(SCHEME_STANDARD, again.top.scheme);
+    TEST_ASSERT_TRUE(again.fluid[0].density_diffusion == 0);
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
+                          scene_parse(&scene, TOP BLOCK "[numerics]\nsolid_h_over_dp = 0.5",
+                                      "x.cfg", 0, NULL, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "too few neighbours"), diag.text);
+}
+
 static void test_like_inherits_values_but_no_regions(void)
 {
     parse(TOP BLOCK "law = svk\nclamp = box 0, 0, 10 mm, 5 mm\n"
@@ -350,6 +398,8 @@ int main(void)
     RUN_TEST(test_set_comes_before_evaluation);
     RUN_TEST(test_set_of_sections);
     RUN_TEST(test_default_cfl);
+    RUN_TEST(test_scheme);
+    RUN_TEST(test_a_key_wins_over_the_scheme);
     RUN_TEST(test_like_inherits_values_but_no_regions);
     RUN_TEST(test_sound_speed_follows_eq_3);
     RUN_TEST(test_line_ends_and_marks_of_other_systems);

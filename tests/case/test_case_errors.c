@@ -269,7 +269,7 @@ static const struct {
      "kind"},
     {TOP FLUID "[fluid v]\nlike = w\nwall_repulsion = 0.1\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
      NULL,
-     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0; all fluid is of "
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0.3; all fluid is of "
      "one "
      "kind"},
     {TOP FLUID "shifting = 1\nshifting_speed = largest\n"

@@ -40,6 +40,19 @@ static const struct {
      "line 6: [fluid w] wall_repulsion"},
     {TOP FLUID "[numerics]\nsides = one\n" WALL, FX_FLUID | FX_WALL | FX_ONE_SIDED,
      EFFECT_ONE_SIDED, "line 7: [numerics] sides"},
+    {TOP FLUID "acoustic_damper = 0.2\n", FX_FLUID | FX_DAMPER, EFFECT_DAMPER,
+     "line 6: [fluid w] acoustic_damper"},
+    {TOP FLUID "particle_mass = hydrostatic\nsurface = 0.1\n", FX_FLUID | FX_MASSES, EFFECT_MASSES,
+     "line 6: [fluid w] particle_mass"},
+    {TOP FLUID "particle_mass = hydrostatic\npressure = 10\n", FX_FLUID | FX_MASSES, EFFECT_MASSES,
+     "line 6: [fluid w] particle_mass"},
+    /* The scheme calls for what it sets; masses where the fluid starts under pressure. */
+    {TOP "scheme = standard\n" FLUID WALL,
+     FX_FLUID | FX_WALL | FX_DIFFUSION | FX_ANTUONO | FX_DAMPER | FX_REPULSION, EFFECT_ANTUONO,
+     "line 4: [fluid w] diffusion_form"},
+    {TOP "scheme = standard\n" FLUID "density_diffusion = 0\nsurface = 0.1\n" PLAIN_SOLID,
+     FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE | FX_MASSES | FX_REPULSION, EFFECT_REPULSION,
+     "line 4: [fluid w] wall_repulsion"},
     {TOP FLUID "shifting = 2\n", FX_FLUID | FX_SHIFTING, EFFECT_SHIFTING,
      "line 6: [fluid w] shifting"},
     {TOP "gravity = 0, -9.81\n" FLUID, FX_FLUID | FX_GRAVITY, EFFECT_GRAVITY, "line 3: gravity"},
@@ -95,7 +108,7 @@ static void test_the_set_follows_from_the_case(void)
         rig_open(&rig, scenes[k].text, NULL);
         /* The default integrator is an effect of the fluid. */
         const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
-        const unsigned integrator = by_default ? FX_LEAPFROG : 0;
+        const effect_set integrator = by_default ? FX_LEAPFROG : 0;
         tested |= EFFECT_BIT(scenes[k].effect);
         TEST_ASSERT_EQUAL_HEX32_MESSAGE(scenes[k].effects | integrator,
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,

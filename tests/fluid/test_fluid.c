@@ -73,6 +73,53 @@ static void test_pressure(void)
     TEST_ASSERT_TRUE(p->ddens[a] == 0);
 }
 
+/* Masses of 1.5 and 0.5 m: as test_pressure, of a with the mass of b and of b with that of a,
+ *   0.5 * 0.6822899792818219 and 1.5 * 0.6822899792818219 m/s^2: momentum is kept. Eq. 4a likewise has the
+ * volumes 1.5 m/rho_a and 0.5 m/rho_b. */
+static void test_particles_of_unlike_mass(void)
+{
+    place("w.particle_mass=hydrostatic", "w.pressure=0");
+    p->m[0] = 1.5;
+    p->m[1] = 0.5;
+    evaluate(1, 0, -1, 2);
+    const double full = 0.6822899792818219;
+    assert_near(1e-13, 0.6 * 0.5 * full, p->ax[a], "ax of a");
+    assert_near(1e-13, -0.8 * 1.5 * full, p->ay[b], "ay of b");
+    assert_near(1e-11, 0.5 * 88.2529762870353, 1000 * p->ddens[a], "drho_a");
+    assert_near(1e-11, 1.5 * 90.00921138028774, 1000 * p->ddens[b], "drho_b");
+    const struct ledger row = simulation_ledger(&rig.sim);
+    assert_near(1e-9, 2 * 640, row.mass, "mass");
+    assert_near(1e-9, 640 * (1.5 * 0.5 + 0.5 * 0.5 * 5), row.kinetic, "kinetic energy");
+    assert_near(1e-9, 640 * (1.5 - 0.5), row.momentum_x, "momentum");
+}
+
+/* A column starts with as much mass in each place as the density of its depth says, so that particles fill
+ * their places: m/(1 + d) = 1. */
+static void test_masses_carry_the_density(void)
+{
+    rig_open(&rig, pair, "w.particle_mass=hydrostatic", "w.surface=3", "gravity=0,-9.81", NULL);
+    p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        TEST_ASSERT_TRUE(p->dens[i] > 0.1);
+        assert_near(1e-15, 1, p->m[i] / (1 + p->dens[i]), "volume over dp^2");
+    }
+}
+
+/* Acoustic damper of 0.25: at rates of 0.3 and -0.1 1/s it adds 0.25 * 1000 * 10 * 1 * 0.2 = 500 Pa
+ * to the sum of both pressures, 3154.5859965184296 Pa. The evaluation leaves the rates that it finds,
+ * 88.2529762870353/1010 and 90.00921138028774/1020 1/s. */
+static void test_acoustic_damper(void)
+{
+    place("w.acoustic_damper=0.25", "gravity=0,0");
+    p->swell[0] = 0.3;
+    p->swell[1] = -0.1;
+    evaluate(1, 0, -1, 2);
+    check_forces(0.6822899792818219 * (1 + 500 / 3154.5859965184296), 0, 0);
+    assert_near(1e-14, 88.2529762870353 / 1010, p->swell[a], "rate of a");
+    assert_near(1e-14, 90.00921138028774 / 1020, p->swell[b], "rate of b");
+    assert_near(1e-10, 1030.5050301001436, rig_pressure(&rig.sim, a), "P_a");
+}
+
 static void test_gravity_is_added(void)
 {
     place("gravity=1,-9.81", "w.density=1000");
@@ -435,6 +482,9 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_pressure);
+    RUN_TEST(test_particles_of_unlike_mass);
+    RUN_TEST(test_masses_carry_the_density);
+    RUN_TEST(test_acoustic_damper);
     RUN_TEST(test_gravity_is_added);
     RUN_TEST(test_continuity);
     RUN_TEST(test_viscosity_acts_on_approaching_pairs);

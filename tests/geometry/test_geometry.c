@@ -211,7 +211,7 @@ static void test_thin_walls_and_slits_are_told(void)
               "[wall b]\nshape = box 5.4 mm, -5 mm, 10 mm, 5 mm\n",
               NULL);
     TEST_ASSERT_NOT_NULL(strstr(warnings, "[wall a] is 0.002 m thick, less than the kernel's reach "
-                                          "2 h = 0.0027 m"));
+                                          "2 h = 0.004 m"));
     TEST_ASSERT_NOT_NULL(strstr(warnings, "between [wall a] and [wall b] is a slit of 0.0004 m"));
 }
 

@@ -13,10 +13,14 @@ enum { MAX_SETS = 16 };
 
 struct test_switches rig_switches;
 
+/* Scenes of tests have the effects that they name, unless they choose a scheme. */
+static const char *const plain_scheme = "scheme=paper";
+
 void rig_open(struct rig *r, const char *text, ...)
 {
     const char *sets[MAX_SETS];
     int n = 0;
+    if (!strstr(text, "scheme = ")) sets[n++] = plain_scheme;
     va_list args;
     va_start(args, text);
     for (const char *set; (set = va_arg(args, const char *));) {
@@ -64,7 +68,8 @@ void rig_refuses(const char *text, const char *why)
     struct scene scene;
     struct simulation sim;
     struct diag d = {0};
-    enum err e = scene_load_text(&scene, text, "t.cfg", 0, NULL, &d);
+    const int n = strstr(text, "scheme = ") ? 0 : 1;
+    enum err e = scene_load_text(&scene, text, "t.cfg", n, &plain_scheme, &d);
     if (e == ERR_OK) {
         e = simulation_create(&sim, &scene, &d);
         scene_free(&scene);

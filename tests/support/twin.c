@@ -28,6 +28,13 @@ static double tait(const struct twin *t, double rho)
     return t->c0 * t->c0 * t->rho0 / 7 * (pow(rho / t->rho0, 7) - 1);
 }
 
+/* Sun et al. 2023: what the rate of the density adds to the pressure. */
+static void state_of(const struct twin *t, struct twin_point *f)
+{
+    f->p_state = tait(t, f->rho);
+    f->p = f->p_state + t->damper * t->rho0 * t->c0 * t->h * f->swell;
+}
+
 static double tait_inverse(const struct twin *t, double p)
 {
     return t->rho0 * pow(p * 7 / (t->c0 * t->c0 * t->rho0) + 1, 1.0 / 7);
@@ -48,6 +55,7 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .tensile = f->tensile_control,
                        .repulsion = f->wall_repulsion,
                        .one_sided = scene->numerics.sides == SIDES_ONE,
+                       .damper = f->acoustic_damper,
                        .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
@@ -63,6 +71,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
         for (int64_t i = 0; i < p->n; i++) {
             struct twin_point *const q = &t->point[kind][i];
             *q = (struct twin_point){.x = p->x[i], .y = p->y[i], .u = p->vx[i], .v = p->vy[i]};
+            q->m = t->mass * (kind == KIND_FLUID && p->m ? p->m[i] : 1);
+            if (kind == KIND_FLUID && p->swell) q->swell = p->swell[i];
             if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * p->dens[i];
             if (kind == KIND_WALL) q->sticks = scene->wall[p->body[i]].slip == SLIP_NONE;
             if (kind == KIND_SOLID) q->sticks = scene->solid[p->body[i]].slip == SLIP_NONE;
@@ -120,7 +130,7 @@ static void renormalised_gradient(const struct twin *t, struct twin_point *a)
         const double d[2] = {apart(t, 0, b->x, a->x), apart(t, 1, b->y, a->y)};
         const double r = hypot(d[0], d[1]);
         if (r >= 2 * t->h || r == 0) continue;
-        const double slope = kernel_derivative(r, t->h) / r * t->mass / b->rho;
+        const double slope = kernel_derivative(r, t->h) / r * b->m / b->rho;
         for (int i = 0; i < 2; i++) {
             s[i] -= (b->rho - a->rho) * slope * d[i];
             for (int j = 0; j < 2; j++) L[i][j] -= d[i] * slope * d[j];
@@ -136,7 +146,7 @@ static void renormalised_gradient(const struct twin *t, struct twin_point *a)
 static void laminar_pair(const struct twin *t, struct twin_point *a, const struct twin_point *b,
                          bool mirrored, double factor)
 {
-    const double c = t->mass * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
+    const double c = b->m * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
     a->ax += c * (a->u - (mirrored ? b->mu : b->u));
     a->ay += c * (a->v - (mirrored ? b->mv : b->v));
     a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
@@ -164,7 +174,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     const double gx = kernel_derivative(r, t->h) * dx / r; /* Eq. 5 */
     const double gy = kernel_derivative(r, t->h) * dy / r;
     const double du = a->u - b->u, dv = a->v - b->v, vx = du * dx + dv * dy;
-    const double eta2 = 0.01 * t->h * t->h, V = t->mass / b->rho;
+    const double eta2 = 0.01 * t->h * t->h, V = b->m / b->rho;
     double Pi = 0, psi = 0;
     if (!slip && vx < 0)
         Pi = -t->alpha * t->c0 / (0.5 * (a->rho + b->rho)) * t->h * vx / (r * r + eta2);
@@ -176,13 +186,13 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
         psi = 2 * step / (r * r + eta2);
     }
     const double pressure = slip ? surface_pressure(t, a, b) : a->p + b->p;
-    const double factor = -t->mass * (pressure / (a->rho * b->rho) + Pi);
+    const double factor = -b->m * (pressure / (a->rho * b->rho) + Pi);
     const double moved = a->rho * V * (du * gx + dv * gy);
     const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
     if (!slip && t->tensile > 0) {
         const double f = kernel(r, t->h) / kernel(t->dp, t->h);
         const double pull = fmax(-a->p, 0) + fmax(-b->p, 0);
-        const double push = -t->mass * t->tensile * pull * pow(f, 4) / (a->rho * b->rho);
+        const double push = -b->m * t->tensile * pull * pow(f, 4) / (a->rho * b->rho);
         a->ax += push * gx;
         a->ay += push * gy;
         a->size_a += fabs(push) * hypot(gx, gy);
@@ -194,7 +204,8 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     a->cy += V * gy;
     a->div_r -= V * (dx * gx + dy * gy);
     a->drho += moved + diffused;
-    a->size_a += t->mass *
+    a->div -= moved / a->rho;
+    a->size_a += b->m *
                  ((fabs(a->p) + fabs(b->p) + fabs(pressure)) / (a->rho * b->rho) + fabs(Pi)) *
                  hypot(gx, gy);
     a->size_drho += a->rho * V * (fabs(du * gx) + fabs(dv * gy)) + fabs(diffused);
@@ -211,25 +222,24 @@ static void solid_force(const struct twin *t, struct twin_point *s)
         if (r >= 2 * t->h) continue;
         const double slope = kernel_derivative(r, t->h) / r;
         const double pressure = surface_pressure(t, f, s);
-        const double factor = -t->mass * t->mass * pressure / (s->rho * f->rho);
+        const double factor = -s->m * f->m * pressure / (s->rho * f->rho);
         s->fx += factor * slope * dx;
         s->fy += factor * slope * dy;
         if (s->sticks) {
-            const double drag = t->mass * t->mass * 2 * t->nu * t->rho0 / (s->rho * f->rho) *
-                                slope * r * r / (r * r + 0.01 * t->h * t->h);
+            const double drag = s->m * f->m * 2 * t->nu * t->rho0 / (s->rho * f->rho) * slope * r *
+                                r / (r * r + 0.01 * t->h * t->h);
             s->fx += drag * (s->mu - f->u);
             s->fy += drag * (s->mv - f->v);
             s->size_f += fabs(drag) * (hypot(s->mu, s->mv) + hypot(f->u, f->v));
         }
-        s->size_f += fabs(t->mass * t->mass / (s->rho * f->rho) * slope * r) *
+        s->size_f += fabs(s->m * f->m / (s->rho * f->rho) * slope * r) *
                      (fabs(s->p) + fabs(f->p) + fabs(pressure));
     }
 }
 
 void twin_evaluate(struct twin *t)
 {
-    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++)
-        t->point[KIND_FLUID][i].p = tait(t, t->point[KIND_FLUID][i].rho);
+    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) state_of(t, &t->point[KIND_FLUID][i]);
     for (int64_t i = 0; t->renormalised && i < t->n[KIND_FLUID]; i++)
         renormalised_gradient(t, &t->point[KIND_FLUID][i]);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
