@@ -88,7 +88,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
         full = full / FOUR(p->m, i);
     }
     if (f->effects & FX_DAMPER)
-        store_four(p->swell + i, -slope * full * (rate / (1 + FOUR(p->dens, i))), count);
+        store_four(p->swell_new + i, -slope * full * (rate / (1 + FOUR(p->dens, i))), count);
     const four_double ax =
         push * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
     const four_double ay =

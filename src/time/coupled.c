@@ -70,10 +70,20 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
 }
 
+void accept_evaluation(struct simulation *s)
+{
+    s->evaluated = false;
+    if (!(s->effects & FX_DAMPER)) return;
+    struct particles *const p = &s->kind[KIND_FLUID];
+    double *const before = p->swell;
+    p->swell = p->swell_new;
+    p->swell_new = before; /* which the next evaluation overwrites */
+}
+
 void evaluate_start(struct simulation *s)
 {
     evaluate_fluid(s, s->state.time);
-    s->evaluated = false;
+    accept_evaluation(s);
 }
 
 /* The extremes of some of the fluid, found without a branch. */

@@ -23,6 +23,9 @@ void evaluate_fluid(struct simulation *s, double time);
 /* The same at the state that a step starts from, which need not be repeated where output has just made it. */
 void evaluate_start(struct simulation *s);
 
+/* The step uses the evaluation: the next one refers to it. One that is only looked at changes nothing. */
+void accept_evaluation(struct simulation *s);
+
 /* Advances the fluid by `rows`, which brings the particles from to end - 1 to their new velocities and
  * densities; `by` is what it needs to know. Their extremes are found while they are in the caches. */
 typedef void advance_rows(struct particles *p, const void *by, int64_t from, int64_t end);

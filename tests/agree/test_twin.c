@@ -85,7 +85,7 @@ static void compare_fluid(double tolerance)
         top_a = fmax(top_a, hypot(p->ax[i] - q->ax, p->ay[i] - q->ay));
         top_rho = fmax(top_rho, fabs(rho0 * p->ddens[i] - q->drho));
         top_p = fmax(top_p, fabs(rig_pressure(&rig.sim, i) - q->p_state));
-        if (p->swell) top_div = fmax(top_div, fabs(p->swell[i] + q->div));
+        if (p->swell) top_div = fmax(top_div, fabs(p->swell_new[i] + q->div));
         if (!p->div_r) continue;
         /* Both are of the size of 1/h and 1. */
         assert_near(tolerance / twin.h, q->cx, p->grad_c_x[i], "gradient of the concentration, x");
@@ -197,13 +197,9 @@ static void test_the_comparison_can_fail(void)
     rig_open(&rig, channel, "precision=double", "water.wall_repulsion=0.3",
              "water.acoustic_damper=0.3", NULL);
     disorder();
-    twin_copy(&twin, &rig.sim); /* an evaluation writes the divergence that the next one reads */
-    const struct twin before = twin;
     rig_evaluate(&rig);
     for (int what = 0; what < 7; what++) {
         twin_copy(&twin, &rig.sim);
-        for (int64_t i = 0; i < twin.n[KIND_FLUID]; i++)
-            twin.point[KIND_FLUID][i].swell = before.point[KIND_FLUID][i].swell;
         double *const constant[] = {&twin.alpha, &twin.delta,     &twin.g[1],  &twin.h,
                                     &twin.nu,    &twin.repulsion, &twin.damper};
         *constant[what] *= 1 + 1e-6;
@@ -219,7 +215,6 @@ static void test_the_comparison_can_fail(void)
         TEST_ASSERT_TRUE(fmax(a / size_a, rho / size_rho) > 1e-11);
         twin_free(&twin);
     }
-    twin = before;
 }
 
 int main(void)

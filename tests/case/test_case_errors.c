@@ -309,8 +309,8 @@ static const struct {
     {TOP SOLID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
      "bad.cfg:8: [probe M1] measures pressure, but there is no fluid"},
     {TOP FLUID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
-     "bad.cfg:6: [probe M1] point (0, 1) lies outside of the domain, (-0.0032, -0.0032) to "
-     "(0.0232, 0.0422) m"},
+     "bad.cfg:6: [probe M1] point (0, 1) lies outside of the domain, (-0.0045, -0.0045) to "
+     "(0.0245, 0.0435) m"},
     {TOP SOLID "[reference r]\nprobe = M1_dx_m\nfile = a.csv\n", NULL,
      "bad.cfg:8: [reference r] probe = M1_dx_m: no probe has such a column; a column is "
      "PROBE_QUANTITY_UNIT, such as M1_dx_m"},
