@@ -328,7 +328,7 @@ static const struct {
      "bad.cfg:7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET "
      ""
      "(called for by `integrator` in line 3): its two-step form takes friction in the middle"},
-    {TOP FLUID, "w.diffusion_form=fourtakas",
+    {TOP FLUID "density_diffusion = 0\n", "w.diffusion_form=fourtakas",
      "--set: [fluid w] diffusion_form does nothing without DIFFUSION: leave it out, or call for "
      "that by fluid.density_diffusion > 0"},
     {TOP SOLID "hourglass = 0\nhourglass_form = printed\n", NULL,
