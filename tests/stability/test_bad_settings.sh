@@ -48,7 +48,7 @@ says 0 'shifting_speed = largest under gravity lifts a free surface' column.cfg 
     water.shifting_speed=largest
 says 0 'their product is beyond 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6
-light='thin.cfg:26: .solid plate., 0.3 times as dense as the fluid, may be driven by leapfrog with numerics'
+light='thin.cfg:27: .solid plate., 0.3 times as dense as the fluid, may be driven by leapfrog with numerics'
 says 0 "$light.cfl = 0.3; .* C_CFL is 0.2" thin.cfg integrator=leapfrog plate.density=300 numerics.cfl=0.3
 says 0 "$light.fixed_step = 0.0001 s (C_CFL = 0.296);" thin.cfg integrator=leapfrog plate.density=300 \
     numerics.fixed_step=1e-4

@@ -41,6 +41,7 @@ CASE
 
 # Density: a wall that is driven into water which cannot give way.
 stopped density 'density is off by' 'fluid particle [0-9]* at (.*) m has \(rho/rho0 - 1\|speed\)' <<CASE
+scheme = paper
 dp = 1 cm
 end_time = 1
 $water
