@@ -367,7 +367,7 @@ static const struct {
      NULL,
      "bad.cfg:11: [domain] periodic: [solid a] and its own image in x are 0.002 m apart, and "
      "solids "
-     "are not bonded through a periodic side: at least 2 h = 0.0027 m are needed"},
+     "are not bonded through a periodic side: at least 2 h = 0.003 m are needed"},
     {TOP FLUID "[domain]\nperiodic = x\nlower = -1 mm, 0\nupper = 19 mm, 0.1\n", NULL,
      "bad.cfg:6: [domain] leaves out a fluid particle at (0.0195, 0.0005) m"},
     {TOP SOLID "[domain]\nlower = 5 mm, 0\nupper = 1, 1\n", NULL,

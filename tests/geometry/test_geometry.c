@@ -108,7 +108,7 @@ static void test_shapes_that_abut(void)
 static void test_regions_that_abut_share_no_particle(void)
 {
     static const char text[] =
-        "dp = 1 mm\nend_time = 1 s\n[constants]\ntilt = 3.3 mm\n"
+        "scheme = paper\ndp = 1 mm\nend_time = 1 s\n[constants]\ntilt = 3.3 mm\n"
         "[fluid w]\nsound_speed = 20\nshape = polygon 0, 0; 20 mm, tilt; 20 mm, 30 mm; 0, 30 mm\n"
         "[wall bed]\nshape = polygon 0, 0; 20 mm, tilt; 20 mm, -10 mm; 0, -10 mm\n";
     static const char *const sets[] = {"tilt=0", "tilt=20 mm", "tilt=10 mm", "tilt=1 mm",
