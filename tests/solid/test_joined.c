@@ -176,7 +176,8 @@ static void test_what_cannot_be_joined(void)
 {
 #define PAIR BAR "shape = box 0, 0, 0.1, 0.06\n[solid right]\nlike = left\n"
     rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = lefd\n", "did you mean `left`");
-    rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = right\n", "cannot be joined to itself");
+    rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = right\n",
+                "cannot be joined to itself");
     rig_refuses(PAIR "shape = box 0.2, 0, 0.3, 0.06\njoined = left\n", "away from it");
     rig_refuses(PAIR "shape = box 0.1, 0, 0.2, 0.06\njoined = left\nhourglass = 10\n",
                 "`hourglass`");
