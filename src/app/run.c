@@ -492,6 +492,8 @@ static void say_results(const struct run *r)
     if (r->s->state.particle_steps > r->record.start_particle_steps)
         session_say(r->options, "%.3g million particle steps a second: %s",
                     1e-6 * report_rate(r->s, &r->record), text);
+    session_say(r->options, "energy gained: at most %.3g J/m, %.2g %% of what was in play",
+                r->s->state.gain, 100 * r->s->state.gain_share);
     for (int k = 0; k < r->references.n && r->record.score; k++) {
         reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
         session_say(r->options, "%s", text);

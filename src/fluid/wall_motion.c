@@ -80,6 +80,14 @@ double wall_motion_speed2(const struct wall_motion *m, const struct particles *w
     return top;
 }
 
+double moving_body_power(const struct moving_wall *b, const struct particles *walls)
+{
+    double power = 0;
+    for (int64_t i = b->first; i < b->end && !b->rests; i++)
+        power -= walls->fx[i] * walls->vx[i] + walls->fy[i] * walls->vy[i];
+    return power;
+}
+
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls)
 {
     double power = 0;

@@ -35,5 +35,6 @@ void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *
 /* Largest speed, squared, and power that the walls give to the fluid, W/m. */
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
+double moving_body_power(const struct moving_wall *b, const struct particles *walls);
 
 #endif

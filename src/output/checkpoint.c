@@ -96,7 +96,8 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
 #define STATE(type, name, unit, meaning) bytes += sizeof(struct block_header) + sizeof(type);
 #include "time/state.def"
 #undef STATE
-    bytes += sizeof(struct block_header) + sizeof s->state.bound_steps;
+    bytes +=
+        2 * sizeof(struct block_header) + sizeof s->state.bound_steps + sizeof s->state.account;
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
             bytes +=
@@ -106,13 +107,14 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
 
 static uint32_t put_state(struct image *m, const struct state *st)
 {
-    uint32_t blocks = 1;
+    uint32_t blocks = 2;
 #define STATE(type, name, unit, meaning)                            \
     put_block(m, #name, OWNER_STATE, item_of(#type), &st->name, 1); \
     blocks++;
 #include "time/state.def"
 #undef STATE
     put_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, st->bound_steps, BOUND_COUNT);
+    put_block(m, "account", OWNER_STATE, ITEM_DOUBLE, &st->account, ACCOUNT_NUMBERS);
     return blocks;
 }
 
@@ -557,6 +559,7 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
     TRY(load_block(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
 #include "time/state.def"
 #undef STATE
+    TRY(load_block(m, "account", OWNER_STATE, ITEM_DOUBLE, ACCOUNT_NUMBERS, &st->account, d));
     return load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
 }
 

@@ -105,6 +105,8 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     clear_interface_impulse(s);
     if (s->effects & FX_FLUID) TRY(sort_again(s, d));
     TRY(simulation_resume(s, d));
-    s->state.energy_start -= simulation_ledger(s).dissipated;
+    const struct ledger now = simulation_ledger(s);
+    s->state.energy_start -= now.dissipated;
+    account_begin(s, &now);
     return ERR_OK;
 }

@@ -173,6 +173,8 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_number(j, "wall_work", s->state.wall_work);
     json_number(j, "energy_lost_with_particles", s->state.lost_energy);
     json_number(j, "dissipated", b->dissipated);
+    json_number(j, "gain", s->state.gain);
+    json_number(j, "gain_over_energy_in_play", s->state.gain_share);
     number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
     json_number(j, "momentum_x", b->momentum_x - a->momentum_x);
     json_number(j, "momentum_y", b->momentum_y - a->momentum_y);

@@ -19,8 +19,9 @@ static enum err find_held(struct loads *v, struct arena *a, const struct particl
         v->n_held += p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0;
     v->held = arena_alloc(a, (size_t)v->n_held, sizeof *v->held, "moving clamps", d);
     v->held_power = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_power, "moving clamps", d);
+    v->held_rise = arena_alloc(a, (size_t)v->n_held, sizeof *v->held_rise, "moving clamps", d);
     v->motion = arena_alloc(a, (size_t)v->scene->n_solid, sizeof *v->motion, "moving clamps", d);
-    if (!v->held || !v->held_power || !v->motion) return ERR_MEMORY;
+    if (!v->held || !v->held_power || !v->held_rise || !v->motion) return ERR_MEMORY;
     v->n_held = 0;
     for (int64_t i = 0; i < p->n; i++)
         if (p->free[i] == 0 && moving_clamp(v->scene, p->body[i]) >= 0)
@@ -173,23 +174,31 @@ void loads_forces(struct loads *v, const struct solid *s, struct particles *p, d
         const int32_t i = v->held[k];
         const struct motion_point at = motion_of_point(&v->motion[p->body[i]], p->X[i], p->Y[i]);
         const double mass = s->body[p->body[i]].mass;
-        v->held_power[k] = mass * ((at.a[0] - p->sx[i]) * at.v[0] + (at.a[1] - p->sy[i]) * at.v[1]);
+        const double fx = mass * (at.a[0] - p->sx[i]), fy = mass * (at.a[1] - p->sy[i]);
+        v->held_power[k] = fx * at.v[0] + fy * at.v[1];
+        v->held_rise[k] = fx * at.a[0] + fy * at.a[1];
         p->sx[i] = at.a[0];
         p->sy[i] = at.a[1];
     }
 }
 
 double loads_work(const struct loads *v, const struct particles *p, const double *vx,
-                  const double *vy, double dt)
+                  const double *vy, double dt, double *on)
 {
     double work = 0;
     for (int n = 0; n < v->n_loads; n++)
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];
-            work += v->factor[n] * p->free[i] * dt *
-                    (v->fx[k] * (vx[i] + 0.5 * dt * p->sx[i]) +
-                     v->fy[k] * (vy[i] + 0.5 * dt * p->sy[i]));
+            const double done = v->factor[n] * p->free[i] * dt *
+                                (v->fx[k] * (vx[i] + 0.5 * dt * p->sx[i]) +
+                                 v->fy[k] * (vy[i] + 0.5 * dt * p->sy[i]));
+            work += done;
+            on[p->body[i]] += done;
         }
-    for (int64_t k = 0; k < v->n_held; k++) work += dt * v->held_power[k];
+    for (int64_t k = 0; k < v->n_held; k++) {
+        const double done = dt * (v->held_power[k] + 0.5 * dt * v->held_rise[k]);
+        work += done;
+        on[p->body[v->held[k]]] += done;
+    }
     return work;
 }

@@ -22,7 +22,8 @@ struct loads {
     /* Particles of clamps that move; their `free` is 1, so that they feel what they resist. */
     int64_t n_held;
     int32_t *held;
-    double *held_power;          /* [n_held] of the clamp, W/m */
+    double *held_power;          /* [n_held] of the clamp, W/m, */
+    double *held_rise;           /* and what its acceleration adds to that in a second, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
 };
 
@@ -42,8 +43,8 @@ void clear_driven_normals(const struct loads *v, struct particles *p);
 void loads_forces(struct loads *v, const struct solid *s, struct particles *p, double time);
 
 /* Work of loads and moving clamps over a kick of dt with the last forces, J/m, from the velocities before
- * it: the change of kinetic energy that they have caused, exactly. */
+ * it: the change of kinetic energy that they have caused, exactly. `on` is added what each body has got. */
 double loads_work(const struct loads *v, const struct particles *p, const double *vx,
-                  const double *vy, double dt);
+                  const double *vy, double dt, double *on);
 
 #endif

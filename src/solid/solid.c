@@ -157,7 +157,8 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         if (!s->scratch[k]) return ERR_MEMORY;
     }
     s->barrier = arena_alloc(a, 1, sizeof *s->barrier, "meeting point of the threads", d);
-    if (!s->barrier) return ERR_MEMORY;
+    s->work_on = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->work_on, "work on bodies", d);
+    if (!s->barrier || !s->work_on) return ERR_MEMORY;
     s->threads = useful_threads(p->n);
     return solid_parts_create(s, a, p, d);
 }
@@ -345,8 +346,12 @@ void solid_forces(const struct solid *s, struct particles *p)
 void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
                      double dt)
 {
-    if (s->contact) s->work += dt * s->contact->power;
-    if (s->loads) s->work += loads_work(s->loads, p, vx, vy, dt);
+    if (s->contact) {
+        const double work = dt * s->contact->power;
+        s->work += work;
+        s->work_on[0] += work;
+    }
+    if (s->loads) s->work += loads_work(s->loads, p, vx, vy, dt, s->work_on);
 }
 
 void solid_place_clamps(const struct solid *s, struct particles *p, double time)

@@ -135,7 +135,8 @@ struct solid {
     double
         time_since_fluid_eval; /* time since the fluid saw it, at the start of the sub-steps, s */
     double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */
-    double work;      /* of walls, clamps and loads on the solid since it was last asked for, J/m */
+    double work;     /* of walls, clamps and loads on the solid since it was last asked for, J/m */
+    double *work_on; /* [n_bodies] the same of each; that of contact at the first */
 };
 
 /* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are

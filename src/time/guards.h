@@ -20,8 +20,8 @@ struct guard {
 struct simulation;
 struct ledger;
 
-/* Where a ledger shows that energy has come from nowhere: warns once, and fails where that is nine
- * tenths of what is in motion and strain. */
+/* Looks at the account of energy at a row of the ledger: warns once where a region has gained energy, and
+ * fails where that is nine tenths of what is in play in it. */
 enum err guards_energy(struct simulation *s, const struct ledger *row, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -166,10 +166,13 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
 /* What gravity along joined sides gives to fluid that comes in again opposite. */
 static void book_crossings(struct simulation *s)
 {
-    for (int axis = 0; axis < 2; axis++)
-        s->state.periodic_energy += s->fluid.k.mass * s->scene->top.gravity[axis] *
-                                    (double)s->cells.crossings[axis] *
-                                    (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
+    for (int axis = 0; axis < 2; axis++) {
+        const double given = s->fluid.k.mass * s->scene->top.gravity[axis] *
+                             (double)s->cells.crossings[axis] *
+                             (s->scene->domain_upper[axis] - s->scene->domain_lower[axis]);
+        s->state.periodic_energy += given;
+        s->state.account.put[account_entry(KIND_FLUID, 0)] += given;
+    }
 }
 
 static void forget(struct particles *p, int64_t i)
@@ -215,8 +218,11 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     if (s->effects & FX_WALL) forget_touch(s, KIND_WALL);
     if (s->effects & FX_COUPLING) forget_touch(s, KIND_SOLID);
     const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
-    for (int64_t i = fluid->n - lost; i < fluid->n; i++)
-        s->state.lost_energy += energy_of(s, fluid, i);
+    for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
+        const double energy = energy_of(s, fluid, i);
+        s->state.lost_energy += energy;
+        s->state.account.put[account_entry(KIND_FLUID, fluid->body[i])] -= energy;
+    }
     if (s->effects & FX_PERIODIC) book_crossings(s);
     fluid->n -= lost;
     s->state.lost += lost;
@@ -320,6 +326,7 @@ static enum err build(struct simulation *s, struct diag *d)
     const struct ledger start = simulation_ledger(s);
     s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
                             start.hourglass + start.contact;
+    account_begin(s, &start);
     s->state.det_low = 1;
     s->evaluated = false; /* the caller may set the scene up further */
     return ERR_OK;
@@ -363,7 +370,22 @@ static double shift_fluid(struct simulation *s, double clock)
 /* Work that moving walls have done on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
-    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
+    const struct particles *const walls = &s->kind[KIND_WALL];
+    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, walls);
+    for (int k = 0; k < s->wall_motion.n; k++) {
+        const struct moving_wall *const b = &s->wall_motion.body[k];
+        account_work(&s->state.account, KIND_WALL, b->section,
+                     s->state.dt * moving_body_power(b, walls));
+    }
+}
+
+/* The share of a particle in its section's account of T-70. */
+static void book_gravity(struct simulation *s, enum kind kind, const struct particles *p, int64_t i,
+                         double mass, const double g[2])
+{
+    const double *const start = s->scene->top.gravity;
+    s->state.account.put[account_entry(kind, p->body[i])] +=
+        s->state.dt * mass * ((g[0] - start[0]) * p->vx[i] + (g[1] - start[1]) * p->vy[i]);
 }
 
 /* T-70: work of what gravity is beyond its value at t = 0, whose potential energy the ledger has. Over the
@@ -376,12 +398,14 @@ static void add_gravity_work(struct simulation *s)
     for (int64_t i = 0; i < fluid->n; i++) {
         px += s->fluid.k.mass * fluid->vx[i];
         py += s->fluid.k.mass * fluid->vy[i];
+        book_gravity(s, KIND_FLUID, fluid, i, s->fluid.k.mass, g);
     }
     for (int64_t i = 0; i < solid->n; i++) {
         const double mass = s->scene->solid[solid->body[i]].gravity * solid->free[i] *
                             s->solid.body[solid->body[i]].mass;
         px += mass * solid->vx[i];
         py += mass * solid->vy[i];
+        book_gravity(s, KIND_SOLID, solid, i, mass, g);
     }
     s->state.wall_work += s->state.dt * ((g[0] - s->scene->top.gravity[0]) * px +
                                          (g[1] - s->scene->top.gravity[1]) * py);
@@ -404,6 +428,10 @@ static void take_work(struct simulation *s)
 {
     s->state.wall_work += s->solid.work;
     s->solid.work = 0;
+    for (int k = 0; k < s->solid.n_bodies; k++) {
+        account_work(&s->state.account, KIND_SOLID, k, s->solid.work_on[k]);
+        s->solid.work_on[k] = 0;
+    }
 }
 
 /* Gradients of the solid for those who look at them after this step: the guards, and the search of the
@@ -461,6 +489,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 
 enum err simulation_resume(struct simulation *s, struct diag *d)
 {
+    TRY(account_check(&s->state.account, d));
     s->evaluated = false;
     if (s->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)

@@ -9,6 +9,7 @@
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "fluid/fluid.h"
+#include "time/account.h"
 #include "time/ledger.h"
 #include "time/guards.h"
 #include "fluid/wall_motion.h"
@@ -31,6 +32,7 @@ struct state {
 #include "time/state.def"
 #undef STATE
     int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
+    struct account account;           /* of energy, by regions */
 };
 
 /* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). What is not a number they may pass over,

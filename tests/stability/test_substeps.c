@@ -171,7 +171,7 @@ static void test_number_is_held(void)
     st->time = st->substeps_needed + 2.32 * limit;
     TEST_ASSERT_EQUAL_INT(3, timestep_substeps(&rig.sim));
     rig.sim.dt_solid = limit;
-    rig.sim.effects &= ~(unsigned)FX_MULTIRATE;
+    rig.sim.effects &= ~(effect_set)FX_MULTIRATE;
     TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim));
 }
 

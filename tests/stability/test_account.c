@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT
+ * The account of energy by regions (T-46): gains are found after losses and beside other scenes, and work on
+ * what is at rest is no gain. */
+#include "time/guards.h"
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define TANKS                                                                                   \
+    "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[constants]\nx1 = 0.115\n"                    \
+    "[fluid left]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nartificial_viscosity = 0.02\n" \
+    "density_diffusion = 0.1\nsurface = 0.1\n"                                                  \
+    "[fluid right]\nlike = left\nshape = box x1, 0, x1 + 0.1, 0.1\n"                            \
+    "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.1, 0\n"                     \
+    "shape = polyline thickness -0.02: x1, 0; x1 + 0.1, 0; x1 + 0.1, 0.2\n"                     \
+    "[solid plate]\nshape = box 0.1, -0.02, x1, 0.12\nclamp = box 0.1, -0.02, x1, 0\n"          \
+    "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+/* A column that collapses, beside them. */
+#define COLUMN                                                                 \
+    "[fluid column]\nlike = left\nshape = box 2, 0, 2.1, 0.2\nsurface = 0.2\n" \
+    "[wall other]\nshape = polyline thickness -0.02: 2, 0.3; 2, 0; 2.4, 0; 2.4, 0.3\n"
+
+static struct rig rig;
+static char warning[512];
+static int warnings;
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    if (!strstr(text, "gained")) return;
+    warnings++;
+    snprintf(warning, sizeof warning, "%s", text);
+}
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+/* Runs to the end by so many rows; the error of the first row that has one. */
+static enum err run(const char *text, const char *set, double end, int rows)
+{
+    rig_open(&rig, text, set, NULL);
+    rig.diag = (struct diag){.warn = note};
+    warnings = 0;
+    for (int k = 1; k <= rows; k++) {
+        while (rig.sim.state.time < end * k / rows) {
+            const enum err e = simulation_step(&rig.sim, end * k / rows, &rig.diag);
+            if (e) return e;
+        }
+        const struct ledger row = simulation_ledger(&rig.sim);
+        const enum err e = guards_energy(&rig.sim, &row, &rig.diag);
+        if (e) return e;
+    }
+    return ERR_OK;
+}
+
+static double region(enum kind kind, int section)
+{
+    return rig.sim.state.account.region[account_entry(kind, section)];
+}
+
+/* Energy put into the plate after the column has lost much of its own: the plate's region is named, the
+ * column's is another. */
+static void test_gain_beside_a_collapse(void)
+{
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(TANKS COLUMN, NULL, 0.3, 60));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
+    TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_SOLID, 0));
+    TEST_ASSERT_TRUE(region(KIND_FLUID, 0) != region(KIND_FLUID, 2));
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) p->vx[i] += 0.1 * p->free[i];
+    const struct ledger row = simulation_ledger(&rig.sim);
+    TEST_ASSERT_TRUE(row.dissipated > 0); /* of both together */
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &row, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[solid plate], [fluid left], [fluid right] g"),
+                                 warning);
+    TEST_ASSERT_NULL(strstr(warning, "column"));
+}
+
+/* Regions that come near each other are one from then on, and what each has lost stays lost. */
+static void test_regions_that_meet(void)
+{
+    static const char jets[] =
+        "dp = 5 mm\nend_time = 1\n[fluid a]\nshape = box 0, 0, 0.05, 0.05\nsound_speed = 20\n"
+        "velocity = 1, 0\nartificial_viscosity = 0.1\n[fluid b]\nlike = a\n"
+        "shape = box 0.1, 0, 0.15, 0.05\nvelocity = 0, 0\n[domain]\nlower = -1, -1\nupper = 2, 2\n";
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(jets, NULL, 0.02, 4));
+    TEST_ASSERT_TRUE(region(KIND_FLUID, 0) != region(KIND_FLUID, 1));
+    rig.sim.state.account.high[0] += 1;
+    rig.sim.state.account.put[0] += 1;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(jets, NULL, 0.1, 50));
+    TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
+    TEST_ASSERT_EQUAL_INT(0, warnings);
+    const struct ledger row = simulation_ledger(&rig.sim);
+    assert_at_most(row.dissipated * (1 + 1e-9), rig.sim.state.account.high[0],
+                   "most that was lost");
+    TEST_ASSERT_TRUE(row.dissipated > 0);
+}
+
+/* A strip under its weight that folds, by the paper's law, which has no stored energy. */
+static void test_gain_after_a_loss(void)
+{
+    static const char strip[] =
+        "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[solid strip]\nshape = box 0, 0, 0.5, 0.02\n"
+        "shape = box 0, -0.3, 0.02, 0\nshape = box 0, -0.32, 0.3, -0.3\n"
+        "clamp = box 0, -0.32, 0.02, 0.02\ndensity = 1000\nyoung = 30 kPa\npoisson = 0.3\n";
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(strip, NULL, 0.7, 350));
+    TEST_ASSERT_EQUAL_INT(1, warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[solid strip] gained"), warning);
+    TEST_ASSERT_TRUE(simulation_ledger(&rig.sim).dissipated > 0);
+}
+
+/* A paddle touches water at rest, and clamps begin to move bodies at rest. */
+static void test_work_on_what_rests(void)
+{
+    static const char paddle[] =
+        "dp = 5 mm\nend_time = 1\n[constants]\nspeed = 0.5\n[fluid water]\nshape = box 0, 0, 0.2, "
+        "0.1\n"
+        "sound_speed = 20\nartificial_viscosity = 0.02\n[wall bed]\nshape = box -0.4, -0.02, 0.6, "
+        "0\n"
+        "[wall paddle]\nshape = box -0.03, 0.01, -0.01, 0.12\nmotion = m\n[motion m]\n"
+        "velocity = speed, 0\n";
+    static const char beam[] =
+        "dp = 5 mm\nend_time = 1\n[solid beam]\nshape = box 0, 0, 0.02, 0.2\n"
+        "clamp = box 0, 0, 0.02, 0.02\nclamp_motion = m\ndensity = 1000\n"
+        "young = 1 MPa\npoisson = 0.3\n[motion m]\nkind = polynomial\n"
+        "poly_x = 0, 0, 2.5\n";
+    static const char *const integrators[] = {"integrator=leapfrog", "integrator=symplectic",
+                                              "integrator=verlet"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        TEST_ASSERT_EQUAL_INT(ERR_OK, run(paddle, integrators[k], 0.05, 500));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
+        assert_at_most(-1e-4, -rig.sim.state.wall_work, "work");
+        TEST_ASSERT_EQUAL_INT(ERR_OK, run(beam, integrators[k], 0.05, 500));
+        TEST_ASSERT_EQUAL_INT_MESSAGE(0, warnings, warning);
+        assert_at_most(-1e-4, -rig.sim.state.wall_work, "work");
+    }
+}
+
+/* Work, losses and energies of the regions add up to the ledger's. */
+static void test_regions_add_up(void)
+{
+    static const char two[] =
+        "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+        "[solid a]\nshape = box 0, 0, 0.2, 0.04\nclamp = box 0, 0, 0.04, 0.04\nclamp_motion = m\n"
+        "density = 1000\nyoung = 1e6\npoisson = 0.3\n[solid b]\nlike = a\n"
+        "shape = box 1, 0, 1.2, 0.04\nclamp = box 1, 0, 1.04, 0.04\n[load pull]\nbody = b\n"
+        "shape = box 1.1, 0, 1.2, 0.04\nforce = 0, 5\n[motion m]\nvelocity = 0.2, 0.1\n";
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(two, NULL, 0.1, 20));
+    TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
+    const struct ledger row = simulation_ledger(&rig.sim);
+    double put = 0;
+    for (int k = 0; k < 2; k++) put += rig.sim.state.account.put[account_entry(KIND_SOLID, k)];
+    assert_near(1e-12 * fabs(put), rig.sim.state.energy_start + rig.sim.state.wall_work, put,
+                "put");
+    TEST_ASSERT_TRUE(fabs(row.dissipated) < 1);
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_gain_beside_a_collapse);
+    RUN_TEST(test_regions_that_meet);
+    RUN_TEST(test_gain_after_a_loss);
+    RUN_TEST(test_work_on_what_rests);
+    RUN_TEST(test_regions_add_up);
+    return UNITY_END();
+}
