@@ -31,11 +31,6 @@ LIMITS = """* The printed hourglass force (`hourglass_form = printed`) has growi
   shapes from kappa of some 10 on; the program warns.
 * Steps that must change (a fluid that accelerates, outputs a few steps apart) can still be in tune with an
   undamped oscillation of the solid near its bound; artificial viscosity or a smaller solid_safety helps.
-* Soft bodies of up to a tenth of the fluid's density with water on both sides may gain energy by any
-  integrator, some at a single rate as well. Beyond the default cfl that holds for bodies of up to half of
-  the fluid's density, and at cfl = 0.6 with `leapfrog` for soft ones of two particles across of up to 1.2
-  times. With `interface = held` it holds for bodies of up to three times and six particles here and there.
-  The program warns of the energy when it comes; a smaller cfl helps.
 * Fluid on both sides of a body that is thinner than the kernel's reach less one spacing feels each other
   across it, whatever `sides` says: two particles hold at h/dp up to 1.5, three at 2. The program warns.
 * `wall_repulsion` stores energy that no account holds while it pushes back.

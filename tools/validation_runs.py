@@ -215,7 +215,7 @@ BY_NAME = {spec.name: spec for spec in SPECS}
 
 
 # What earlier versions wrote where nothing was named and no case can hold now.
-RETIRED = ("interface = auto",)
+RETIRED = ("interface = auto", "interface = impedance")
 
 
 def physics(text):

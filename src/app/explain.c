@@ -149,14 +149,10 @@ static void say_bounds(const struct simulation *s, const struct sphfsi_options *
             (binding < 0 || s->dt_bound[k] < s->dt_bound[binding]))
             binding = k;
     const struct scene *const c = s->scene;
-    const int light = c->top.integrator == INTEGRATOR_LEAPFROG ? scene_light_solid(c) : -1;
     if (!(s->effects & FX_FLUID))
         session_say(o, "bounds of the time step");
-    else if (light < 0 || scene_given(c, SECTION_numerics, 0, "cfl"))
-        session_say(o, "bounds of the time step, C_CFL = %g", c->numerics.cfl);
     else
-        session_say(o, "bounds of the time step, C_CFL = %g as [solid %s] is light",
-                    c->numerics.cfl, c->solid[light].common.name);
+        session_say(o, "bounds of the time step, C_CFL = %g", c->numerics.cfl);
     for (int k = 0; k < BOUND_COUNT; k++) {
         const bool known = isfinite(s->dt_bound[k]) && s->dt_bound[k] > 0;
         char value[32] = "-";

@@ -450,23 +450,11 @@ static enum err check_gravity(struct reader *r)
     return ERR_OK;
 }
 
-/* Has no effect; without fluid or solid case/rules.def refuses it. */
-static void check_interface(struct reader *r)
-{
-    const struct scene *s = r->scene;
-    const struct scene_given *const given = scene_given(s, SECTION_numerics, 0, "interface");
-    if (s->numerics.multirate == MULTIRATE_OFF && given)
-        warn(r, given->line,
-             "`interface` does nothing with multirate = off: it is the fluid's force within the "
-             "solid's sub-steps, and there are none");
-}
-
-/* The largest steps that keep the accuracy of each integrator, and light bodies sound. */
+/* The largest steps that keep the accuracy of each integrator. */
 static void choose_cfl(struct scene *s)
 {
     if (s->numerics.cfl != 0) return;
-    const bool leaps = s->top.integrator == INTEGRATOR_LEAPFROG && scene_light_solid(s) < 0;
-    s->numerics.cfl = leaps ? CFL_LEAPFROG : CFL_PAPER;
+    s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
 }
 
 /* 0 stands for h_over_dp, which has the same bounds. */
@@ -503,6 +491,5 @@ enum err case_check(struct reader *r)
     for (int k = 0; k < s->n_load; k++) TRY(case_go_on(r, check_load(r, &s->load[k])));
     for (int k = 0; k < s->n_reference; k++)
         TRY(case_go_on(r, check_reference(r, &s->reference[k])));
-    check_interface(r);
     return case_check_effects(r);
 }

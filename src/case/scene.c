@@ -37,18 +37,6 @@ double scene_solid_dp(const struct scene *s, int solid)
     return s->solid[solid].dp > 0 ? s->solid[solid].dp : s->top.dp;
 }
 
-int scene_light_solid(const struct scene *s)
-{
-    int lightest = -1;
-    double least = s->n_fluid > 0 ? 0.5 * s->fluid[0].density : 0;
-    for (int k = 0; k < s->n_solid; k++) {
-        if (s->solid[k].density >= least) continue;
-        least = s->solid[k].density;
-        lightest = k;
-    }
-    return lightest;
-}
-
 bool scene_is_bonded(const struct scene *s, int solid)
 {
     for (int k = 0; k < s->n_solid; k++) {

@@ -168,7 +168,6 @@ enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
 enum multirate { MULTIRATE_OFF, MULTIRATE_ON, MULTIRATE_AUTO };
-enum interface { INTERFACE_HELD, INTERFACE_IMPEDANCE };
 enum suction { SUCTION_OFF, SUCTION_ON };
 enum sides { SIDES_BOTH, SIDES_ONE };
 enum periodic { PERIODIC_NONE, PERIODIC_X, PERIODIC_Y, PERIODIC_XY }; /* bit 0: x, bit 1: y */
@@ -352,9 +351,6 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
  * long (docs/performance.md). */
 #define CFL_PAPER 0.2
 #define CFL_LEAPFROG 0.4
-/* The lightest solid, where it has less than half of the fluid's density; -1: none. Leapfrog's step may drive
- * bodies of up to 0.35 of it between equal waters (docs/theory.md, Sec. 7). */
-int scene_light_solid(const struct scene *s);
 
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);

@@ -146,26 +146,6 @@ static void warn_see_through(struct sampler *g, const struct region *region, int
               directly ? "a finer dp" : "numerics.sides = one");
 }
 
-/* Where the case says so, the fluid's force is held: bodies no heavier than the fluid, and those of up to six
- * particles across of any density that was tried (docs/theory.md, Sec. 7), were driven by that. */
-static void warn_held(struct sampler *g, const struct region *region, double across)
-{
-    const struct scene *const s = g->scene;
-    if (s->n_fluid == 0 || s->numerics.multirate == MULTIRATE_OFF ||
-        s->numerics.interface != INTERFACE_HELD)
-        return;
-    const double ratio = s->solid[region->body].density / s->rho0;
-    if (ratio > 1 && across > 6) return;
-    char place[LOCATION_TEXT];
-    scene_location(s, region->line, place);
-    diag_warn(
-        g->diag,
-        "%s: [solid %s], %.3g times as dense as the fluid and %.0f particles thick, may gain "
-        "energy from nowhere where it takes sub-steps and the fluid's force is held over them; "
-        "numerics.interface = impedance mends it",
-        place, region->name, ratio, across);
-}
-
 static enum err check_solid(struct sampler *g, const struct region *region)
 {
     double across = HUGE_VAL;
@@ -186,7 +166,6 @@ static enum err check_solid(struct sampler *g, const struct region *region)
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
                   "will be inaccurate",
                   place, region->name, across, region->lattice.dp);
-    warn_held(g, region, across);
     if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
     /* At the default h/dp this is said of two particles across only, which is one warning too many. */
     if (across > 2 || (across + 1) * region->lattice.dp < 2 * g->scene->h)

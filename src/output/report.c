@@ -222,6 +222,7 @@ static void write_counters(struct json *j, const struct state *st)
     json_integer(j, "sorts", st->sorts);
     json_integer(j, "particle_steps", st->particle_steps);
     json_number(j, "exchanged_impulse", st->exchanged);
+    json_integer(j, "tension_limited", st->tension_limited);
     json_close(j, '}');
 }
 

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * A fluid that is struck answers at once with the pressure rho0 c0 times the velocity, and sound spreads
- * it later. Held over the structure's sub-steps, that answer comes a step late, and modes that swing
- * by a quarter to three quarters of a period meanwhile take energy from it. */
+ * A surface that moves meets the pressure rho0 c0 times its velocity immediately; sound spreads it later. As
+ * a force that is constant over the sub-steps this pressure acts a step late, and oscillations of a quarter
+ * to three quarters of a period a step gain energy from it. */
 #include "solid/interface.h"
 
 #include <math.h>
 
-/* Of what is owed, in a step: as slow as to leave modes that swing within some tens of steps alone. A tenth
- * drives structures of a fiftieth of the fluid's density again; none leaves them too heavy. */
+/* Of the interface impulse, in a step: slow beside oscillations of some tens of steps. A tenth
+ * drives structures of a fiftieth of the fluid's density; none leaves them too heavy. */
 #define RETURN_FRACTION 0.02
 
 static void return_fraction(struct particles *p, int64_t i, double per_time)
@@ -18,19 +18,18 @@ static void return_fraction(struct particles *p, int64_t i, double per_time)
     p->interface_impulse_y[i] *= 1 - RETURN_FRACTION;
 }
 
-/* A particle's face: the direction of its wetted surface times the root of the share that one sub-step of dt,
- * taken implicitly so that no bound follows from it, takes of the velocity along that; and velocity and
- * acceleration along it as the fluid expects them. Dry and clamped ones have none. */
+/* T-35a: the direction of the wetted surface times the root of the fraction of the velocity along
+ * it that one sub-step of dt takes, implicitly so that no bound of the step follows; and the
+ * velocity along it that the fluid uses. Zero for dry and clamped particles. */
 static void find_face(const struct solid *s, struct particles *p, int64_t i, double dt)
 {
     const struct solid_body *const body = &s->body[p->body[i]];
     const double wet = sqrt(square(p->wet_x[i]) + square(p->wet_y[i])) * p->free[i];
-    const double k = dt * body->impedance_fraction * s->impedance * wet / body->mass;
+    const double k = dt * s->impedance * wet / body->mass;
     const double root = wet > 0 ? sqrt(k / (1 + k)) / wet : 0;
     p->face_x[i] = root * p->wet_x[i];
     p->face_y[i] = root * p->wet_y[i];
     p->face_v[i] = p->wx[i] * p->face_x[i] + p->wy[i] * p->face_y[i];
-    p->face_a[i] = body->acceleration_weight * (p->ax[i] * p->face_x[i] + p->ay[i] * p->face_y[i]);
     p->face_dv[i] = 0;
 }
 

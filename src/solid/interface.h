@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the fluid answers to a structure within the structure's sub-steps (T-35a, T-35b). */
+ * The impedance of the fluid at a structure within the structure's sub-steps (T-35a, T-35b). */
 #ifndef SPHFSI_SOLID_INTERFACE_H
 #define SPHFSI_SOLID_INTERFACE_H
 
@@ -7,18 +7,17 @@
 
 /* For use inside a parallel region: each ends with all threads together. */
 
-/* Before n sub-steps of dt: the structure returns a share of what it was given, and the faces of its
- * particles are found. */
+/* Before n sub-steps of dt: returns a share of the interface impulse and finds the wetted normals. */
 void interface_begin(const struct solid *s, struct particles *p, double dt, int n);
 
-/* After them: the structure owes what it was given meanwhile. */
+/* After them: adds what they have exchanged to the interface impulse. */
 void interface_end(const struct solid *s, struct particles *p);
 
-/* T-35a for one particle, after the kick of a sub-step; `since`: time since the fluid saw it, s. */
-SPHFSI_INLINE void impedance_kick(const struct particles *p, int64_t i, double since)
+/* T-35a for one particle, after the kick of a sub-step. */
+SPHFSI_INLINE void impedance_kick(const struct particles *p, int64_t i)
 {
     const double along = p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i];
-    const double faster = along - p->face_v[i] - since * p->face_a[i];
+    const double faster = along - p->face_v[i];
     p->vx[i] -= faster * p->face_x[i];
     p->vy[i] -= faster * p->face_y[i];
     p->face_dv[i] += faster;

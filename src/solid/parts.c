@@ -252,7 +252,7 @@ enum err solid_parts_create(struct solid *s, struct arena *a, const struct parti
 /* --- stepping --- */
 
 #define STATE_FIELDS(p) (p)->ux, (p)->uy, (p)->vx, (p)->vy
-#define FACE_FIELDS(p) (p)->face_x, (p)->face_y, (p)->face_v, (p)->face_a, (p)->face_dv
+#define FACE_FIELDS(p) (p)->face_x, (p)->face_y, (p)->face_v, (p)->face_dv
 #define SHOWN_FIELDS(p) \
     (p)->Uxx, (p)->Uxy, (p)->Uyx, (p)->Uyy, (p)->Pxx, (p)->Pxy, (p)->Pyx, (p)->Pyy, (p)->sx, (p)->sy
 

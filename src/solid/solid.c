@@ -293,9 +293,8 @@ static void look(const struct chunk *own)
     together(own, HALO_POSITION);
 }
 
-/* Kick and drift, with the fluid's answer to the kick where there is one: `since` it saw the structure. */
-SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool answered,
-                                  double since)
+/* Kick and drift, with the fluid's impedance where the body meets fluid. */
+SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool impeded)
 {
     const struct particles *const p = own->p;
     const int64_t end = end_of(own);
@@ -303,7 +302,7 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
     for (int64_t i = first_of(own); i < end; i++) {
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
-        if (answered) impedance_kick(p, i, since);
+        if (impeded) impedance_kick(p, i);
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }
@@ -312,12 +311,12 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
 
 static void move(const struct chunk *own, double kick, double drift)
 {
-    kick_and_drift(own, kick, drift, false, 0);
+    kick_and_drift(own, kick, drift, false);
 }
 
-static void move_answered(const struct chunk *own, double kick, double drift, double since)
+static void move_impeded(const struct chunk *own, double kick, double drift)
 {
-    kick_and_drift(own, kick, drift, true, since);
+    kick_and_drift(own, kick, drift, true);
 }
 
 void solid_stress(struct solid *s, struct particles *p)
@@ -390,7 +389,7 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
         book_work(s, p, dt);
         const double drift = k + 1 < n ? dt : dt - first;
         if (s->impedance > 0)
-            move_answered(own, dt, drift, s->time_since_fluid_eval + (k + 1) * dt);
+            move_impeded(own, dt, drift);
         else
             move(own, dt, drift);
         place_clamps(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);

@@ -19,11 +19,6 @@ struct solid_body {
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
-    double
-        impedance_fraction; /* share of the fluid's impedance that it meets within sub-steps (T-35a) */
-    double
-        acceleration_weight; /* share of its acceleration that the fluid expects to go on (T-35a) */
-    double jerk_weight; /* share of that acceleration's rate of change that the fluid sees (T-35) */
     int bond;         /* bodies joined to each other share this number, that of the first of them */
     bool symmetric;   /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */
@@ -133,8 +128,7 @@ struct solid {
     const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
     const double *push[2];       /* accelerations, x and y, m/s^2 */
     double
-        time_since_fluid_eval; /* time since the fluid saw it, at the start of the sub-steps, s */
-    double impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: its force is held */
+        impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
     double work;     /* of walls, clamps and loads on the solid since it was last asked for, J/m */
     double *work_on; /* [n_bodies] the same of each; that of contact at the first */
 };
@@ -152,7 +146,7 @@ void solid_stress(struct solid *s, struct particles *p);
  * velocities; zero where clamped. */
 void solid_forces(const struct solid *s, struct particles *p);
 
-/* n sub-steps of dt with the fluid's force held. Semi-implicit Euler (Eq. 27): kick, drift. With
+/* n sub-steps of dt with the fluid's force and its impedance. Semi-implicit Euler (Eq. 27): kick, drift. With
  * `centred`: half drift, kick, half drift, which is second order in time. Gradients, stresses and
  * accelerations of p and the lanes are not those of the last sub-step before solid_show and solid_stress. */
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);

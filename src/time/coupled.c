@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "time/filter.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 
@@ -145,21 +146,6 @@ double place_solid(struct particles *p)
     return way2;
 }
 
-/* The acceleration that Eq. 19 feeds back holds oscillations of single particles and answers the fluid's
- * own force with the delay of a step: taken as it is, it blew the gate up, with sub-steps within 400
- * steps and at a single rate within 4000. The fluid cannot follow anything faster than sound crosses h,
- * so it sees the mean over about that time. */
-double smoothing_lag(const struct simulation *s) { return s->fluid.k.h / s->fluid.k.c0; }
-
-double filter_weight(const struct simulation *s, double dt) { return dt / (dt + smoothing_lag(s)); }
-
-double fluid_eval_lag(const struct simulation *s, double dt)
-{
-    const bool corrects = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
-    const double lag = smoothing_lag(s);
-    return max2(0.25 * lag, lag - (corrects ? 1.75 : 1.25) * dt);
-}
-
 /* T-35: what the fluid sees of a structure after sub-steps. */
 static void update_interface_state(struct simulation *s, double dt)
 {
@@ -171,13 +157,12 @@ static void update_interface_state(struct simulation *s, double dt)
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         const double ax = p->ax[i], ay = p->ay[i];
-        const double old = since * s->solid.body[p->body[i]].jerk_weight;
         p->ax[i] = ax + newest * ((p->vx[i] - p->vx0[i]) * per_dt - ax);
         p->ay[i] = ay + newest * ((p->vy[i] - p->vy0[i]) * per_dt - ay);
         p->jx[i] += newest * ((p->ax[i] - ax) * per_dt - p->jx[i]);
         p->jy[i] += newest * ((p->ay[i] - ay) * per_dt - p->jy[i]);
-        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * (p->ax[i] + old * p->jx[i]);
-        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * (p->ay[i] + old * p->jy[i]);
+        p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * (p->ax[i] + since * p->jx[i]);
+        p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * (p->ay[i] + since * p->jy[i]);
     }
 }
 
@@ -191,8 +176,6 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
         p->vx0[i] = p->vx[i];
         p->vy0[i] = p->vy[i];
     }
-    s->solid.time_since_fluid_eval =
-        s->scene->top.integrator == INTEGRATOR_SYMPLECTIC ? -0.5 * dt : 0;
     solid_advance(&s->solid, p, dt / n, n, centred);
     s->substeps = n;
     s->state.solid_substeps += n;

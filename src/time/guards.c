@@ -279,8 +279,6 @@ static const char *step_key(const struct simulation *s)
 static const char *atomic_file_step(const struct simulation *s)
 {
     if (!(s->effects & FX_COUPLING)) return "";
-    if (s->effects & FX_MULTIRATE && !(s->effects & FX_IMPEDANCE))
-        return " or numerics.interface = impedance";
     if (s->scene->numerics.fixed_step > 0) return "";
     return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
 }

@@ -38,16 +38,6 @@ void update_extremes(struct simulation *s);
  * fluid sees the solid's mean velocity over the step, carried on to its end, and acceleration (T-35). */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
-/* How far the acceleration that the fluid sees of a structure lags, s, and the weight of a new value after
- * dt in a mean that lags by that. */
-double smoothing_lag(const struct simulation *s);
-double filter_weight(const struct simulation *s, double dt);
-
-/* The same of what it sees after a step of dt with sub-steps, s: less by what the acceleration ages beyond
- * that, at least a quarter. Half a step goes by until the end of the one that it is the mean of, and half a
- * step more until the corrector; three quarters more by measurement (docs/theory.md, Sec. 7). */
-double fluid_eval_lag(const struct simulation *s, double dt);
-
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void move_walls(struct simulation *s, double time);
 

@@ -5,8 +5,13 @@
 
 #include "particles/kernel.h"
 
-/* Below this rho/rho0 - 1, ten times what c0 is chosen for, tension is not of the flow. */
-#define TORN (-0.1)
+/* T-45: ten times the density change that c0 is chosen for, and two thirds of what the guard
+ * allows at most. Below it tension is not of the flow. */
+static double lowest_density(const struct simulation *s)
+{
+    const double factor = s->scene->numerics.sound_factor;
+    return max2(-10 / square(factor), -2.0 / 3 * s->guard.dens_limit);
+}
 
 /* Particles within reach that are a third of those within the fluid: less than a corner of it has. */
 static int most_of_drop(const struct simulation *s)
@@ -17,13 +22,18 @@ static int most_of_drop(const struct simulation *s)
 
 void limit_isolated_tension(struct simulation *s)
 {
-    if (!(s->extremes.dens_low < TORN)) return;
+    const double lowest = lowest_density(s);
+    if (!(s->extremes.dens_low < lowest)) return;
     struct particles *const p = &s->kind[KIND_FLUID];
     const int most = most_of_drop(s);
-#pragma omp parallel for schedule(static)
+    int64_t found = 0;
+#pragma omp parallel for schedule(static) reduction(+ : found)
     for (int64_t i = 0; i < p->n; i++) {
-        if (!(p->dens[i] < TORN) || simulation_near(s, p->x[i], p->y[i]) > most) continue;
+        if (!(p->dens[i] < lowest) || simulation_near(s, p->x[i], p->y[i]) > most) continue;
         p->dens[i] = 0;
         if (p->dens_old) p->dens_old[i] = 0;
+        if (p->ddens_old) p->ddens_old[i] = p->ddens_older[i] = 0;
+        found++;
     }
+    s->state.tension_limited += found;
 }

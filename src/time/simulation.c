@@ -87,25 +87,6 @@ static void start_solid(struct simulation *s)
     }
 }
 
-/* How fluid and bodies meet within sub-steps (docs/theory.md, Sec. 7). What a late answer gives to a mode is
- * at most 0.47 of what a prompt one would take. A body no heavier than the fluid is not expected to go on as
- * it was seen to: the fluid decides how it does. By leapfrog such bodies, and all that answer at steps beyond
- * its own, are driven by half of the impedance and by an acceleration that is carried on; by symplectic the
- * whole impedance drives light ones. */
-static void set_interface(struct simulation *s)
-{
-    const bool leaps = s->effects & FX_LEAPFROG;
-    const bool far = leaps && s->effects & FX_IMPEDANCE && timestep_beyond(s, CFL_LEAPFROG);
-    s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
-    for (int k = 0; k < s->solid.n_bodies; k++) {
-        struct solid_body *const body = &s->solid.body[k];
-        const bool follows = far || body->density <= s->scene->rho0;
-        body->acceleration_weight = follows ? 0 : 1;
-        body->impedance_fraction = follows && leaps ? 1 : 0.5;
-        body->jerk_weight = follows && leaps ? 0 : 1;
-    }
-}
-
 /* Sub-steps pay where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
@@ -122,7 +103,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
     if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_HELD_FORCE);
     s->fluid.effects = s->effects;
-    set_interface(s);
+    s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     return ERR_OK;
 }
 

@@ -2,6 +2,7 @@
  * Symplectic predictor-corrector (Eqs. 22-24), as the paper has it: two evaluations a step. With solid
  * sub-steps the predictor carries the structure on (T-35), and the corrector's force is what both sides
  * feel over the whole step. */
+#include "time/filter.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 

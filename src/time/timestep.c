@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "time/filter.h"
 #include "time/timestep.h"
 
 #include <math.h>
@@ -19,7 +20,8 @@ static double bound_acoustic(const struct simulation *s, const struct fluid_extr
     return s->scene->numerics.cfl * s->fluid.k.h / (s->fluid.k.c0 + now->approach);
 }
 
-/* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven lattices. */
+/* T-33b: decay at a rate m is followed up to m dt = limit, of which a tenth is kept for uneven
+ * lattices. */
 static double bound_decay(const struct simulation *s, double limit, double rate)
 {
     return 0.9 * limit * s->fluid.k.h / (rate * s->fluid.k.c0);
@@ -74,6 +76,27 @@ static double bound_contact(const struct simulation *s, const struct fluid_extre
     (void)now;
     if (!s->solid.contact) return (double)INFINITY;
     return s->effects & FX_MULTIRATE ? s->contact.approach : s->dt_solid;
+}
+
+/* Largest added mass over a particle's own, for a body of the fluid's density (T-35d): by
+ * measurement, and as good from 1.5 to 2.75 (docs/theory.md). */
+#define ADDED_MASS 2
+
+double timestep_added_mass(const struct simulation *s, int *lightest)
+{
+    const struct solid_body *const body = s->solid.body;
+    *lightest = 0;
+    for (int k = 1; k < s->solid.n_bodies; k++)
+        if (body[k].density < body[*lightest].density) *lightest = k;
+    const double b = 2 / (1 + ADDED_MASS * s->scene->rho0 / body[*lightest].density);
+    return smoothing_lag(s) * b / (1 + (filter_lead(s) - 1) * b);
+}
+
+static double bound_added_mass(const struct simulation *s, const struct fluid_extremes *now)
+{
+    (void)now;
+    int lightest;
+    return timestep_added_mass(s, &lightest);
 }
 
 /* Found below, where the time that is left is known. */
@@ -137,9 +160,9 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
         s->dt_bound[k] = bound_at(s, k, &s->fluid.extremes);
         dt = min2(dt, s->dt_bound[k]);
     }
-    /* Equal steps up to the limit rather than full ones and a rest: steps that change in a pattern feed
-     * oscillations near the bound that each of them alone would keep (docs/theory.md). Round-off of the
-     * time makes no step of its own. */
+    /* Equal steps up to the limit rather than full ones and a rest: steps that change in a
+     * pattern feed oscillations near the bound that each of them alone would keep
+     * (docs/theory.md). Round-off of the time makes no step of its own. */
     const double left = t_limit - s->state.time, steps = ceil(left / dt * (1 - 1e-9));
     *hits = steps <= 1;
     if (steps > EQUAL_STEPS || (*hits && left == dt)) return *hits ? left : dt;
@@ -148,8 +171,9 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
     return equal;
 }
 
-/* T-34c: no fewer sub-steps before the solid's viscosity has taken as much energy as an oscillation at the
- * bound can gain by fewer and more again. It acts on approaching pairs only, so half of the time. */
+/* T-34c: no fewer sub-steps before the solid's viscosity has taken as much energy as an
+ * oscillation at the bound can gain by fewer and more again. It acts on approaching pairs only,
+ * so half of the time. */
 static bool fewer_is_safe(const struct simulation *s, double fewer)
 {
     const struct state *const st = &s->state;
@@ -212,8 +236,9 @@ bool timestep_watch_contact(struct simulation *s, double time, int steps)
     return near;
 }
 
-/* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses up what
- * the default solid_safety of 0.9 leaves: 0.9 sqrt(1.15) = 0.965. A softer solid is not urgent. */
+/* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses
+ * up what the default solid_safety of 0.9 leaves: 0.9 sqrt(1.15) = 0.965. A softer solid is not
+ * urgent. */
 #define STIFFER 1.15
 #define SOFTER 0.6
 

@@ -18,6 +18,9 @@ double timestep_fluid_limit(const struct simulation *s);
 double timestep_courant(const struct simulation *s);
 bool timestep_beyond(const struct simulation *s, double cfl);
 
+/* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
+double timestep_added_mass(const struct simulation *s, int *lightest);
+
 /* Chooses the next step from the fluid's last evaluation and the solid's bound, ending no later than
  * t_limit and exactly there, by equal steps before it. Fills s->dt_bound. `*hits` is set where the step
  * ends at t_limit. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
+#include "time/filter.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 

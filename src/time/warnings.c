@@ -71,20 +71,6 @@ static void warn_of_cfl(const struct simulation *s, struct diag *d)
                   given, limit);
 }
 
-static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
-{
-    const int light = scene_light_solid(s->scene);
-    if (!(s->effects & FX_LEAPFROG) || light < 0 || !timestep_beyond(s, CFL_PAPER)) return;
-    const struct scene_solid *const b = &s->scene->solid[light];
-    char given[64], place[LOCATION_TEXT];
-    text_of_step(s, given);
-    scene_location(s->scene, b->common.line, place);
-    diag_warn(d,
-              "%s: [solid %s], %.3g times as dense as the fluid, may be driven by leapfrog with "
-              "%s; where neither cfl nor fixed_step is given, C_CFL is %g",
-              place, b->common.name, b->density / s->scene->rho0, given, CFL_PAPER);
-}
-
 /* fixed_step is taken as it is, also where it must end in a blow-up. */
 static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
 {
@@ -96,6 +82,22 @@ static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
             "numerics.fixed_step = %g s is beyond the %.4g s of the solid's bound: the run will "
             "blow up; 0 takes the step from the bounds",
             fixed, s->solid.stable_step);
+}
+
+static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    if (!(s->effects & FX_COUPLING) || !(fixed > 0)) return;
+    int lightest;
+    const double bound = timestep_added_mass(s, &lightest);
+    if (fixed <= bound) return;
+    const struct scene_solid *const b = &s->scene->solid[lightest];
+    char place[LOCATION_TEXT];
+    scene_location(s->scene, b->common.line, place);
+    diag_warn(d,
+              "%s: [solid %s], %.3g times as dense as the fluid, may gain energy with "
+              "numerics.fixed_step = %g s; take %.3g s at most, or 0 for the step from the bounds",
+              place, b->common.name, b->density / s->scene->rho0, fixed, bound);
 }
 
 void simulation_warn_of_steps(const struct simulation *s, struct diag *d)

@@ -337,11 +337,6 @@ static const struct {
     {TOP SOLID "artificial_viscosity = 0\nviscosity_form = printed\n", NULL,
      "bad.cfg:9: [solid a] viscosity_form does nothing without SOLID_VISCOSITY: leave it out, "
      "or call for that by solid.artificial_viscosity > 0"},
-    {TOP FLUID, "numerics.interface=held",
-     "--set: [numerics] interface does nothing without COUPLING: leave it out, or call for that by "
-     "a [fluid] and a [solid] section"},
-    {TOP SOLID "[numerics]\ninterface = held\n", NULL,
-     "bad.cfg:9: [numerics] interface does nothing without COUPLING: leave it out"},
     {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
                "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",
      NULL,

@@ -275,12 +275,8 @@ static void test_what_may_help_is_said(void)
     advises(bar, "; a smaller solid_safety may help", NULL, NULL);
     advises(bar, "; a smaller fixed_step may help", small, NULL);
     advises(scene, "; a smaller cfl or numerics.multirate = off may help", "gate.young=1e8", NULL);
-    advises(scene, "; a smaller cfl or numerics.interface = impedance may help", "gate.young=1e8",
-            "numerics.interface=held");
     advises(scene, "; a smaller cfl or solid_safety may help", "numerics.multirate=off", NULL);
     advises(scene, "; a smaller fixed_step may help", "gate.young=1e8", fixed);
-    advises(scene, "; a smaller fixed_step or numerics.interface = impedance may help", fixed,
-            "numerics.interface=held");
 }
 
 /* Warnings that come before the limits, once each. */

@@ -66,8 +66,42 @@ static void test_verlet_forgets_as_well(void)
     assert_near(0, 0, fluid->dens_old[drop], "dens of the previous step");
 }
 
-/* Three particles as a splash in the sluice gate's tank left them at 1.35 s: on top of each other, each on
- * its way around the others. Their density sank until a guard stopped the run at 1.41 s. */
+/* By leapfrog the rates that made it sink are forgotten: the next step does not go on with them. */
+static void test_leapfrog_forgets_its_rates(void)
+{
+    rig_open(&rig, scene, "integrator=leapfrog", NULL);
+    fluid = &rig.sim.kind[KIND_FLUID];
+    rig_steps(&rig, 3, 1);
+    const int64_t drop = at(41.5e-3, 40.5e-3);
+    fluid->ddens_old[drop] = fluid->ddens_older[drop] = -500;
+    assert_near(0, 0, after(drop, -0.2), "dens");
+    rig_steps(&rig, 1, 1);
+    assert_near(1e-6, 0, fluid->dens[drop], "a step on");
+    TEST_ASSERT_EQUAL_INT64(1, rig.sim.state.tension_limited);
+}
+
+/* Ten times what c0 is chosen for: with sound_factor = 20 a fortieth; with 5 a fifth, which the
+ * guard leaves. */
+static void test_limit_follows_the_sound_factor(void)
+{
+    static const struct {
+        const char *factor;
+        double above, below;
+    } row[] = {{"numerics.sound_factor=20", -0.0249, -0.0251},
+               {"numerics.sound_factor=10", -0.099, -0.101},
+               {"numerics.sound_factor=5", -0.199, -0.201}};
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        rig_open(&rig, scene, row[k].factor, "water.sound_speed=0", "water.max_speed=1", NULL);
+        fluid = &rig.sim.kind[KIND_FLUID];
+        const int64_t drop = at(41.5e-3, 40.5e-3);
+        assert_near(0, row[k].above, after(drop, row[k].above), row[k].factor);
+        assert_near(0, 0, after(drop, row[k].below), row[k].factor);
+    }
+}
+
+/* Three particles as a splash in the sluice gate's tank left them at 1.35 s: on top of each
+ * other, each on its way around the others. Their density sank until a guard stopped the run at
+ * 1.41 s. */
 static void test_a_clump_does_not_end_a_run(void)
 {
     static const double place[3][2] = {{3.6e-6, 19.3e-6}, {0.7e-6, 17.6e-6}, {-4.3e-6, -36.9e-6}};
@@ -91,6 +125,8 @@ int main(void)
     rig_one_thread();
     RUN_TEST(test_who_is_a_drop);
     RUN_TEST(test_verlet_forgets_as_well);
+    RUN_TEST(test_leapfrog_forgets_its_rates);
+    RUN_TEST(test_limit_follows_the_sound_factor);
     RUN_TEST(test_a_clump_does_not_end_a_run);
     return UNITY_END();
 }

@@ -148,6 +148,31 @@ static void test_repulsion_bound_by_hand(void)
     assert_near(1e-15, 3.0375e-4, rig.sim.dt_bound[BOUND_repulsion], "1/omega");
 }
 
+/* T-35d, h/c0 = 0.0135/20 s: at a fifth of the fluid's density b = 2/11, of the lightest of the bodies. */
+static void test_added_mass_bound_by_hand(void)
+{
+    static const char body[] = "[solid cork]\nlike = gate\nshape = box 0.2, 0.2, 0.24, 0.24\n"
+                               "clamp = box 0.2, 0.2, 0.24, 0.24\ndensity = 200\n";
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", gate, body);
+    const double b = 2.0 / 11, lag = 0.0135 / 20;
+    static const struct {
+        const char *integrator;
+        double lead;
+    } row[] = {{"integrator=leapfrog", 0.25},
+               {"integrator=verlet", 0.25},
+               {"integrator=symplectic", 0.75}};
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        rig_open(&rig, text, row[k].integrator, NULL);
+        assert_near(1e-12 * lag, lag * fmin(b / (1 + row[k].lead * b), 0.2 * (k ? 1 : 2)),
+                    timestep_fluid_limit(&rig.sim), row[k].integrator);
+    }
+    /* The step that it allows keeps the mean's weight at b. */
+    rig_open(&rig, text, "cork.density=100", NULL);
+    const double dt = timestep_fluid_limit(&rig.sim), mean = lag - 1.25 * dt;
+    assert_near(1e-12, 2.0 / 21, dt / (dt + mean), "weight");
+}
+
 /* Times to be hit are hit to the bit, no step is longer than its bound, and the books agree. */
 static void run_through_times(const char *integrator, const char *rate)
 {
@@ -314,6 +339,7 @@ int main(void)
     RUN_TEST(test_damper_bound_by_hand);
     RUN_TEST(test_decay_bounds_by_hand);
     RUN_TEST(test_repulsion_bound_by_hand);
+    RUN_TEST(test_added_mass_bound_by_hand);
     RUN_TEST(test_steps_before_a_limit_are_equal);
     RUN_TEST(test_substeps_cover_the_longest_step);
     RUN_TEST(test_multirate_auto);

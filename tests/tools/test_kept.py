@@ -165,8 +165,9 @@ def test_older(bench):
     result is used. With another value it is of another case."""
     whole = bench.archive.read_bytes()
     for key, line, used in (("suction", None, True), ("suction", "suction = on", False),
-                            ("interface", "interface = auto", True),
-                            ("interface", "interface = held", False)):
+                            ("sides", "interface = auto", True),
+                            ("sides", "interface = impedance", True),
+                            ("sides", "interface = held", False)):
         def edit(text):
             lines = [old for old in text.splitlines() if not old.startswith(key)]
             assert len(lines) == len(text.splitlines()) - 1, key
