@@ -319,7 +319,8 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     const double end = s->scene->top.end_time;
     f.steps = count_steps(s, f.dt);
     f.dt = end / f.steps;
-    if (n_solid > 0) f.substeps = f.steps * timestep_substeps_needed(s);
+    if (n_solid > 0)
+        f.substeps = f.steps * (s->effects & FX_MULTIRATE ? max2(1, ceil(f.dt / dt_solid)) : 1);
     f.evaluations = f.steps * c->evaluations;
     const double ledger_evaluations = end / s->scene->output.ledger_interval;
     f.seconds =

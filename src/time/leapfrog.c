@@ -81,7 +81,7 @@ void leapfrog_step(struct simulation *s, double t_limit)
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
         weigh_force(solid, 0.5 * (dt_old + dt) / dt);
-        advance_solid(s, dt, timestep_substeps(s), true);
+        advance_solid(s, dt, timestep_substeps(s, dt), true);
     }
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);

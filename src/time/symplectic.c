@@ -126,7 +126,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     evaluate_fluid(s, time + 0.5 * dt);
     accept_evaluation(s);
     clock = wall_clock();
-    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s), true);
+    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);
 

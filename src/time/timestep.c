@@ -183,19 +183,13 @@ static bool fewer_is_safe(const struct simulation *s, double fewer)
     return 0.5 * s->solid.damping_max * (st->time - st->substeps_needed) > gain;
 }
 
-/* Enough for the longest step that the fluid can take: its own ups and downs do not change them. */
-double timestep_substeps_needed(const struct simulation *s)
-{
-    if (!(s->effects & FX_MULTIRATE)) return 1;
-    const double needed = ceil(timestep_fluid_limit(s) / s->dt_solid * (1 - 1e-9));
-    return max2(1, min2(needed, 1e9));
-}
-
-int timestep_substeps(struct simulation *s)
+int timestep_substeps(struct simulation *s, double dt)
 {
     struct state *const st = &s->state;
     if (!(s->effects & FX_MULTIRATE)) return 1;
-    const double needed = timestep_substeps_needed(s), held = (double)st->substeps_held;
+    /* Enough for the longest step so far: shorter ones do not change the number. */
+    const double most = ceil(max2(st->dt_max, dt) / s->dt_solid * (1 - 1e-9));
+    const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
     if (needed >= held) st->substeps_needed = st->time;
     if (needed > held || (needed < held && fewer_is_safe(s, needed)))
         st->substeps_held = (int64_t)needed;

@@ -68,7 +68,7 @@ void verlet_step(struct simulation *s, double t_limit)
     advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
-        const int n = timestep_substeps(s);
+        const int n = timestep_substeps(s, dt);
         if (s->effects & FX_HELD_FORCE) carry_force(s, 0.5 * (dt - dt / n));
         advance_solid(s, dt, n, false);
     }

@@ -117,8 +117,8 @@ static double top_energy(enum wave wave, double period, double most, double m, b
         if (wave != RANDOM || k % (int)period == 0)
             of_wave = bound_at(wave, k / period, depth, &seed);
         rig.sim.dt_solid = least * of_wave;
-        const int n =
-            always ? (int)ceil(limit / rig.sim.dt_solid * (1 - 1e-9)) : timestep_substeps(&rig.sim);
+        const int n = always ? (int)ceil(limit / rig.sim.dt_solid * (1 - 1e-9))
+                             : timestep_substeps(&rig.sim, limit);
         TEST_ASSERT_TRUE(limit / n <= rig.sim.dt_solid * (1 + 1e-8));
         for (int j = 0; j < n; j++) o = step(o, w * limit / n, 0.5 * m, true);
         rig.sim.state.time += limit;
@@ -157,22 +157,22 @@ static void test_number_is_held(void)
     const double limit = timestep_fluid_limit(&rig.sim);
     st->substeps_held = 0;
     rig.sim.dt_solid = limit / 3.5;
-    TEST_ASSERT_EQUAL_INT(4, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(4, timestep_substeps(&rig.sim, limit));
     rig.sim.dt_solid = limit / 6;
-    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
     rig.sim.dt_solid = limit / 2.5;
     rig.sim.solid.damping_max = 0;
     st->time += 1e6;
-    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
     /* From 6 to 3 at 0.9: root^2 = (1.9 * 0.55)/(0.1 * 1.45), root - 1/root = 2.312. */
     rig.sim.solid.damping_max = 2 / limit;
     st->time = st->substeps_needed + 2.31 * limit;
-    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
     st->time = st->substeps_needed + 2.32 * limit;
-    TEST_ASSERT_EQUAL_INT(3, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(3, timestep_substeps(&rig.sim, limit));
     rig.sim.dt_solid = limit;
     rig.sim.effects &= ~(effect_set)FX_MULTIRATE;
-    TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim, limit));
 }
 
 /* --- a run --- */

@@ -63,20 +63,26 @@ static void test_steps_before_a_limit_are_equal(void)
     TEST_ASSERT_TRUE(hits);
 }
 
-/* Of the longest step, 0.4 * 0.0135/20 s = 2.7e-4 s, whatever the coming one is. */
+/* Of the longest step so far; shorter ones and a longer bound of the solid do not change them. */
 static void test_substeps_cover_the_longest_step(void)
 {
     static const struct {
-        double dt_solid;
+        double dt;
         int n;
-    } row[] = {{1, 1}, {2.7e-4, 1}, {2.6999e-4, 2}, {2e-5, 14}};
+    } row[] = {{0.3e-5, 1}, {1e-5, 1}, {1.0001e-5, 2}, {13.5e-5, 14}, {2e-5, 14}, {14.5e-5, 15}};
+    rig_open(&rig, gate, "numerics.multirate=on", NULL);
+    rig.sim.dt_solid = 1e-5;
+    rig.sim.solid.damping_max = 0;
     for (size_t k = 0; k < COUNT_OF(row); k++) {
-        rig_open(&rig, gate, "numerics.multirate=on", NULL);
-        rig.sim.dt_solid = row[k].dt_solid;
-        TEST_ASSERT_EQUAL_INT(row[k].n, timestep_substeps(&rig.sim));
+        TEST_ASSERT_EQUAL_INT(row[k].n, timestep_substeps(&rig.sim, row[k].dt));
+        rig.sim.state.dt_max = fmax(rig.sim.state.dt_max, row[k].dt);
     }
+    /* A step that has been taken counts whatever viscosity there is. */
+    rig.sim.solid.damping_max = 1e9;
+    rig.sim.state.time = 1;
+    TEST_ASSERT_EQUAL_INT(15, timestep_substeps(&rig.sim, 1e-5));
     rig.sim.effects &= ~(effect_set)FX_MULTIRATE;
-    TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim));
+    TEST_ASSERT_EQUAL_INT(1, timestep_substeps(&rig.sim, 13.5e-5));
 }
 
 /* Sub-steps are chosen where the solid's step is the smaller, and only there. */
