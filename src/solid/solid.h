@@ -129,7 +129,7 @@ struct solid {
     const double *push[2];       /* accelerations, x and y, m/s^2 */
     double
         impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
-    double work;     /* of walls, clamps and loads on the solid since it was last asked for, J/m */
+    double work;   /* of walls, clamps and loads on the solid since it was last asked for, J/m */
     double *work_on; /* [n_bodies] the same of each; that of contact at the first */
 };
 

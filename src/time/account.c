@@ -88,9 +88,9 @@ static bool one_region(const struct simulation *s)
 }
 
 /* Whether two kinds exchange energy where they come near. */
-static bool exchange(const struct simulation *s, enum kind one, enum kind other)
+static bool exchange(enum kind one, enum kind other)
 {
-    return one == KIND_FLUID || other == KIND_FLUID || (s->effects & FX_CONTACT) != 0;
+    return one == KIND_FLUID || other == KIND_FLUID;
 }
 
 /* Sections whose boxes have come within the reach of the kernel are of one region from now on. */
@@ -101,7 +101,7 @@ static void join_neighbours(struct simulation *s)
     find_boxes(s, box);
     for (int one = 0; one < KIND_COUNT; one++)
         for (int other = one; other < KIND_COUNT; other++) {
-            if (!exchange(s, (enum kind)one, (enum kind)other)) continue;
+            if (!exchange((enum kind)one, (enum kind)other)) continue;
             for (int j = 0; j < sections(s, (enum kind)one); j++)
                 for (int k = 0; k < sections(s, (enum kind)other); k++) {
                     const int a =
@@ -113,13 +113,13 @@ static void join_neighbours(struct simulation *s)
         }
 }
 
-/* Those that are one whatever the distance: bodies that are joined; bodies that may touch, since their energy
- * of contact is a single number; and all sections of a periodic domain. */
-static void join_at_once(struct simulation *s)
+/* Those that are one whatever the distance: bodies that are joined; all once any is in contact, since their
+ * energy of contact is a single number; and all sections of a periodic domain. */
+static void join_at_once(struct simulation *s, double contact)
 {
     for (int j = 0; j < s->scene->n_solid; j++)
         for (int k = 0; k < j; k++)
-            if (s->effects & FX_CONTACT || s->solid.body[j].bond == s->solid.body[k].bond)
+            if (contact > 0 || s->solid.body[j].bond == s->solid.body[k].bond)
                 unite(&s->state.account, account_entry(KIND_SOLID, j),
                       account_entry(KIND_SOLID, k));
     if (!(s->effects & FX_PERIODIC)) return;
@@ -189,7 +189,7 @@ void account_begin(struct simulation *s, const struct ledger *now)
         a->play[k] = in_play(&of[k]);
         a->region[k] = k;
     }
-    join_at_once(s);
+    join_at_once(s, now->contact);
 }
 
 enum err account_check(const struct account *a, struct diag *d)
@@ -265,6 +265,7 @@ struct gain account_look(struct simulation *s, const struct ledger *now)
     struct account *const a = &s->state.account;
     struct energies of[ACCOUNT_ENTRIES];
     struct gain worst = {.entry = -1, .play = 1};
+    join_at_once(s, now->contact);
     join_neighbours(s);
     if (s->effects & FX_FLUID) look_ahead(s);
     find_energies(s, now, of);

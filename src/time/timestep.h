@@ -29,8 +29,8 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits);
 /* Most sub-steps of the solid in one step of the fluid that a run may ask for. */
 enum { SUBSTEPS_MOST = 10000 };
 
-/* Solid sub-steps of the coming fluid step of dt: 1 where each takes the same. Held in the state: more as soon as
- * the solid's bound asks for them, fewer once that cannot feed an oscillation (T-34c). */
+/* Solid sub-steps of the coming fluid step of dt: 1 where each takes the same. Held in the state: more as
+ * soon as the solid's bound asks for them, fewer once that cannot feed an oscillation (T-34c). */
 int timestep_substeps(struct simulation *s, double dt);
 
 /* Sets the solid's step from its bound about the undeformed state and the slowing in s->state. */

@@ -91,8 +91,8 @@ static const struct {
      EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
     {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\n",
-     FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_HELD_FORCE | FX_IMPEDANCE, EFFECT_HELD_FORCE,
-     "line 3: integrator"},
+     FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_HELD_FORCE | FX_IMPEDANCE,
+     EFFECT_HELD_FORCE, "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
 };
 
