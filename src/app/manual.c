@@ -91,9 +91,12 @@ static void type_of(const struct param *p, char *text, size_t size)
         [PARAM_SHAPES] = "shape, may be repeated",
         [PARAM_NUMBERS] = "numbers",
         [PARAM_TIME_EXPR] = "expression in t",
+        [PARAM_FLOW_EXPR] = "expression in x, y, t",
     };
     if (p->type == PARAM_FIELD_EXPR && p->count == 2)
         snprintf(text, size, "two expressions in x, y");
+    else if (p->type == PARAM_FLOW_EXPR && p->count == 2)
+        snprintf(text, size, "two expressions in x, y, t");
     else
         snprintf(text, size, "%s", names[p->type]);
 }

@@ -130,6 +130,8 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: what concerns several values at once. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
+/* case/open.c */
+enum err case_check_open(struct reader *r) SPHFSI_CHECKED;
 /* case/check_output.c */
 enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case/check_probes.c */

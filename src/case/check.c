@@ -485,6 +485,7 @@ enum err case_check(struct reader *r)
     TRY(check_moved(r));
     for (int k = 0; k < s->n_motion; k++) TRY(case_go_on(r, check_motion(r, &s->motion[k])));
     for (int k = 0; k < s->n_solid; k++) TRY(case_go_on(r, check_joined(r, k)));
+    TRY(case_go_on(r, case_check_open(r)));
     TRY(case_go_on(r, case_check_output(r)));
     TRY(case_check_probes(r));
     for (int k = 0; k < s->n_contact; k++) TRY(case_go_on(r, check_contact(r, &s->contact[k])));

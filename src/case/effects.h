@@ -38,6 +38,9 @@ enum {
 #undef EFFECT
 };
 
+/* Open boundaries of either kind. */
+#define FX_OPEN (FX_INFLOW | FX_OUTFLOW)
+
 /* One row of case/effects.def as data. */
 struct effect_info {
     const char *name, *key, *equation, *meaning;

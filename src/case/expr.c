@@ -278,8 +278,12 @@ static bool parse_constant(struct compiler *c, const char *name, struct dim *dim
         dim->kind = DIM_ANY;
         return push(c, OP_X, 0); /* evaluated at x = t */
     }
+    if (strcmp(name, "t") == 0 && c->names->scope == EXPR_IN_BOTH) {
+        dim->kind = DIM_ANY;
+        return push(c, OP_T, 0);
+    }
     if (strcmp(name, "x") == 0 || strcmp(name, "y") == 0) {
-        if (c->names->scope != EXPR_IN_SPACE)
+        if (c->names->scope != EXPR_IN_SPACE && c->names->scope != EXPR_IN_BOTH)
             return say(c, "`%s` has a value only where a key takes an expression in x and y", name);
         dim->kind = DIM_ANY;
         return push(c, name[0] == 'x' ? OP_X : OP_Y, 0);
@@ -453,6 +457,11 @@ const char *expr_source(const struct expr *e) { return e->source; }
 
 double scene_expr_at(const struct expr *e, double x, double y)
 {
+    return scene_expr_at_time(e, x, y, 0);
+}
+
+double scene_expr_at_time(const struct expr *e, double x, double y, double t)
+{
     /* The compiler has counted: no operand is missing, MAX_STACK suffices, one value is left. */
     double stack[MAX_STACK] = {0};
     int top = -1;
@@ -460,8 +469,8 @@ double scene_expr_at(const struct expr *e, double x, double y)
         const struct op *op = &e->op[k];
         if (op->code == OP_NUMBER) {
             stack[++top] = op->value;
-        } else if (op->code == OP_X || op->code == OP_Y) {
-            stack[++top] = op->code == OP_X ? x : y;
+        } else if (op->code == OP_X || op->code == OP_Y || op->code == OP_T) {
+            stack[++top] = op->code == OP_X ? x : op->code == OP_Y ? y : t;
         } else if (is_binary(op->code)) {
             top--;
             stack[top] = run_binary(op->code, stack[top], stack[top + 1]);

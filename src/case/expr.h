@@ -43,7 +43,8 @@ struct slice {
 
 enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 
-enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME }; /* none; x and y; t */
+/* None; x and y; t; x, y and t. */
+enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH };
 
 /* What names mean: `find` returns true and the quantity, or false; then it has written why, or
  * nothing if the name is simply unknown. */

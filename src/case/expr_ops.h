@@ -9,6 +9,7 @@ enum op_code {
     OP_NUMBER,
     OP_X,
     OP_Y,
+    OP_T,
     OP_ADD,
     OP_SUB,
     OP_MUL,

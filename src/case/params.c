@@ -41,6 +41,8 @@ const struct param param_table[PARAM_COUNT] = {
     {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
 #define TIME_EXPR(section, key, unit_, meaning) \
     {ROW(section, TIME_EXPR, key, meaning), .unit = unit_, .count = 1},
+#define FLOW_EXPR(section, key, count_, unit_, meaning) \
+    {ROW(section, FLOW_EXPR, key, meaning), .unit = unit_, .count = count_},
 #define SHAPES(section, key, meaning) {ROW(section, SHAPES, key, meaning), .unit = "m"},
 #define NUMBERS(section, key, unit_, meaning) {ROW(section, NUMBERS, key, meaning), .unit = unit_},
 #include "case/params.def"
@@ -231,7 +233,8 @@ bool param_is_default(const struct param *p, const void *section)
     case PARAM_CHOICE: return memcpy(&choice, value, sizeof choice), choice == p->number.value;
     case PARAM_TEXT: return strcmp(value, p->text_default) == 0;
     case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
+    case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
     case PARAM_SHAPES: return ((const struct shape_list *)(const void *)value)->n == 0;
     case PARAM_NUMBERS: return ((const struct number_list *)(const void *)value)->n == 0;
     }

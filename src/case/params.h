@@ -34,6 +34,7 @@ enum param_type {
     PARAM_TIME_VECTOR,
     PARAM_FIELD_EXPR,
     PARAM_TIME_EXPR,
+    PARAM_FLOW_EXPR,
     PARAM_SHAPES,
     PARAM_NUMBERS
 };
@@ -58,7 +59,7 @@ struct param {
     struct param_default number; /* of a REAL, INTEGER, CHOICE (index) */
     double vector_default[2];
     struct param_bound low, high; /* of a REAL, INTEGER */
-    int count;                    /* expressions of a FIELD_EXPR, TIME_EXPR or TIME_VECTOR */
+    int count;                    /* expressions of an expression or a TIME_VECTOR */
     size_t offset;                /* in the section's struct */
     size_t expr_offset;           /* of the expressions of a TIME_VECTOR */
 };
@@ -73,6 +74,7 @@ enum {
 #define TIME_VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
 #define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
 #define TIME_EXPR(section, key, unit, meaning) ONE(section, key)
+#define FLOW_EXPR(section, key, count, unit, meaning) ONE(section, key)
 #define SHAPES(section, key, meaning) ONE(section, key)
 #define NUMBERS(section, key, unit, meaning) ONE(section, key)
 #include "case/params.def"

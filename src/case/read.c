@@ -26,6 +26,7 @@ static void set_defaults(void *section, enum section_id id)
         case PARAM_TEXT: snprintf(place, SCENE_TEXT, "%s", p->text_default); break;
         case PARAM_FIELD_EXPR:
         case PARAM_TIME_EXPR:
+        case PARAM_FLOW_EXPR:
         case PARAM_SHAPES:
         case PARAM_NUMBERS: break; /* absent */
         }

@@ -29,7 +29,7 @@ struct number_list {
     double *value;
 };
 
-/* Up to two expressions in x and y, or one in t; see case/expr.h. NULL: not given. */
+/* Up to two expressions in x and y, or in x, y and t, or one in t; see case/expr.h. NULL: not given. */
 struct expr;
 struct scene_expr {
     struct expr *e[2];
@@ -52,6 +52,7 @@ struct scene_section_common {
     struct scene_expr key##_in_time;
 #define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
 #define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
+#define FLOW_EXPR(section, key, count, unit, meaning) struct scene_expr key;
 #define SHAPES(section, key, meaning) struct shape_list key;
 #define NUMBERS(section, key, unit, meaning) struct number_list key;
 #define PARAMS_OF(section) ONLY_##section /* 0 where it is not defined */
@@ -127,6 +128,20 @@ struct scene_motion {
 };
 #undef ONLY_motion
 
+#define ONLY_inflow 1
+struct scene_inflow {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_inflow
+
+#define ONLY_outflow 1
+struct scene_outflow {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_outflow
+
 #define ONLY_probe 1
 struct scene_probe {
     struct scene_section_common common;
@@ -152,6 +167,7 @@ struct scene_reference {
 #undef TIME_VECTOR
 #undef FIELD_EXPR
 #undef TIME_EXPR
+#undef FLOW_EXPR
 #undef SHAPES
 #undef NUMBERS
 
@@ -216,6 +232,7 @@ struct scene_points {
     double *x, *y;
     int32_t *body;    /* index of the section among those of its kind */
     uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
+    int32_t *open;    /* fluid: open boundary whose buffer it belongs to, from 1, or 0; or NULL */
 };
 
 /* The lattice that a region is sampled on. Cell (i, j) has its centre at origin + ((i, j) + 1/2) spacing in
@@ -315,8 +332,37 @@ SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
     return s->domain.periodic >> axis & 1;
 }
 
+/* An [inflow] or [outflow]: the buffer lies behind the line, its rows a spacing apart. */
+struct scene_open {
+    enum { OPEN_VELOCITY, OPEN_PRESSURE } kind;
+    const struct scene_section_common *common;
+    bool inflow;
+    double from[2], along[2]; /* one end; unit vector to the other end */
+    double inward[2];         /* unit vector into the fluid */
+    double length, depth;     /* m */
+    double level, absorb;     /* m, NAN: none; s */
+    const struct expr *speed; /* along `inward` times `sense`; NULL: not given */
+    const struct expr *velocity[2], *pressure;
+    double sense; /* 1 for an [inflow], -1 for an [outflow] */
+};
+/* The section number k, those of [inflow] first. */
+struct scene_open scene_open_at(const struct scene *s, int k);
+int scene_open_count(const struct scene *s);
+/* How far a point lies from the line on the side of the fluid, and how far along it, m. */
+SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2], double *in,
+                                    double *along)
+{
+    const double d[2] = {x[0] - o->from[0], x[1] - o->from[1]};
+    *in = d[0] * o->inward[0] + d[1] * o->inward[1];
+    *along = d[0] * o->along[0] + d[1] * o->along[1];
+}
+/* The velocity that is given at a point of the line and a time, m/s. */
+void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2]);
+
 /* Value of an expression at a point; of one in t at x = t (case/expr.h has the grammar). */
 double scene_expr_at(const struct expr *e, double x, double y);
+/* Value of an expression in x, y and t. */
+double scene_expr_at_time(const struct expr *e, double x, double y, double t);
 
 /* Writes the effective case, every value and default spelled out in SI units; parsing it again gives
  * an equal scene. */

@@ -128,8 +128,10 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
         return bad_value(r, e, "%s expected, with commas between them; there %s %d",
                          p->count == 1 ? "one expression is" : "two expressions are",
                          n == 1 ? "is" : "are", n);
-    const struct expr_names names = {r, case_name,
-                                     p->type == PARAM_FIELD_EXPR ? EXPR_IN_SPACE : EXPR_IN_TIME};
+    const enum expr_scope scope = p->type == PARAM_FIELD_EXPR  ? EXPR_IN_SPACE
+                                  : p->type == PARAM_FLOW_EXPR ? EXPR_IN_BOTH
+                                                               : EXPR_IN_TIME;
+    const struct expr_names names = {r, case_name, scope};
     for (int k = 0; k < n && slice_next(&rest, ',', &piece); k++) {
         char why[EXPR_WHY];
         r->cause_named = false;
@@ -172,7 +174,8 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_VECTOR: return read_vector(r, e, p, place);
     case PARAM_TIME_VECTOR: return read_time_vector(r, e, p, section);
     case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR: return read_field(r, e, p, place);
+    case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR: return read_field(r, e, p, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
     case PARAM_NUMBERS: return read_numbers(r, e, p, place);
     }

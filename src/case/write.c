@@ -127,7 +127,9 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
     char name[SCENE_NAME], text[SCENE_TEXT];
     if (p->type == PARAM_REAL && isnan(*number)) return;
     if (p->type == PARAM_NUMBERS && !list->n) return;
-    if ((p->type == PARAM_FIELD_EXPR || p->type == PARAM_TIME_EXPR) && !field->e[0]) return;
+    const bool expression =
+        p->type == PARAM_FIELD_EXPR || p->type == PARAM_TIME_EXPR || p->type == PARAM_FLOW_EXPR;
+    if (expression && !field->e[0]) return;
     if (p->type == PARAM_SHAPES) {
         for (int k = 0; k < shapes->n; k++) write_shape(out, p->key, &shapes->item[k]);
         return;
@@ -161,6 +163,7 @@ static void write_param(FILE *out, const struct scene *s, const struct param *p,
     case PARAM_NUMBERS: write_reals(out, list->n, list->value); break;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR:
         for (int k = 0; k < p->count; k++)
             fprintf(out, "%s%s", k ? ", " : "", expr_source(field->e[k]));
         break;

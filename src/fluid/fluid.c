@@ -134,10 +134,13 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
         const double speed = f->k.shifting_speed > 0
                                  ? f->k.shifting_speed
                                  : sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
+        if (p->open && p->open[i]) continue; /* T-50: buffers move as they are told */
         const double size = -f->k.shifting * f->k.h * speed * dt * fade;
         const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
         p->x[i] += dx;
         p->y[i] += dy;
+        /* L-9 */
+        p->dens[i] += 2 * (1 + p->dens[i]) * (dx * p->grad_c_x[i] + dy * p->grad_c_y[i]);
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
     return sqrt(longest2);

@@ -63,6 +63,9 @@ enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
 
+/* Fills the buffers of open boundaries. */
+enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
+
 /* Domain in effect; probes inside of what they probe; initial values finite. */
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 

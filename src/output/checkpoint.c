@@ -98,6 +98,8 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
 #undef STATE
     bytes +=
         2 * sizeof(struct block_header) + sizeof s->state.bound_steps + sizeof s->state.account;
+    bytes += 3 * sizeof(struct block_header) + sizeof s->open.next_id +
+             (size_t)s->open.n * (sizeof *s->open.sum + sizeof *s->open.count);
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
             bytes +=
@@ -116,6 +118,15 @@ static uint32_t put_state(struct image *m, const struct state *st)
     put_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, st->bound_steps, BOUND_COUNT);
     put_block(m, "account", OWNER_STATE, ITEM_DOUBLE, &st->account, ACCOUNT_NUMBERS);
     return blocks;
+}
+
+static uint32_t put_open(struct image *m, const struct open *o)
+{
+    if (o->n == 0) return 0;
+    put_block(m, "open_sum", OWNER_STATE, ITEM_DOUBLE, o->sum, (size_t)o->n * OPEN_SUMS);
+    put_block(m, "open_count", OWNER_STATE, ITEM_INT64, o->count, (size_t)o->n * OPEN_COUNTS);
+    put_block(m, "open_next_id", OWNER_STATE, ITEM_INT64, &o->next_id, 1);
+    return 3;
 }
 
 static uint32_t put_particles(struct image *m, const struct simulation *s)
@@ -151,7 +162,7 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
     for (int k = 0; k < KIND_COUNT; k++) head.count[k] = s->kind[k].n;
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
-    head.blocks = 1 + put_state(m, &s->state) + put_particles(m, s);
+    head.blocks = 1 + put_state(m, &s->state) + put_open(m, &s->open) + put_particles(m, s);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
@@ -547,6 +558,16 @@ static enum err check_cells(const struct simulation *s, enum kind kind, struct d
     return ERR_OK;
 }
 
+static enum err load_open(const struct image *m, struct simulation *s, struct diag *d)
+{
+    struct open *const o = &s->open;
+    const size_t n = (size_t)o->n;
+    if (n == 0) return ERR_OK;
+    TRY(load_block(m, "open_sum", OWNER_STATE, ITEM_DOUBLE, n * OPEN_SUMS, o->sum, d));
+    TRY(load_block(m, "open_count", OWNER_STATE, ITEM_INT64, n * OPEN_COUNTS, o->count, d));
+    return load_block(m, "open_next_id", OWNER_STATE, ITEM_INT64, 1, &o->next_id, d);
+}
+
 enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
 {
     const struct image_info info = checkpoint_info(m);
@@ -560,7 +581,8 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
 #include "time/state.def"
 #undef STATE
     TRY(load_block(m, "account", OWNER_STATE, ITEM_DOUBLE, ACCOUNT_NUMBERS, &st->account, d));
-    return load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d);
+    TRY(load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d));
+    return load_open(m, s, d);
 }
 
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)

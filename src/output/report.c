@@ -49,7 +49,8 @@ static void write_value(struct json *j, const struct param *p, const void *value
     case PARAM_VECTOR:
     case PARAM_TIME_VECTOR: json_numbers(j, p->key, value, 2); break;
     case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR: write_expressions(j, p, value); break;
+    case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR: write_expressions(j, p, value); break;
     case PARAM_SHAPES: write_shapes(j, p->key, value); break;
     case PARAM_NUMBERS: {
         const struct number_list *list = value;
@@ -214,6 +215,27 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_integer(j, "memory_bytes", (int64_t)s->arena.bytes);
 }
 
+/* Mass, momentum and energy that open boundaries have brought in, less what has left through them. */
+static void write_open(struct json *j, const struct simulation *s)
+{
+    const struct open *const o = &s->open;
+    if (o->n == 0) return;
+    json_open(j, "open_boundaries", '{');
+    for (int k = 0; k < o->n; k++) {
+        const int64_t entered = o->count[k][OPEN_ENTERED], left = o->count[k][OPEN_LEFT];
+        json_open(j, o->boundary[k].common->name, '{');
+        json_integer(j, "particles_made", entered);
+        json_integer(j, "particles_ended", left);
+        json_number(j, "mass", s->fluid.k.mass * (double)(entered - left));
+        json_number(j, "momentum_x", o->sum[k][OPEN_MOMENTUM_X]);
+        json_number(j, "momentum_y", o->sum[k][OPEN_MOMENTUM_Y]);
+        json_number(j, "energy", o->sum[k][OPEN_ENERGY]);
+        json_number(j, "mean_flow", o->sum[k][OPEN_MEAN_FLOW]);
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
 static void write_counters(struct json *j, const struct state *st)
 {
     json_open(j, "counters", '{');
@@ -258,6 +280,7 @@ enum err report_summary(const char *folder, struct simulation *s, const struct r
     write_time_step(&j, s);
     write_extremes(&j, s);
     write_drift(&j, s, r);
+    write_open(&j, s);
     write_ledger(&j, "ledger_start", &r->first);
     write_ledger(&j, "ledger_end", &r->last);
     write_counters(&j, &s->state);

@@ -76,6 +76,16 @@ void particles_permute(struct particles *p, const int32_t *order, int64_t n, voi
     }
 }
 
+void particles_copy(struct particles *p, int64_t from, int64_t to)
+{
+    for (int k = 0; k < field_count; k++) {
+        unsigned char *const values = field_array(p, &field_table[k]);
+        const size_t size = field_table[k].size;
+        if (!values || field_table[k].keep != KEEP_STATE) continue;
+        memcpy(values + (size_t)to * size, values + (size_t)from * size, size);
+    }
+}
+
 uint64_t particles_hash(const struct particles *p, uint64_t seed)
 {
     uint64_t h = seed;

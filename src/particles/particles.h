@@ -56,6 +56,9 @@ enum err particles_create(struct particles *p, struct arena *a, int64_t capacity
 /* Reorders every active field: new[k] = old[order[k]] for k < n. `scratch` holds n * 8 bytes. */
 void particles_permute(struct particles *p, const int32_t *order, int64_t n, void *scratch);
 
+/* Copies every active STATE field of one particle. */
+void particles_copy(struct particles *p, int64_t from, int64_t to);
+
 /* Hash of every STATE field, in array order, continued from `seed` (base/hash.h). */
 uint64_t particles_hash(const struct particles *p, uint64_t seed);
 

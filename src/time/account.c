@@ -114,7 +114,8 @@ static void join_neighbours(struct simulation *s)
 }
 
 /* Those that are one whatever the distance: bodies that are joined; all once any is in contact, since their
- * energy of contact is a single number; and all sections of a periodic domain. */
+ * energy of contact is a single number; and all sections of a periodic domain or of one with open
+ * boundaries, whose energy is a single number, too. */
 static void join_at_once(struct simulation *s, double contact)
 {
     for (int j = 0; j < s->scene->n_solid; j++)
@@ -122,7 +123,7 @@ static void join_at_once(struct simulation *s, double contact)
             if (contact > 0 || s->solid.body[j].bond == s->solid.body[k].bond)
                 unite(&s->state.account, account_entry(KIND_SOLID, j),
                       account_entry(KIND_SOLID, k));
-    if (!(s->effects & FX_PERIODIC)) return;
+    if (!(s->effects & (FX_PERIODIC | FX_OPEN))) return;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int k = 0; k < sections(s, (enum kind)kind); k++)
             unite(&s->state.account, account_entry(KIND_FLUID, 0),
@@ -146,9 +147,10 @@ static void add_fluid(const struct simulation *s, struct energies *of)
     const struct fluid_constants *const k = &s->fluid.k;
     for (int64_t i = 0; i < p->n; i++) {
         struct energies *const e = &of[account_entry(KIND_FLUID, p->body[i])];
-        e->kinetic += 0.5 * k->mass * (square(p->vx[i]) + square(p->vy[i]));
-        e->potential -= k->mass * (k->gravity[0] * p->x[i] + k->gravity[1] * p->y[i]);
-        e->internal += k->mass * eos_energy(p->dens[i], k->c0);
+        const double m = p->m ? k->mass * p->m[i] : k->mass;
+        e->kinetic += 0.5 * m * (square(p->vx[i]) + square(p->vy[i]));
+        e->potential -= m * (k->gravity[0] * p->x[i] + k->gravity[1] * p->y[i]);
+        e->internal += m * eos_energy(p->dens[i], k->c0);
     }
 }
 
@@ -269,6 +271,9 @@ struct gain account_look(struct simulation *s, const struct ledger *now)
     join_neighbours(s);
     if (s->effects & FX_FLUID) look_ahead(s);
     find_energies(s, now, of);
+    /* What came in through open boundaries was not there at the start: as if the region had less now. */
+    if (s->effects & FX_OPEN)
+        of[account_entry(KIND_FLUID, 0)].potential -= open_energy(&s->open);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         if (region_of(a, k) != k) continue;
         const struct gain g = gain_of(a, k, of);

@@ -59,6 +59,14 @@ static void forget_given(struct particles *p)
     memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
 }
 
+/* Half a step on, the predictor's state is no gain of its own. */
+static void set_buffers(struct simulation *s, double time)
+{
+    const double clock = wall_clock();
+    open_set(&s->open, &s->fluid.k, &s->kind[KIND_FLUID], &s->cells, time, time == s->state.time);
+    phase_add(s, PHASE_open, clock);
+}
+
 void evaluate_fluid(struct simulation *s, double time)
 {
     s->state.evaluations++;
@@ -66,7 +74,9 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->effects & FX_MOTION) move_walls(s, time);
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
     if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) forget_given(&s->kind[KIND_SOLID]);
+    if (s->effects & FX_OPEN) set_buffers(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
+    if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
     if (s->push[KIND_FLUID].at) push_fluid(s, time);
     if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
 }

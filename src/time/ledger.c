@@ -77,8 +77,8 @@ struct ledger simulation_ledger(struct simulation *s)
     if (s->effects & FX_SOLID) add_solid(s, &row);
     if (s->effects & FX_CONTACT)
         row.contact = contact_energy(&s->contact, &s->kind[KIND_SOLID], s->state.time);
-    row.dissipated = s->state.energy_start + s->state.wall_work + s->state.periodic_energy -
-                     s->state.lost_energy - row.kinetic - row.potential - row.internal -
-                     row.elastic - row.hourglass - row.contact;
+    row.dissipated = s->state.energy_start + s->state.wall_work + s->state.periodic_energy +
+                     open_energy(&s->open) - s->state.lost_energy - row.kinetic - row.potential -
+                     row.internal - row.elastic - row.hourglass - row.contact;
     return row;
 }

@@ -30,7 +30,8 @@ static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id
     struct particles *const p = &s->kind[kind];
     memset(p, 0, sizeof *p);
     if (!groups || points->n == 0) return ERR_OK;
-    TRY(particles_create(p, &s->arena, points->n, groups, kind_names[kind], d));
+    const int64_t most = groups & G_OPEN ? open_places(s->scene) : points->n;
+    TRY(particles_create(p, &s->arena, most, groups, kind_names[kind], d));
     p->n = points->n;
     for (int64_t i = 0; i < p->n; i++) {
         p->x[i] = points->x[i];
@@ -39,6 +40,7 @@ static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id
         p->body[i] = points->body[i];
         if (p->X) p->X[i] = points->x[i];
         if (p->Y) p->Y[i] = points->y[i];
+        if (p->open) p->open[i] = points->open[i];
         if (p->free) p->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
     }
     return ERR_OK;
@@ -198,6 +200,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
     if (s->effects & FX_WALL) forget_touch(s, KIND_WALL);
     if (s->effects & FX_COUPLING) forget_touch(s, KIND_SOLID);
+    if (s->effects & FX_OPEN) TRY(open_exchange(&s->open, &s->fluid.k, fluid, d));
     const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
         const double energy = energy_of(s, fluid, i);
@@ -207,6 +210,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     if (s->effects & FX_PERIODIC) book_crossings(s);
     fluid->n -= lost;
     s->state.lost += lost;
+    if (s->effects & FX_OPEN) TRY(open_list(&s->open, fluid, d));
     if ((s->effects & FX_WALL) && s->state.sorts == 0)
         cells_sort(&s->cells, KIND_WALL, &s->kind[KIND_WALL]);
     else if (s->effects & FX_MOTION)
@@ -245,6 +249,8 @@ static void use_skin_left(struct simulation *s, double speed2_before)
  * need not be measured at every step: the answer would be no. Round-off of the ways is less than the hair. */
 static bool sorting_due(struct simulation *s)
 {
+    if (s->effects & FX_OPEN && open_due(&s->open, &s->kind[KIND_FLUID], s->scene->top.dp))
+        return true;
     const bool bounded =
         s->scene->top.integrator != INTEGRATOR_SYMPLECTIC && !(s->effects & FX_MOTION);
     const double hair = 1e-6 * s->fluid.k.h;
@@ -279,6 +285,7 @@ static enum err build(struct simulation *s, struct diag *d)
         id += s->kind[kind].n;
     }
     if (s->effects & FX_FLUID) TRY(create_fluid(s, d));
+    if (s->effects & FX_OPEN) TRY(open_create(&s->open, &s->arena, s->scene, id, d));
     if (s->effects & FX_SOLID) {
         TRY(solid_create(&s->solid, &s->arena, s->scene, &s->kind[KIND_SOLID], d));
         start_solid(s);
@@ -308,6 +315,7 @@ static enum err build(struct simulation *s, struct diag *d)
     s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
                             start.hourglass + start.contact;
     account_begin(s, &start);
+    open_forget(&s->open); /* what the buffers were given at the start is there at the start */
     s->state.det_low = 1;
     s->evaluated = false; /* the caller may set the scene up further */
     return ERR_OK;
@@ -452,6 +460,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     const enum err e = guards_check(s, d);
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
+    if (s->effects & FX_OPEN) open_book(&s->open, s->state.dt);
     take_work(s);
     if (s->gravity_varies) add_gravity_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);
@@ -476,6 +485,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
         for (int kind = 0; kind < KIND_COUNT; kind++)
             if (s->kind[kind].capacity && (kind != KIND_SOLID || (s->effects & FX_COUPLING)))
                 cells_rebuild(&s->cells, (enum kind)kind, &s->kind[kind]);
+        if (s->effects & FX_OPEN) TRY(open_list(&s->open, &s->kind[KIND_FLUID], d));
         fluid_find_near(&s->fluid, &s->cells);
         find_skin_left(s);
         if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
@@ -516,5 +526,6 @@ uint64_t simulation_hash(struct simulation *s)
     simulation_refresh(s);
     uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&s->kind[kind], h);
-    return hash_bytes(h, &s->state, sizeof s->state);
+    h = hash_bytes(h, &s->state, sizeof s->state);
+    return s->effects & FX_OPEN ? open_hash(&s->open, h) : h;
 }

@@ -10,6 +10,7 @@
 #include "case/effects.h"
 #include "fluid/fluid.h"
 #include "time/account.h"
+#include "fluid/open.h"
 #include "time/ledger.h"
 #include "time/guards.h"
 #include "fluid/wall_motion.h"
@@ -57,6 +58,7 @@ struct simulation {
     struct cells cells;
     struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
     struct wall_motion wall_motion; /* walls that move; unused where none does */
+    struct open open;               /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */
     struct contact contact;         /* of the solid; unused without it */
     struct loads loads;             /* of the solid; unused without loads and moving clamps */

@@ -56,9 +56,9 @@ static void compare(const char *precision)
 {
     for (int k = 0; k < (int)COUNT_OF(sets); k++) {
         const uint64_t generic = run(k, precision, true);
-        TEST_ASSERT_EQUAL_HEX32(ANY_EFFECTS, rig.sim.fluid.sweeps->effects);
+        TEST_ASSERT_EQUAL_HEX64(ANY_EFFECTS, rig.sim.fluid.sweeps->effects);
         const uint64_t stamped = run(k, precision, false);
-        TEST_ASSERT_EQUAL_HEX32_MESSAGE(sets[k].effects, rig.sim.fluid.sweeps->effects,
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, rig.sim.fluid.sweeps->effects,
                                         sets[k].name);
         TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.sweeps->name, sets[k].name,
                                          strlen(sets[k].name)));
@@ -82,7 +82,7 @@ static void test_every_variant_is_compared(void)
     for (int k = 0; k + 1 < (int)COUNT_OF(sets); k++) {
         const struct fluid_sweeps *other = fluid_sweeps_double;
         while (other->effects != ANY_EFFECTS && other->effects != sets[k].effects) other++;
-        TEST_ASSERT_EQUAL_HEX32_MESSAGE(sets[k].effects, other->effects, sets[k].name);
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, other->effects, sets[k].name);
     }
 }
 

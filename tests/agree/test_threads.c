@@ -102,6 +102,30 @@ static void test_lone_solid(void)
     }
 }
 
+/* Particles that are made and ended: their numbers and order, too. */
+static void test_open_boundaries(void)
+{
+    static const char open_ends[] =
+        "dp = 5 mm\nend_time = 1\n"
+        "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\nvelocity = 1, 0\n"
+        "density_diffusion = 0.1\nshifting = 2\n"
+        "[wall bed]\nshape = box -0.03, -0.02, 0.23, 0\nshape = box -0.03, 0.1, 0.23, 0.12\n"
+        "[inflow in]\nfrom = 0, 0.1\nto = 0, 0\nspeed = 1 + 0.5*sin(100*t) + 20*y*(0.1 - y)\n"
+        "[outflow out]\nfrom = 0.2, 0\nto = 0.2, 0.1\npressure = 1000*sin(90*t)\nabsorb = 0.1\n";
+    uint64_t expected = 0;
+    const int threads[] = {1, 2, 3, 8};
+    for (int k = 0; k < 4; k++) {
+        thread_use(threads[k]);
+        rig_open(&rig, open_ends, NULL);
+        rig_steps(&rig, 150, 1);
+        TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 60);
+        TEST_ASSERT_TRUE(rig.sim.open.count[1][OPEN_LEFT] > 40);
+        const uint64_t hash = simulation_hash(&rig.sim);
+        if (k == 0) expected = hash;
+        TEST_ASSERT_EQUAL_HEX64(expected, hash);
+    }
+}
+
 /* Fluid that goes round through periodic sides, over a bed that it sticks to, with a wall that drifts
  * through them; gradients, shifting and what else has sums of its own. */
 static void test_periodic_sides(void)
@@ -177,6 +201,7 @@ int main(void)
     RUN_TEST(test_verlet_double_with_substeps);
     RUN_TEST(test_leapfrog_mixed_with_substeps);
     RUN_TEST(test_lone_solid);
+    RUN_TEST(test_open_boundaries);
     RUN_TEST(test_periodic_sides);
     return UNITY_END();
 }

@@ -43,6 +43,8 @@ static const char scene_text[] =
     "[wall floor]\nshape = box -10 mm, -8 mm, 1.1, -4 mm\n"
     "[wall more]\nshape = box 1.12, 0, 1.15, 10 mm\n"
     "[motion lift]\n[motion more]\n"
+    "[inflow more]\nfrom = 0.2, 0.1\nto = 0.2, 0\nspeed = 1\n"
+    "[outflow more]\nfrom = 0.3, 0.1\nto = 0.2, 0.1\npressure = 0\n"
     "[solid post]\nshape = box 0.5, 0, 0.52, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
     "[solid more]\nlike = post\nshape = box 0.7, 0, 0.72, 0.1\n"
     "[probe tip]\nbody = post\npoint = 0.51, 0.1\n"
@@ -71,6 +73,7 @@ static const char *companion(const struct param *p)
         return "motion more.kind=expression";
     if (is(p, "motion", "file")) return "motion more.kind=table";
     if (is(p, "reference", "file")) return "reference more.label=x";
+    if (is(p, "inflow", "absorb")) return "inflow more.pressure=1";
     return NULL;
 }
 
@@ -96,6 +99,10 @@ static void example_is_accepted(const struct param *p)
     snprintf(text, sizeof text, "%s", scene_text);
     /* Of the two ways to give a reference one is to go, as `body` is where the fluid is probed. */
     if (is(p, "reference", "file")) *strstr(text, "formula") = '#';
+    if (is(p, "inflow", "velocity") || is(p, "inflow", "pressure") || is(p, "inflow", "absorb"))
+        *strstr(text, "speed = 1") = '#';
+    if (is(p, "outflow", "velocity") || is(p, "outflow", "speed") || is(p, "outflow", "level"))
+        *strstr(text, "pressure = 0") = '#';
     if (is(p, "load", "traction")) *strstr(text, "force") = '#';
     if (is(p, "probe", "point") || is(p, "probe", "to"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);

@@ -265,7 +265,8 @@ static void same_value(const struct param *p, const char *mine, const char *its)
     case PARAM_CHOICE: TEST_ASSERT_EQUAL_MEMORY_MESSAGE(a, b, sizeof(int), p->key); break;
     case PARAM_TEXT: TEST_ASSERT_EQUAL_STRING_MESSAGE(a, b, p->key); break;
     case PARAM_FIELD_EXPR:
-    case PARAM_TIME_EXPR: same_expressions(a, b); break;
+    case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR: same_expressions(a, b); break;
     case PARAM_SHAPES: same_shapes(a, b); break;
     case PARAM_NUMBERS: {
         const struct number_list *p_list = a, *q_list = b;

@@ -31,7 +31,7 @@ static const struct {
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, fluid, wall, "
-     "solid, contact, load, motion, probe, reference"},
+     "solid, contact, load, motion, inflow, outflow, probe, reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
      "`laminar_viscosity`?"},
@@ -417,6 +417,7 @@ static const char *wrong(const struct param *p, const char **value)
         return why;
     case PARAM_FIELD_EXPR:
     case PARAM_TIME_EXPR:
+    case PARAM_FLOW_EXPR:
     case PARAM_NUMBERS: *value = "(1"; return p->count > 1 ? "" : "`(` is not closed";
     case PARAM_SHAPES: *value = "cube 1"; return "";
     case PARAM_TEXT: break;

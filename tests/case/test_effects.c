@@ -30,6 +30,10 @@ static const struct {
      FX_FLUID | FX_DIFFUSION | FX_FOURTAKAS, EFFECT_FOURTAKAS, "line 7: [fluid w] diffusion_form"},
     {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\n",
      FX_FLUID | FX_DIFFUSION | FX_ANTUONO, EFFECT_ANTUONO, "line 7: [fluid w] diffusion_form"},
+    {TOP FLUID "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nspeed = 1\n", FX_FLUID | FX_INFLOW,
+     EFFECT_INFLOW, "line 6: [inflow i]"},
+    {TOP FLUID "[outflow o]\nfrom = 0, 0.1\nto = 0, 0\npressure = 1\n", FX_FLUID | FX_OUTFLOW,
+     EFFECT_OUTFLOW, "line 6: [outflow o]"},
     {TOP FLUID "laminar_viscosity = 1e-3\n", FX_FLUID | FX_LAMINAR, EFFECT_LAMINAR,
      "line 6: [fluid w] laminar_viscosity"},
     {TOP FLUID "laminar_viscosity = 1e-3\n" WALL "slip = none\n",
@@ -110,7 +114,7 @@ static void test_the_set_follows_from_the_case(void)
         const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
         const effect_set integrator = by_default ? FX_LEAPFROG : 0;
         tested |= EFFECT_BIT(scenes[k].effect);
-        TEST_ASSERT_EQUAL_HEX32_MESSAGE(scenes[k].effects | integrator,
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(scenes[k].effects | integrator,
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,
                                         scenes[k].text);
         struct effect_caller by;

@@ -133,6 +133,22 @@ static void test_shifting_keeps_vortices_alive(void)
     assert_at_most((exact - amplitude[0]) * 2 / 3, exact - amplitude[1], "missing amplitude");
 }
 
+/* In a box without walls the mean density can only be that of the start: without L-9 shifting had raised
+ * it by 3 % at 0.4 s at this resolution, with it by 0.3 %. */
+static void test_shifting_keeps_the_mean_density(void)
+{
+    rig_open(&rig,
+             "dp = 0.04\nend_time = 1\n[numerics]\nh_over_dp = 1.5\n" VORTICES
+             "sound_speed = 10\nlaminar_viscosity = 0.01\nshifting = 10\n"
+             "pressure = -250*(cos(4*pi*x) + cos(4*pi*y))\n",
+             NULL);
+    rig_run(&rig, 0.4);
+    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    double sum = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += p->dens[i];
+    assert_at_most(0.01, fabs(sum / (double)p->n), "mean of rho/rho0 - 1");
+}
+
 /* As above with h/dp = 2 and the shift at c0/10 for all, which works at the stagnation points where the
  * lattice is torn: kinetic energy 0.957 of the exact one at 0.4 s (0.554 without shifting, 0.747 with each
  * particle's own speed). */
@@ -158,6 +174,7 @@ int main(void)
     RUN_TEST(test_plates_without_friction);
     RUN_TEST(test_taylor_green);
     RUN_TEST(test_shifting_keeps_vortices_alive);
+    RUN_TEST(test_shifting_keeps_the_mean_density);
     RUN_TEST(test_shifting_at_one_speed_keeps_vortices_whole);
     return UNITY_END();
 }

@@ -66,9 +66,9 @@ static void test_next_to_nothing_changes_no_bit(void)
 {
     for (size_t k = 0; k < COUNT_OF(limits); k++) {
         const uint64_t without = hash_of(limits[k].scene, "title=without", "");
-        TEST_ASSERT_FALSE_MESSAGE(rig.sim.effects & (1u << limits[k].effect), limits[k].set);
+        TEST_ASSERT_FALSE_MESSAGE(rig.sim.effects & EFFECT_BIT(limits[k].effect), limits[k].set);
         const uint64_t with = hash_of(limits[k].scene, limits[k].set, limits[k].another);
-        TEST_ASSERT_TRUE_MESSAGE(rig.sim.effects & (1u << limits[k].effect), limits[k].set);
+        TEST_ASSERT_TRUE_MESSAGE(rig.sim.effects & EFFECT_BIT(limits[k].effect), limits[k].set);
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(without, with, limits[k].set);
     }
 }

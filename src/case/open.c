@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT
+ * [inflow] and [outflow] sections: what they say together, and what is wrong with it. */
+#include "case/case.h"
+
+#include <math.h>
+
+int scene_open_count(const struct scene *s) { return s->n_inflow + s->n_outflow; }
+
+/* Whole spacings that hold the kernel's reach, a particle that has left and is no part of the buffer yet, and
+ * one of the buffer that has entered and is not relabelled yet. */
+static double depth_of(const struct scene *s)
+{
+    return ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
+}
+
+#define OPEN_OF(section)                                                                           \
+    (struct scene_open)                                                                            \
+    {                                                                                              \
+        .common = &(section)->common, .from = {(section)->from[0], (section)->from[1]},            \
+        .along = {(section)->to[0] - (section)->from[0], (section)->to[1] - (section)->from[1]},   \
+        .level = (section)->level, .absorb = (section)->absorb, .sense = (section)->side ? -1 : 1, \
+        .speed = (section)->speed.e[0],                                                            \
+        .velocity = {(section)->velocity.e[0], (section)->velocity.e[1]},                          \
+        .pressure = (section)->pressure.e[0]                                                       \
+    }
+
+struct scene_open scene_open_at(const struct scene *s, int k)
+{
+    const bool inflow = k < s->n_inflow;
+    struct scene_open o = inflow ? OPEN_OF(&s->inflow[k]) : OPEN_OF(&s->outflow[k - s->n_inflow]);
+    o.length = hypot(o.along[0], o.along[1]);
+    o.depth = depth_of(s);
+    o.along[0] /= o.length;
+    o.along[1] /= o.length;
+    o.inward[0] = -o.sense * o.along[1];
+    o.inward[1] = o.sense * o.along[0];
+    o.inflow = inflow;
+    o.sense = inflow ? 1 : -1;
+    o.kind = o.speed || o.velocity[0] ? OPEN_VELOCITY : OPEN_PRESSURE;
+    return o;
+}
+
+void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2])
+{
+    for (int c = 0; c < 2; c++)
+        v[c] = o->speed ? o->sense * scene_expr_at_time(o->speed, x[0], x[1], time) * o->inward[c]
+                        : scene_expr_at_time(o->velocity[c], x[0], x[1], time);
+}
+
+/* --- checks --- */
+
+static const char *word_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
+
+static enum err check_given(struct reader *r, const struct scene_open *o)
+{
+    const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
+    const char *const word = word_of(o), *const name = o->common->name;
+    const int line = o->common->line;
+    const double *const g = r->scene->top.gravity;
+    if (!(o->length > 0))
+        return bad_line(r, line,
+                        "[%s %s] needs `from` and `to`, the two ends of the line that the fluid "
+                        "passes",
+                        word, name);
+    if (given > 1)
+        return bad_line(r, line,
+                        "[%s %s] has more than one of `speed`, `velocity` and `pressure`; one of "
+                        "them decides",
+                        word, name);
+    if (given == 0 && isnan(o->level))
+        return bad_line(r, line, "[%s %s] needs `speed`, `velocity`, `pressure` or `level`", word,
+                        name);
+    if (o->pressure && !isnan(o->level))
+        return bad_line(r, line,
+                        "[%s %s] has both `pressure` and `level`, which gives the pressure; one is "
+                        "to go",
+                        word, name);
+    if (!isnan(o->level) && !(g[1] < 0 && g[0] == 0))
+        return bad_line(r, line,
+                        "[%s %s] level = %g m needs gravity that points down, and it is %g, %g "
+                        "m/s^2",
+                        word, name, o->level, g[0], g[1]);
+    if (o->kind == OPEN_VELOCITY && o->absorb > 0)
+        return bad_line(r, line,
+                        "[%s %s] `absorb` goes with a pressure; where a velocity is given it holds "
+                        "exactly",
+                        word, name);
+    return ERR_OK;
+}
+
+enum { LINE_POINTS = 33, LINE_TIMES = 65 };
+
+/* Finite on the whole line at all times; and what is called an inflow brings fluid in at some time. */
+static enum err check_profile(struct reader *r, const struct scene_open *o)
+{
+    const char *const word = word_of(o), *const name = o->common->name;
+    double most = -HUGE_VAL, least = HUGE_VAL;
+    for (int n = 0; n < LINE_TIMES; n++) {
+        const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
+        for (int k = 0; k < LINE_POINTS; k++) {
+            const double part = (k + 0.5) / LINE_POINTS * o->length;
+            const double x[2] = {o->from[0] + part * o->along[0], o->from[1] + part * o->along[1]};
+            double v[2] = {0, 0};
+            if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
+            if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
+            if (!isfinite(v[0] + v[1]))
+                return bad_line(r, o->common->line,
+                                "[%s %s] %s has no finite value at (%g, %g) m and t = %g s", word,
+                                name,
+                                o->pressure ? "pressure"
+                                : o->speed  ? "speed"
+                                            : "velocity",
+                                x[0], x[1], time);
+            const double in = v[0] * o->inward[0] + v[1] * o->inward[1];
+            most = max2(most, in);
+            least = min2(least, in);
+        }
+    }
+    if (o->kind == OPEN_PRESSURE) return ERR_OK;
+    if (o->inflow && most <= 0 && least < 0)
+        return bad_line(r, o->common->line,
+                        "[inflow %s] its velocity points out of the fluid everywhere and at all "
+                        "times, by up to %g m/s: change its sign or `side`, or call it [outflow]",
+                        name, -least);
+    if (!o->inflow && least >= 0 && most > 0)
+        return bad_line(r, o->common->line,
+                        "[outflow %s] its velocity points into the fluid everywhere and at all "
+                        "times, by up to %g m/s: change its sign or `side`, or call it [inflow]",
+                        name, most);
+    return ERR_OK;
+}
+
+enum err case_check_open(struct reader *r)
+{
+    const struct scene *const s = r->scene;
+    if (scene_open_count(s) > 0 && s->n_fluid > 0 && s->fluid[0].density_diffusion == 0) {
+        const struct scene_open o = scene_open_at(s, 0);
+        char place[LOCATION_TEXT];
+        scene_location(s, o.common->line, place);
+        diag_warn(r->diag,
+                  "%s: [%s %s] is beside fluid without density_diffusion: noise of the pressure "
+                  "grows at open boundaries, and density_diffusion = 0.1 keeps it down",
+                  place, word_of(&o), o.common->name);
+    }
+    for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
+        const struct scene_open o = scene_open_at(s, k);
+        TRY(check_given(r, &o));
+        TRY(check_profile(r, &o));
+    }
+    return ERR_OK;
+}

@@ -1,0 +1,484 @@
+/* SPDX-License-Identifier: MIT */
+#include "fluid/open.h"
+
+#include "base/hash.h"
+#include "fluid/eos.h"
+#include "particles/kernel.h"
+
+#include <math.h>
+
+/* Fluid that has gone this far beyond the line, in spacings, is a part of the buffer; and a particle of the
+ * buffer that has come this far before the line waits no longer. Fluid that swings about the line by less
+ * makes no copies. */
+#define BAND 0.5
+
+int64_t open_places(const struct scene *s)
+{
+    double places = 1;
+    int64_t n = s->points[KIND_FLUID].n;
+    for (int c = 0; c < 2; c++) places *= (s->domain_upper[c] - s->domain_lower[c]) / s->top.dp;
+    const double taken = (double)(n + s->points[KIND_WALL].n);
+    return n + n / 8 + (int64_t)min2(1e9, max2(0, places - taken));
+}
+
+enum err open_create(struct open *o, struct arena *a, const struct scene *s, int64_t next_id,
+                     struct diag *d)
+{
+    const size_t n = (size_t)scene_open_count(s);
+    int64_t members = 0;
+    for (int64_t i = 0; i < s->points[KIND_FLUID].n; i++)
+        members += s->points[KIND_FLUID].open[i] > 0;
+    o->n = (int)n;
+    o->next_id = next_id;
+    o->capacity = 4 * members + 64;
+    o->boundary = arena_alloc(a, n, sizeof *o->boundary, "open boundaries", d);
+    o->sum = arena_alloc(a, n, sizeof *o->sum, "open boundaries", d);
+    o->count = arena_alloc(a, n, sizeof *o->count, "open boundaries", d);
+    o->rate = arena_alloc(a, n, sizeof *o->rate, "open boundaries", d);
+    const size_t most = (size_t)o->capacity;
+    o->member = arena_alloc(a, most, sizeof *o->member, "open boundaries", d);
+    o->seen_p = arena_alloc(a, most, sizeof *o->seen_p, "open boundaries", d);
+    o->seen_u = arena_alloc(a, most, sizeof *o->seen_u, "open boundaries", d);
+    o->seen_v = arena_alloc(a, most, sizeof *o->seen_v, "open boundaries", d);
+    o->flow = arena_alloc(a, most, sizeof *o->flow, "open boundaries", d);
+    if (!o->flow || !o->boundary || !o->sum || !o->count || !o->rate || !o->member || !o->seen_p ||
+        !o->seen_u || !o->seen_v)
+        return ERR_MEMORY;
+    for (int k = 0; k < o->n; k++) {
+        o->boundary[k] = scene_open_at(s, k);
+        o->sum[k][OPEN_MEAN_FLOW] = (double)NAN;
+    }
+    return ERR_OK;
+}
+
+/* --- the fluid across the line --- */
+
+/* Sums of the kernel over the fluid around a point, of what it carries and of the way there. */
+struct across {
+    double w, p, u, v;
+    double x, y, xx, xy, yy; /* of the way from the point to the particles */
+    double ux, uy, vx, vy;
+    double mass_x, mass_y; /* of rho/rho0 times the way back */
+};
+
+SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
+                              const struct particles *p, int64_t i, double x, double y)
+{
+    const double r2 = x * x + y * y;
+    if (r2 >= square(KERNEL_REACH * k->h) || p->open[i]) return;
+    const double w = kernel_w(sqrt(r2), k->h);
+    const double u = p->vx[i], v = p->vy[i], mass = w * (1 + p->dens[i]);
+    s->w += w;
+    s->p += w * eos_pressure(p->dens[i], k->rho0, k->c0);
+    s->u += w * u;
+    s->v += w * v;
+    s->x += w * x;
+    s->y += w * y;
+    s->xx += w * x * x;
+    s->xy += w * x * y;
+    s->yy += w * y * y;
+    s->ux += w * u * x;
+    s->uy += w * u * y;
+    s->vx += w * v * x;
+    s->vy += w * v * y;
+    s->mass_x -= mass * x;
+    s->mass_y -= mass * y;
+}
+
+/* The fluid in reach of a point, without the buffers. Particles may have strayed from their cells. */
+static struct across look_across(const struct fluid_constants *k, const struct particles *p,
+                                 const struct cells *c, const double at[2])
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    const double reach = KERNEL_REACH * k->h + c->skin;
+    struct across sums = {0};
+    int first[2], n[2];
+    for (int axis = 0; axis < 2; axis++) {
+        const int cells = axis ? c->ny : c->nx;
+        const double place = (at[axis] - c->lower[axis]) / c->side[axis],
+                     part = reach / c->side[axis];
+        first[axis] = (int)max2(-1, min2(cells, floor(place - part)));
+        n[axis] = (int)max2(-1, min2(cells, floor(place + part))) - first[axis] + 1;
+        if (c->periodic[axis] && n[axis] > cells) n[axis] = cells;
+    }
+    for (int j = 0; j < n[1]; j++)
+        for (int i = 0; i < n[0]; i++) {
+            const int32_t cell = cell_at(c, first[0] + i, first[1] + j);
+            if (cell < 0) continue;
+            for (int32_t m = list->start[cell]; m < list->start[cell] + list->count[cell]; m++)
+                add_across(&sums, k, p, m, cells_minimum_image(c, 0, p->x[m] - at[0]),
+                           cells_minimum_image(c, 1, p->y[m] - at[1]));
+        }
+    return sums;
+}
+
+/* T-51: the value at the point itself of the linear field nearest to the sums; their mean where the
+ * particles span no plane. */
+static double linear_value(const struct across *s, double mean, double with_x, double with_y)
+{
+    const double x = s->x / s->w, y = s->y / s->w;
+    const double xx = s->xx / s->w - x * x, xy = s->xy / s->w - x * y, yy = s->yy / s->w - y * y;
+    const double det = xx * yy - xy * xy, value = mean / s->w;
+    if (!(det > 0.01 * square(xx + yy))) return value;
+    const double cx = with_x / s->w - x * value, cy = with_y / s->w - y * value;
+    return value - ((yy * x - xy * y) * cx + (xx * y - xy * x) * cy) / det;
+}
+
+/* --- what buffers have --- */
+
+/* Rate of the velocity that is given at a point of the line, over the time that sound crosses h. */
+static void given_acceleration(const struct scene_open *b, const struct fluid_constants *k,
+                               const double x[2], double time, double a[2])
+{
+    const double from = max2(0, time - 0.5 * k->h / k->c0), to = from + k->h / k->c0;
+    double v[2];
+    scene_open_velocity(b, x, from, v);
+    scene_open_velocity(b, x, to, a);
+    for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (to - from);
+}
+
+/* What a particle of a buffer takes from the fluid at its mirror image in the line: pressure and
+ * velocity (T-51), or the pressure that T-10 gives a wall that moves as the velocity is given (T-50).
+ * Where there is no fluid it keeps what it has. */
+static void see(struct open *o, int64_t m, const struct fluid_constants *k,
+                const struct particles *p, const struct cells *c, double time)
+{
+    const int32_t i = o->member[m];
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    const double x[2] = {p->x[i], p->y[i]};
+    double in, along, foot[2], mirror[2], a[2];
+    scene_open_place(b, x, &in, &along);
+    for (int axis = 0; axis < 2; axis++) {
+        foot[axis] = x[axis] - in * b->inward[axis];
+        mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
+    }
+    const struct across s = look_across(k, p, c, mirror);
+    o->seen_p[m] =
+        b->kind == OPEN_PRESSURE ? (double)NAN : eos_pressure(p->dens[i], k->rho0, k->c0);
+    o->seen_u[m] = p->vx[i];
+    o->seen_v[m] = p->vy[i];
+    if (!(s.w > 0)) return;
+    if (b->kind == OPEN_PRESSURE) {
+        o->seen_p[m] = s.p / s.w;
+        const double normal = linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] +
+                              linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
+        o->seen_u[m] = normal * b->inward[0];
+        o->seen_v[m] = normal * b->inward[1];
+        return;
+    }
+    given_acceleration(b, k, foot, time, a);
+    const double way[2] = {x[0] - mirror[0], x[1] - mirror[1]};
+    o->seen_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * way[0]) +
+                                     (k->gravity[1] - a[1]) * (s.mass_y + s.w * way[1]))) /
+                   s.w;
+}
+
+/* The pressure that is given at a point of the line, Pa. */
+static double given_pressure(const struct scene_open *b, const struct fluid_constants *k,
+                             const double foot[2], double time)
+{
+    if (b->pressure) return scene_expr_at_time(b->pressure, foot[0], foot[1], time);
+    return max2(0, -k->rho0 * k->gravity[1] * (b->level - foot[1]));
+}
+
+/* T-52: of a particle of the buffer, so that on the line it is `given`; no tension where water ends. */
+static double odd_pressure(const struct scene_open *b, double given, double mirrored)
+{
+    if (isnan(mirrored)) return given;
+    const double odd = 2 * given - mirrored;
+    return b->pressure ? odd : max2(0, odd);
+}
+
+/* Velocity out of the fluid a spacing before a point of the line: at fixed ones, since particles that come
+ * and go would be noise. */
+static double flow_at(const struct scene_open *b, const struct fluid_constants *k,
+                      const struct particles *p, const struct cells *c, double along)
+{
+    double x[2];
+    for (int axis = 0; axis < 2; axis++)
+        x[axis] = b->from[axis] + along * b->along[axis] + k->dp * b->inward[axis];
+    const struct across s = look_across(k, p, c, x);
+    if (!(s.w > 0)) return 0;
+    return -linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] -
+           linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
+}
+
+/* The mean flow out of the fluid through each boundary that needs to know it. */
+static void find_flow(struct open *o, const struct fluid_constants *k, const struct particles *p,
+                      const struct cells *c)
+{
+    for (int n = 0; n < o->n; n++) {
+        const struct scene_open *const b = &o->boundary[n];
+        const int places = (int)max2(1, min2((double)o->capacity, round(b->length / k->dp)));
+        double sum = 0;
+        if (!(b->absorb > 0)) continue;
+#pragma omp parallel for schedule(static)
+        for (int i = 0; i < places; i++)
+            o->flow[i] = flow_at(b, k, p, c, (i + 0.5) * b->length / places);
+        for (int i = 0; i < places; i++) sum += o->flow[i];
+        o->rate[n].flow = sum / places;
+        if (isnan(o->sum[n][OPEN_MEAN_FLOW])) o->sum[n][OPEN_MEAN_FLOW] = o->rate[n].flow;
+    }
+}
+
+static double mass_of(const struct fluid_constants *k, const struct particles *p, int64_t i)
+{
+    return p->m ? k->mass * p->m[i] : k->mass;
+}
+
+static double energy_of(const struct fluid_constants *k, const struct particles *p, int64_t i)
+{
+    return mass_of(k, p, i) * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
+                      k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+}
+
+/* Books a particle that is made (sign 1) or ended (-1). */
+static void book_particle(struct open *o, const struct fluid_constants *k,
+                          const struct particles *p, int64_t i, double sign)
+{
+    double *const sum = o->sum[p->open[i] - 1];
+    sum[OPEN_MOMENTUM_X] += sign * mass_of(k, p, i) * p->vx[i];
+    sum[OPEN_MOMENTUM_Y] += sign * mass_of(k, p, i) * p->vy[i];
+    sum[OPEN_ENERGY] += sign * energy_of(k, p, i);
+}
+
+static void set_particle(struct open *o, int64_t m, const struct fluid_constants *k,
+                         struct particles *p, double time)
+{
+    const int32_t i = o->member[m];
+    const int number = p->open[i] - 1;
+    const struct scene_open *const b = &o->boundary[number];
+    double v[2] = {o->seen_u[m], o->seen_v[m]}, pressure = o->seen_p[m], in, along;
+    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &in, &along);
+    const double foot[2] = {p->x[i] - in * b->inward[0], p->y[i] - in * b->inward[1]};
+    if (b->kind == OPEN_PRESSURE) {
+        double given = given_pressure(b, k, foot, time);
+        if (b->absorb > 0) /* T-53 */
+            given += k->rho0 * k->c0 * (o->rate[number].flow - o->sum[number][OPEN_MEAN_FLOW]);
+        pressure = odd_pressure(b, given, pressure);
+    } else {
+        scene_open_velocity(b, foot, time, v);
+    }
+    p->vx[i] = v[0];
+    p->vy[i] = v[1];
+    p->dens[i] = eos_dens(pressure, k->rho0, k->c0);
+    if (p->vx_half) {
+        p->vx_half[i] = v[0];
+        p->vy_half[i] = v[1];
+    }
+    if (p->vx_old) {
+        p->vx_old[i] = v[0];
+        p->vy_old[i] = v[1];
+    }
+}
+
+void open_set(struct open *o, const struct fluid_constants *k, struct particles *p,
+              const struct cells *c, double time, bool book)
+{
+#pragma omp parallel for schedule(static)
+    for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, p, c, time);
+    find_flow(o, k, p, c);
+    for (int64_t m = 0; m < o->n_members; m++) {
+        const int32_t i = o->member[m];
+        const double u = p->vx[i], v = p->vy[i], energy = energy_of(k, p, i);
+        set_particle(o, m, k, p, time);
+        if (!book) continue;
+        double *const sum = o->sum[p->open[i] - 1];
+        sum[OPEN_MOMENTUM_X] += mass_of(k, p, i) * (p->vx[i] - u);
+        sum[OPEN_MOMENTUM_Y] += mass_of(k, p, i) * (p->vy[i] - v);
+        sum[OPEN_ENERGY] += energy_of(k, p, i) - energy;
+    }
+}
+
+void open_hold(struct open *o, const struct fluid_constants *k, struct particles *p)
+{
+    for (int n = 0; n < o->n; n++) o->rate[n].force[0] = o->rate[n].force[1] = o->rate[n].power = 0;
+    for (int64_t m = 0; m < o->n_members; m++) {
+        const int32_t i = o->member[m];
+        struct open_rate *const r = &o->rate[p->open[i] - 1];
+        r->force[0] -= mass_of(k, p, i) * p->ax[i];
+        r->force[1] -= mass_of(k, p, i) * p->ay[i];
+        r->power -= mass_of(k, p, i) * (p->ax[i] * p->vx[i] + p->ay[i] * p->vy[i]);
+        p->ax[i] = p->ay[i] = 0;
+    }
+}
+
+void open_book(struct open *o, double dt)
+{
+    for (int k = 0; k < o->n; k++) {
+        double *const sum = o->sum[k];
+        sum[OPEN_MOMENTUM_X] += dt * o->rate[k].force[0];
+        sum[OPEN_MOMENTUM_Y] += dt * o->rate[k].force[1];
+        sum[OPEN_ENERGY] += dt * o->rate[k].power;
+        if (!(o->boundary[k].absorb > 0)) continue;
+        sum[OPEN_MEAN_FLOW] +=
+            dt / (o->boundary[k].absorb + dt) * (o->rate[k].flow - sum[OPEN_MEAN_FLOW]);
+    }
+}
+
+/* --- exchange --- */
+
+bool open_due(const struct open *o, const struct particles *p, double dp)
+{
+    bool due = false;
+    for (int64_t m = 0; m < o->n_members; m++) {
+        const int32_t i = o->member[m];
+        double in, along;
+        scene_open_place(&o->boundary[p->open[i] - 1], (const double[]){p->x[i], p->y[i]}, &in,
+                         &along);
+        due |= in > BAND * dp;
+    }
+    return due;
+}
+
+/* A copy of a particle that enters, at `in` before the line. */
+static enum err make_copy(struct open *o, const struct fluid_constants *k, struct particles *p,
+                          int64_t i, double in, struct diag *d)
+{
+    const int number = p->open[i] - 1;
+    const struct scene_open *const b = &o->boundary[number];
+    if (p->n == p->capacity)
+        return diag_fail(d, ERR_GUARD,
+                         "[%s %s] has brought in so much fluid that all %lld places of the domain "
+                         "are taken: more comes in than leaves; a larger [domain] or an [outflow] "
+                         "may help",
+                         b->inflow ? "inflow" : "outflow", b->common->name, (long long)p->capacity);
+    const int64_t to = p->n++;
+    double place, along;
+    particles_copy(p, i, to);
+    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &place, &along);
+    p->id[to] = o->next_id++;
+    p->x[to] += (in - place) * b->inward[0];
+    p->y[to] += (in - place) * b->inward[1];
+    o->count[number][OPEN_ENTERED]++;
+    book_particle(o, k, p, to, 1);
+    return ERR_OK;
+}
+
+/* How far the last particle of the column of i in the buffer is before the line. Those from `fresh` on are
+ * new. */
+static double last_of_column(const struct open *o, const struct particles *p, int64_t i,
+                             int64_t fresh, double dp)
+{
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    double last, own;
+    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &last, &own);
+    for (int64_t m = 0; m < o->n_members + p->n - fresh; m++) {
+        const int64_t j = m < o->n_members ? o->member[m] : fresh + m - o->n_members;
+        double in, along;
+        if (p->open[j] != p->open[i]) continue;
+        scene_open_place(b, (const double[]){p->x[j], p->y[j]}, &in, &along);
+        if (fabs(along - own) < 0.5 * dp) last = min2(last, in);
+    }
+    return last;
+}
+
+/* T-54: behind a particle that enters, its column is filled to the depth of the buffer, each a spacing
+ * behind the last. Compressed fluid lies closer: what comes in is its density times its velocity. */
+static enum err fill_column(struct open *o, const struct fluid_constants *k, struct particles *p,
+                            int64_t i, int64_t fresh, struct diag *d)
+{
+    const double spacing = k->dp / (1 + p->dens[i]);
+    double in = last_of_column(o, p, i, fresh, k->dp) - spacing;
+    for (; in >= -o->boundary[p->open[i] - 1].depth; in -= spacing)
+        TRY(make_copy(o, k, p, i, in, d));
+    return ERR_OK;
+}
+
+/* The boundary whose buffer fluid at x has come into, from 1; 0: none. */
+static int32_t buffer_at(const struct open *o, const double x[2], double dp)
+{
+    for (int k = 0; k < o->n; k++) {
+        const struct scene_open *const b = &o->boundary[k];
+        double in, along;
+        scene_open_place(b, x, &in, &along);
+        if (in < -BAND * dp && in > -b->depth - dp && along > 0 && along < b->length) return k + 1;
+    }
+    return 0;
+}
+
+/* Whether a particle of a buffer is still in it or before it. Beside it are walls, which a buffer does not
+ * answer to. */
+static bool stays(const struct open *o, const struct particles *p, int64_t i, double dp)
+{
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    double in, along;
+    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &in, &along);
+    return in >= -b->depth - dp && along > 0 && along < b->length;
+}
+
+/* Ends the particles that have left their buffers. */
+static void end_particles(struct open *o, const struct fluid_constants *k, struct particles *p)
+{
+    int64_t kept = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->open[i] && !stays(o, p, i, k->dp)) {
+            o->count[p->open[i] - 1][OPEN_LEFT]++;
+            book_particle(o, k, p, i, -1);
+            continue;
+        }
+        if (kept < i) particles_copy(p, i, kept);
+        kept++;
+    }
+    p->n = kept;
+}
+
+enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *p,
+                       struct diag *d)
+{
+    const int64_t n = p->n; /* copies follow behind */
+    for (int64_t i = 0; i < n; i++) {
+        const double x[2] = {p->x[i], p->y[i]};
+        double in, along;
+        if (p->open[i] == 0) {
+            p->open[i] = buffer_at(o, x, k->dp);
+            continue;
+        }
+        scene_open_place(&o->boundary[p->open[i] - 1], x, &in, &along);
+        if (in <= 0 || !stays(o, p, i, k->dp)) continue;
+        TRY(fill_column(o, k, p, i, n, d));
+        p->open[i] = 0;
+    }
+    end_particles(o, k, p);
+    return ERR_OK;
+}
+
+enum err open_list(struct open *o, const struct particles *p, struct diag *d)
+{
+    o->n_members = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->open[i] == 0) continue;
+        if (p->open[i] < 0 || p->open[i] > o->n)
+            return diag_fail(d, ERR_INPUT,
+                             "fluid particle %lld is in the buffer of open boundary %d, and the "
+                             "case has %d of them",
+                             (long long)p->id[i], (int)p->open[i], o->n);
+        if (o->n_members == o->capacity)
+            return diag_fail(d, ERR_GUARD,
+                             "the buffers of the open boundaries hold four times the particles "
+                             "that they began with: fluid collects in them; a finer dp or a line "
+                             "further from the disturbance may help");
+        o->member[o->n_members++] = (int32_t)i;
+    }
+    return ERR_OK;
+}
+
+double open_energy(const struct open *o)
+{
+    double sum = 0;
+    for (int k = 0; k < o->n; k++) sum += o->sum[k][OPEN_ENERGY];
+    return sum;
+}
+
+void open_forget(struct open *o)
+{
+    for (int k = 0; k < o->n; k++)
+        o->sum[k][OPEN_MOMENTUM_X] = o->sum[k][OPEN_MOMENTUM_Y] = o->sum[k][OPEN_ENERGY] = 0;
+}
+
+uint64_t open_hash(const struct open *o, uint64_t h)
+{
+    h = hash_bytes(h, o->sum, (size_t)o->n * sizeof *o->sum);
+    h = hash_bytes(h, o->count, (size_t)o->n * sizeof *o->count);
+    return hash_bytes(h, &o->next_id, sizeof o->next_id);
+}

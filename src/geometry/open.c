@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT
+ * Buffers of [inflow] and [outflow] sections: rows of particles behind the line, a spacing apart. */
+#include "geometry/sampling.h"
+
+#include "case/case.h"
+
+#include <math.h>
+
+/* Nearer than this many spacings, two points are in one place (geometry/overlap.c). */
+#define SAME_PLACE 0.7
+/* A particle of the fluid is no further than this many spacings from the place it should have. */
+#define NEXT_TO 1.5
+
+static enum err fail_at(const struct sampler *g, const struct scene_open *o, const char *what,
+                        const double x[2], const char *mend)
+{
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, o->common->line, place);
+    return diag_fail(g->diag, ERR_INPUT, "%s: [%s %s] %s at (%.6g, %.6g) m: %s", place,
+                     o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
+}
+
+/* Points of a kind around a boundary's buffer. */
+struct around {
+    const struct scene_points *points;
+    int64_t n;
+    int64_t *at;
+};
+
+static enum err find_around(struct sampler *g, const struct scene_open *o, enum kind kind,
+                            struct around *a)
+{
+    const struct scene_points *const p = &g->scene->points[kind];
+    const double margin = 2 * g->scene->top.dp;
+    *a = (struct around){.points = p};
+    a->at = arena_alloc(&g->temp, (size_t)p->n, sizeof *a->at, "open boundaries", g->diag);
+    if (!a->at) return ERR_MEMORY;
+    for (int64_t k = 0; k < p->n; k++) {
+        double in, along;
+        scene_open_place(o, (const double[]){p->x[k], p->y[k]}, &in, &along);
+        if (fabs(in) < o->depth + margin && along > -margin && along < o->length + margin)
+            a->at[a->n++] = k;
+    }
+    return ERR_OK;
+}
+
+/* The nearest of the points to x within a distance; -1: none. */
+static int64_t nearest(const struct around *a, const double x[2], double within)
+{
+    int64_t found = -1;
+    double best = square(within);
+    for (int64_t k = 0; k < a->n; k++) {
+        const int64_t i = a->at[k];
+        const double r2 = square(a->points->x[i] - x[0]) + square(a->points->y[i] - x[1]);
+        if (r2 < best) best = r2, found = i;
+    }
+    return found;
+}
+
+/* Places across the line and rows behind it. */
+struct lattice {
+    int across, rows;
+    double step; /* m, along the line */
+};
+
+static struct lattice lattice_of(const struct scene *s, const struct scene_open *o)
+{
+    struct lattice l = {(int)max2(1, round(o->length / s->top.dp)),
+                        (int)round(o->depth / s->top.dp), 0};
+    l.step = o->length / l.across;
+    return l;
+}
+
+/* Place i of row j; row -1 is the first one within the fluid. False: above the water. */
+static bool lattice_point(const struct scene *s, const struct scene_open *o,
+                          const struct lattice *l, int i, int j, double x[2])
+{
+    const double along = (i + 0.5) * l->step, in = -(j + 0.5) * s->top.dp;
+    for (int c = 0; c < 2; c++) x[c] = o->from[c] + along * o->along[c] + in * o->inward[c];
+    return isnan(o->level) || x[1] < o->level;
+}
+
+/* Fluid that starts behind the line, and a line that no fluid starts at. */
+static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
+                            const struct around *fluid)
+{
+    const double dp = g->scene->top.dp;
+    const struct lattice l = lattice_of(g->scene, o);
+    for (int64_t k = 0; k < fluid->n; k++) {
+        const int64_t i = fluid->at[k];
+        const double x[2] = {fluid->points->x[i], fluid->points->y[i]};
+        double in, along;
+        scene_open_place(o, x, &in, &along);
+        if (fluid->points->open[i] == 0 && in < -1e-6 * dp && in > -o->depth && along > 0 &&
+            along < o->length)
+            return fail_at(g, o, "has fluid behind its line", x,
+                           "end the fluid's shape at the line, or change `side`");
+    }
+    int wet = 0, places = 0;
+    double x[2] = {o->from[0], o->from[1]};
+    for (int i = 0; i < l.across; i++) {
+        if (!lattice_point(g->scene, o, &l, i, -1, x)) continue;
+        places++;
+        wet += nearest(fluid, x, NEXT_TO * dp) >= 0;
+    }
+    if (places > 0 && 2 * wet >= places) return ERR_OK;
+    return fail_at(g, o, "has no fluid along its line", x,
+                   "the fluid's shape is to begin there; change `side` if it lies on the other "
+                   "side");
+}
+
+/* What is in the place of a particle of the buffer. */
+static enum err check_place(const struct sampler *g, const struct scene_open *o,
+                            const struct around kinds[KIND_COUNT], const double x[2])
+{
+    const double near = SAME_PLACE * g->scene->top.dp;
+    const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
+    if (nearest(&kinds[KIND_WALL], x, near) >= 0)
+        return fail_at(g, o, "lies in a wall", x,
+                       "shorten the line, or take the place out of the wall with `minus`");
+    if (nearest(&kinds[KIND_SOLID], x, near) >= 0)
+        return fail_at(g, o, "lies in a solid", x, "move the line");
+    if (fluid >= 0 && kinds[KIND_FLUID].points->open[fluid])
+        return fail_at(g, o, "overlaps another open boundary", x, "move one of the two");
+    return ERR_OK;
+}
+
+static enum err append(struct sampler *g, int number, const struct scene_open *o)
+{
+    struct scene *const s = g->scene;
+    struct scene_points *const p = &s->points[KIND_FLUID];
+    const struct lattice l = lattice_of(s, o);
+    const int64_t before = p->n;
+    struct around kinds[KIND_COUNT];
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        TRY(find_around(g, o, (enum kind)kind, &kinds[kind]));
+    TRY(check_fluid(g, o, &kinds[KIND_FLUID]));
+    for (int j = 0; j < l.rows; j++)
+        for (int i = 0; i < l.across; i++) {
+            double x[2];
+            if (!lattice_point(s, o, &l, i, j, x)) continue;
+            TRY(check_place(g, o, kinds, x));
+            p->x[p->n] = x[0];
+            p->y[p->n] = x[1];
+            p->body[p->n] = 0;
+            p->open[p->n] = number + 1;
+            p->n++;
+        }
+    return p->n > before ? ERR_OK : fail_at(g, o, "is above its level", o->from, "raise `level`");
+}
+
+/* Makes room in a field of the fluid's points. */
+#define GROW(field)                                                                          \
+    do {                                                                                     \
+        __typeof__(*p->field) *const to =                                                    \
+            arena_alloc(&s->arena, (size_t)(p->n + more), sizeof *to, "particles", g->diag); \
+        if (!to) return ERR_MEMORY;                                                          \
+        for (int64_t k = 0; k < p->n; k++) to[k] = p->field ? p->field[k] : 0;               \
+        p->field = to;                                                                       \
+    } while (0)
+
+enum err geometry_open(struct sampler *g)
+{
+    struct scene *const s = g->scene;
+    struct scene_points *const p = &s->points[KIND_FLUID];
+    int64_t more = 0;
+    if (s->n_fluid == 0 || scene_open_count(s) == 0) return ERR_OK;
+    for (int k = 0; k < scene_open_count(s); k++) {
+        const struct scene_open o = scene_open_at(s, k);
+        const struct lattice l = lattice_of(s, &o);
+        if ((double)l.across * l.rows > 1e8)
+            return fail_at(g, &o, "has more than 1e8 places for particles", o.from,
+                           "a larger dp or a shorter line is needed");
+        more += (int64_t)l.across * l.rows;
+    }
+    GROW(x);
+    GROW(y);
+    GROW(body);
+    GROW(open);
+    for (int k = 0; k < scene_open_count(s); k++) {
+        const struct scene_open o = scene_open_at(s, k);
+        TRY(append(g, k, &o));
+    }
+    return ERR_OK;
+}
