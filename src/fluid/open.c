@@ -228,8 +228,9 @@ static double mass_of(const struct fluid_constants *k, const struct particles *p
 
 static double energy_of(const struct fluid_constants *k, const struct particles *p, int64_t i)
 {
-    return mass_of(k, p, i) * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
-                      k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+    return mass_of(k, p, i) *
+           (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
+            k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
 }
 
 /* Books a particle that is made (sign 1) or ended (-1). */
