@@ -19,7 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from snapshots import KINDS, Snapshots
+import runfiles  # finds the package of the clone
+from sphfsi.snapshots import KINDS, Snapshots
 
 ROOT = Path(__file__).resolve().parent.parent
 PROGRAM = os.environ.get("SPHFSI", str(ROOT / "sphfsi"))

@@ -27,6 +27,8 @@ static struct fluid_constants constants_of(const struct scene *s)
         .dp = s->top.dp,
         .shifting = fluid->shifting,
         .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? s->c0 / 10 : 0,
+        .fills_domain =
+            fluid->shifting_speed == SHIFTING_LARGEST || s->domain.periodic == PERIODIC_XY,
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
         .damper = fluid->acoustic_damper,
@@ -139,8 +141,8 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
         const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
         p->x[i] += dx;
         p->y[i] += dy;
-        /* L-9 */
-        p->dens[i] += 2 * (1 + p->dens[i]) * (dx * p->grad_c_x[i] + dy * p->grad_c_y[i]);
+        if (f->k.fills_domain) /* L-9 */
+            p->dens[i] += 2 * (1 + p->dens[i]) * (dx * p->grad_c_x[i] + dy * p->grad_c_y[i]);
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
     return sqrt(longest2);

@@ -16,9 +16,10 @@ struct fluid_constants {
     double dp;             /* spacing that it is relative to */
     double shifting;       /* A of Lind et al. 2012 */
     double shifting_speed; /* m/s, for all particles alike; 0: each its own */
-    double nu;             /* laminar viscosity, m^2/s */
-    double delta;          /* Eq. 6 */
-    double damper;         /* alpha_D of the acoustic damper */
+    bool fills_domain; /* the fluid has no free surface: a shift takes the density along (L-9) */
+    double nu;         /* laminar viscosity, m^2/s */
+    double delta;      /* Eq. 6 */
+    double damper;     /* alpha_D of the acoustic damper */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
 };
