@@ -10,6 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import layers
+
 ROOT = Path(__file__).resolve().parent.parent
 
 MAX_FILE = 600      # lines
@@ -150,6 +152,9 @@ def main():
             check_programs(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
+    build = args.library[0].resolve().parent if args.library else None
+    for where, line, text in layers.findings(ROOT, build):
+        report(where, line, text)
     check_flags()
     check_commits()
     check_format([path for path in code if path.suffix in (".c", ".h")])

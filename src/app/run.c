@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/run.h"
 
-#include "base/run_dir.h"
-
-#include "output/checkpoint.h"
-#include "app/forecast.h"
-#include "output/probes.h"
-#include "output/report.h"
 #include "app/case_change.h"
 #include "app/due.h"
+#include "app/forecast.h"
+#include "base/run_dir.h"
+#include "output/checkpoint.h"
+#include "output/probes.h"
+#include "output/report.h"
 #include "output/series.h"
 #include "output/snapshot.h"
+#include "time/guards.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -507,8 +507,7 @@ static void warn_of_losses(const struct run *r)
     if (lost > 0)
         diag_warn(r->diag,
                   "%lld of %lld fluid particles have left the domain: their mass and pressure are "
-                  "missing; a "
-                  "[wall] that holds them or a larger [domain] keeps them",
+                  "missing; a [wall] that holds them or a larger [domain] keeps them",
                   (long long)lost, (long long)(lost + left));
 }
 

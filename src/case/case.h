@@ -126,6 +126,9 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
 enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
     SPHFSI_CHECKED;
 
+/* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case wins. */
+void case_apply_presets(struct reader *r);
+
 /* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: what concerns several values at once. */

@@ -33,89 +33,6 @@ static void set_defaults(void *section, enum section_id id)
     }
 }
 
-enum { ANY = -1 };
-
-static enum scene_kind kind_of_scene(const struct scene *s)
-{
-    return s->n_fluid && s->n_solid ? SCENE_COUPLED : s->n_fluid ? SCENE_FLUID : SCENE_SOLID;
-}
-
-/* A row of case/presets.def: a value that stands in for a default. */
-static const struct preset {
-    bool of_scheme; /* chosen by `scheme`, not by `accuracy` */
-    int kind;       /* enum scene_kind; SCENE_EITHER: with fluid */
-    int choice;
-    int integrator; /* that the case uses; ANY: whichever */
-    enum section_id section;
-    const char *key;
-    double value;
-} presets[] = {
-#define SCHEME(scene, scheme, section, key, value) \
-    {true, SCENE_##scene, SCHEME_##scheme, ANY, SECTION_##section, #key, value},
-#define PRESET(scene, accuracy, integrator, section, key, value) \
-    {false, SCENE_##scene, ACCURACY_##accuracy, integrator, SECTION_##section, #key, value},
-#include "case/presets.def"
-};
-
-static bool preset_is_for(const struct preset *row, enum scene_kind kind)
-{
-    return row->kind == SCENE_EITHER ? kind != SCENE_SOLID : row->kind == (int)kind;
-}
-
-bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
-                       double *value)
-{
-    for (size_t k = 0; k < COUNT_OF(presets); k++) {
-        const struct preset *const row = &presets[k];
-        if (!row->of_scheme || row->choice != s->top.scheme || row->section != section) continue;
-        if (!preset_is_for(row, kind_of_scene(s)) || strcmp(row->key, key) != 0) continue;
-        *value = row->value;
-        return true;
-    }
-    return false;
-}
-
-/* The value of a choice at the top of the file, before it is read; a wrong word is found there. */
-static int top_choice(const struct reader *r, const char *key)
-{
-    const struct param *const p = param_find(SECTION_top, key);
-    int found = (int)p->number.value;
-    for (int k = 0; k < r->n_entries; k++) {
-        const struct entry *const e = &r->entries[k];
-        char name[SCENE_NAME];
-        if (r->sections[e->section].id != SECTION_top || strcmp(e->key, key) != 0) continue;
-        int last = 0;
-        for (const char *at = p->choices; (at = strchr(at, '|')) != NULL; at++) last++;
-        for (int c = 0; c <= last; c++) {
-            param_choice_name(p, c, name);
-            if (strcmp(e->value, name) == 0) found = c;
-        }
-    }
-    return found;
-}
-
-/* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case wins. A wrong
- * word is found where the key is read. */
-static void apply_presets(struct reader *r)
-{
-    const int accuracy = top_choice(r, "accuracy"), integrator = top_choice(r, "integrator"),
-              scheme = top_choice(r, "scheme");
-    for (size_t k = 0; k < COUNT_OF(presets); k++) {
-        const struct preset *const row = &presets[k];
-        if (!preset_is_for(row, kind_of_scene(r->scene))) continue;
-        if (row->choice != (row->of_scheme ? scheme : accuracy)) continue;
-        if (row->integrator != ANY && row->integrator != integrator) continue;
-        const struct param *const p = param_find(row->section, row->key);
-        for (int i = 0; i < section_count(r->scene, row->section); i++) {
-            char *const place = (char *)section_at(r->scene, row->section, i) + p->offset;
-            if (p->type == PARAM_REAL)
-                memcpy(place, &row->value, sizeof row->value);
-            else
-                *(int *)(void *)place = (int)row->value;
-        }
-    }
-}
-
 static enum err allocate_sections(struct reader *r)
 {
     struct scene *s = r->scene;
@@ -324,7 +241,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     TRY(case_apply_sets(r, n_sets, sets));
     TRY(case_collect_constants(r));
     TRY(allocate_sections(r));
-    apply_presets(r);
+    case_apply_presets(r);
     TRY(case_all_constants(r));
     r->scene->given = arena_alloc(&r->scene->arena, (size_t)r->n_entries + 1,
                                   sizeof *r->scene->given, "case file", r->diag);

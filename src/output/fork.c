@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
 #include "output/checkpoint.h"
+#include "time/account.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -3,29 +3,7 @@
 #ifndef SPHFSI_SOLID_LOADS_H
 #define SPHFSI_SOLID_LOADS_H
 
-#include "solid/solid.h"
-
-/* One [load] section: its particles are `first` to `end` of the list. */
-struct load_region {
-    int section;
-    int64_t first, end;
-};
-
-struct loads {
-    const struct scene *scene;
-    int n_loads;
-    struct load_region *load;
-    int64_t n_loaded;
-    int32_t *loaded;
-    double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
-    double *factor;  /* [n_loads] now */
-    /* Particles of clamps that move; their `free` is 1, so that they feel what they resist. */
-    int64_t n_held;
-    int32_t *held;
-    double *held_power;          /* [n_held] of the clamp, W/m, */
-    double *held_rise;           /* and what its acceleration adds to that in a second, W/(m s) */
-    struct motion_state *motion; /* [n_solid] now */
-};
+#include "solid/types.h"
 
 /* Finds the particles that loads and moving clamps act on. */
 enum err loads_create(struct loads *v, struct arena *a, const struct scene *scene,

@@ -6,24 +6,7 @@
 #ifndef SPHFSI_SOLID_PARTS_H
 #define SPHFSI_SOLID_PARTS_H
 
-#include "solid/solid.h"
-
-/* Particles that follow each other in the whole and in a part. */
-struct part_run {
-    int32_t here, there, n; /* first in the part, first in the whole, how many */
-    bool own;               /* the part steps them; others are copies */
-};
-
-struct part_message;
-
-struct solid_part {
-    _Alignas(64) uint32_t sequence; /* messages to each so far */
-    int n_runs, n_others;           /* other parts that are within reach */
-    struct solid solid;
-    struct particles p;
-    struct part_run *run;
-    struct part_message **out, **in;
-};
+#include "solid/types.h"
 
 /* What is handed over. */
 enum hand {

@@ -3,23 +3,7 @@
 #ifndef SPHFSI_TIME_ACCOUNT_H
 #define SPHFSI_TIME_ACCOUNT_H
 
-#include "particles/particles.h"
-#include "case/scene.h"
-
-/* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
-enum { ACCOUNT_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
-
-/* Energies in J/m. */
-struct account {
-    /* Of sections: energy at the start and work from outside since, and the largest work of a step. */
-    double put[ACCOUNT_ENTRIES], step_work[ACCOUNT_ENTRIES];
-    /* Of regions, at their first section: most that has been dissipated so far, and the largest energy in
-     * play since then. */
-    double high[ACCOUNT_ENTRIES], play[ACCOUNT_ENTRIES];
-    double
-        region[ACCOUNT_ENTRIES]; /* first section of the region that a section is in: its entry */
-};
-enum { ACCOUNT_NUMBERS = sizeof(struct account) / sizeof(double) };
+#include "time/simulation.h"
 
 /* Whether an account that has been read is one. */
 enum err account_check(const struct account *a, struct diag *d) SPHFSI_CHECKED;
@@ -34,9 +18,6 @@ struct gain {
 
 /* Where a section stands. */
 int account_entry(enum kind kind, int section);
-
-struct simulation;
-struct ledger;
 
 /* Begins with the energies as they are. */
 void account_begin(struct simulation *s, const struct ledger *now);

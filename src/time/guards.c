@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
+#include "time/account.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,22 +3,11 @@
 #ifndef SPHFSI_TIME_GUARDS_H
 #define SPHFSI_TIME_GUARDS_H
 
-#include "base/base.h"
+#include "time/simulation.h"
 
 /* The solid's deformation is looked at every so many steps of the fluid: it takes a pass of its own. At a
  * tenth of the speed of sound neighbours close in by a third of their distance in that time. */
 enum { LOOK_INTERVAL = 16 };
-
-struct guard {
-    double dens_limit;  /* |rho/rho0 - 1| */
-    double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
-    double step_limit;  /* s: a step below this has collapsed */
-    bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy,
-        warned_contact;
-};
-
-struct simulation;
-struct ledger;
 
 /* Looks at the account of energy at a row of the ledger: warns once where a region has gained energy, and
  * fails where that is nine tenths of what is in play in it. */

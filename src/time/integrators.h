@@ -38,6 +38,9 @@ void update_extremes(struct simulation *s);
  * fluid sees the solid's mean velocity over the step, carried on to its end, and acceleration (T-35). */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
+/* Calls the accelerations of the program that uses the library, for a kind at a time. */
+void find_push(struct simulation *s, enum kind kind, double time);
+
 /* Puts moving walls where they are at a time, with their velocity and acceleration. */
 void move_walls(struct simulation *s, double time);
 

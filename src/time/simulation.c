@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/simulation.h"
+#include "time/account.h"
+#include "time/guards.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,17 +12,6 @@
 #include "time/warnings.h"
 #include "particles/kernel.h"
 #include "time/timestep.h"
-
-const char *const bound_names[BOUND_COUNT] = {
-#define BOUND(name, effect, source) #name,
-#include "time/bounds.def"
-#undef BOUND
-};
-const char *const bound_sources[BOUND_COUNT] = {
-#define BOUND(name, effect, source) source,
-#include "time/bounds.def"
-#undef BOUND
-};
 
 /* Points into particles at rest. */
 static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id, struct diag *d)
@@ -502,23 +493,6 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     update_extremes(s);
     find_speed(s);
     return ERR_OK;
-}
-
-void simulation_refresh(struct simulation *s)
-{
-    if ((s->effects & FX_FLUID) && !s->crowded) {
-        double seconds[PHASE_COUNT];
-        memcpy(seconds, s->phase_seconds, sizeof seconds);
-        evaluate_fluid(s, s->state.time);
-        s->state.evaluations--;
-        /* A caller's own forces and motions may change between two looks. */
-        s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
-        if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
-    }
-    if (!(s->effects & FX_SOLID)) return;
-    /* Accelerations of parts would be out of reach after an evaluation of the whole. */
-    if (s->solid.in_parts) solid_show(&s->solid, &s->kind[KIND_SOLID]);
-    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
 }
 
 uint64_t simulation_hash(struct simulation *s)

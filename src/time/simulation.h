@@ -9,32 +9,13 @@
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "fluid/fluid.h"
-#include "time/account.h"
 #include "fluid/open.h"
 #include "time/ledger.h"
-#include "time/guards.h"
+#include "time/state.h"
 #include "fluid/wall_motion.h"
 #include "particles/particles.h"
 #include "case/scene.h"
 #include "solid/solid.h"
-
-enum bound {
-#define BOUND(name, effect, source) BOUND_##name,
-#include "time/bounds.def"
-#undef BOUND
-    BOUND_COUNT
-};
-extern const char *const bound_names[BOUND_COUNT];
-extern const char *const bound_sources[BOUND_COUNT];
-
-/* Scalars carried from step to step, from time/state.def. */
-struct state {
-#define STATE(type, name, unit, meaning) type name;
-#include "time/state.def"
-#undef STATE
-    int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
-    struct account account;           /* of energy, by regions */
-};
 
 /* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). What is not a number they may pass over,
  * but nothing of it, times zero, is zero. */

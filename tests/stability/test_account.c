@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The account of energy by regions (T-46): gains are found after losses and beside other scenes, and work on
  * what is at rest is no gain. */
+#include "time/account.h"
 #include "time/guards.h"
 #include "rig.h"
 #include "unity.h"

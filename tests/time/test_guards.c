@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The guards: a state that is not sound is found, and the sentence names particle, place, quantity. */
+#include "time/account.h"
 #include "time/guards.h"
 
 #include "time/integrators.h"

@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT
+ * The data of a solid: bodies, packs and slots, contact, loads and the parts that threads step. What acts on
+ * them is declared in the header of its name. */
+#ifndef SPHFSI_SOLID_TYPES_H
+#define SPHFSI_SOLID_TYPES_H
+
+#include "particles/particles.h"
+#include "case/scene.h"
+#include "base/simd.h"
+
+/* Constants of one body, SI. */
+struct solid_body {
+    double dp, h;      /* spacing and smoothing length of its particles */
+    double lambda, mu; /* Lame constants */
+    double density, young;
+    double mass;         /* of a particle per depth, rho0 dp^2 */
+    double viscosity;    /* alpha_s c_s h of Eq. 14b (without rho0), m^2/s; 0: none */
+    double sound_speed;  /* c_s of Eq. 29 */
+    double kappa;        /* Eq. 17 */
+    double damping_time; /* of Kelvin and Voigt, s; 0: none */
+    double gravity[2];
+    int law, plane, gradient;
+    int bond;         /* bodies joined to each other share this number, that of the first of them */
+    bool symmetric;   /* viscous force with both particles' tensors */
+    bool variational; /* hourglass force from an energy */
+    bool touches;     /* has a neighbour in a body it is joined to */
+    bool mixed;       /* joined to a body of another viscosity: pairs take the mean of both */
+};
+
+/* What the sweeps take of a particle: arrays of the solid's own, of float in mixed and double in double
+ * precision. */
+enum solid_packed_field {
+    S_UX, /* displacement, m: in mixed precision its leading digits, */
+    S_UY,
+    S_LOW_X, /* and what they leave: differences of neighbours keep theirs. Mixed only */
+    S_LOW_Y,
+    S_VX, /* m/s */
+    S_VY,
+    S_UXX, /* displacement gradient, 1 */
+    S_UXY,
+    S_UYX,
+    S_UYY,
+    S_PXX, /* first Piola-Kirchhoff stress, with the share of a variational hourglass force, Pa */
+    S_PXY,
+    S_PYX,
+    S_PYY,
+    S_GX, /* sum of the gradient weights of its neighbours, 1/m */
+    S_GY,
+    S_PAIRS_X, /* acceleration by hourglass and viscous force, m/s^2; variational only */
+    S_PAIRS_Y,
+    S_DRAG, /* rho0 alpha_s c_s h of its body, Pa s; of joined bodies */
+    SOLID_PACKED_FIELDS
+};
+
+/* One reference neighbour of each particle of a pack, a slot: of lane l the particle `offset` + i + l, with
+ * weights that are zero where that lane has no such neighbour. A slot has of each weight as many as a pack
+ * has lanes, one weight after the other. */
+enum solid_weight {
+    W_GX, /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
+    W_GY,
+    W_HX, /* -G_ba, 1/m: the weight of P_b in the force on a */
+    W_HY,
+    W_X, /* X_ab, m */
+    W_Y,
+    W_HALF_K, /* kappa E_ab V_b W_0ab/(2 X_ab^2 rho0), 1/s^2 */
+    SOLID_WEIGHTS
+};
+
+/* Particles i .. i + lanes - 1 of one body, which have their neighbours in common slots. Packs of equal
+ * surroundings share their slots: on a lattice all of the interior needs one set. */
+struct solid_pack {
+    int32_t i, lanes, body;
+    int32_t first_slot, n_slots;
+};
+
+struct solid;
+
+/* Takes the packs from `first` to before `last`. */
+typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
+
+/* The sweeps of one precision. Bodies with the variational form have their pairs apart: the hourglass force
+ * and the viscous force, and the stress, to which the first adds. */
+struct solid_sweeps {
+    const char *name;
+    int lanes;            /* particles of a full pack */
+    size_t size;          /* bytes of a number */
+    solid_sweep *look;    /* takes displacement and velocity from p */
+    solid_sweep *stress;  /* gradient, and stress but of variational bodies */
+    solid_sweep *pairs;   /* forces of pairs and stress of variational bodies */
+    solid_sweep *damping; /* adds the stress of Kelvin and Voigt */
+    solid_sweep *forces;  /* acceleration by neighbours into sx, sy of p */
+    solid_sweep *show;    /* gradient and stress into p */
+    /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
+    void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
+};
+extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
+
+struct solid {
+    int n_bodies;
+    struct solid_body *body;
+    double dp; /* the smallest spacing of any body */
+    int64_t n_packs, n_slots;
+    int threads; /* that its loops use */
+    const struct solid_sweeps *sweeps;
+    void *lane[SOLID_PACKED_FIELDS]; /* each [n] */
+    struct solid_pack *pack;
+    void *weight;                 /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
+    int64_t *offset;              /* [n_slots] */
+    bool coupled;                 /* meets fluid */
+    bool variational;             /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;            /* some body has a damping_time */
+    double omega_max;             /* largest frequency of the linearised operator, 1/s */
+    double damping_max;           /* largest rate of its viscous part, 1/s */
+    double stable_step;           /* the largest stable step that follows from both, s */
+    double paper_step;            /* Eq. 29, s */
+    struct spin_barrier *barrier; /* of the threads between two loops */
+    struct solid_part *part;      /* [threads], each stepped by a thread; NULL: not cut */
+    bool in_parts;                /* the last evaluation was theirs */
+    double *scratch[6];           /* room for the search of the step */
+    double time; /* of the displacements, s: walls that are touched stand where they are then */
+    /* What acts from outside, each NULL where there is none; contact: where none is near. */
+    struct contact *contact;
+    struct loads *loads;
+    bool calls_out;              /* a motion may be the program's own, which its own thread calls */
+    const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
+    const double *push[2];       /* accelerations, x and y, m/s^2 */
+    double
+        impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
+    double work;   /* of walls, clamps and loads on the solid since it was last asked for, J/m */
+    double *work_on; /* [n_bodies] the same of each; that of contact at the first */
+};
+
+/* --- contact --- */
+
+/* Constants of two bodies, of a body and a wall, or of a body and itself. */
+struct contact_law {
+    bool on;
+    double spacing;   /* mean of both spacings, m */
+    double reach;     /* distance below which they push: the spacing and the gap, m */
+    double stiffness; /* stress over the share of the spacing that is overlapped, Pa */
+    double damping;   /* share of the critical damping */
+    double friction;  /* Coulomb's coefficient */
+};
+
+/* A piece of a surface: the line between two neighbouring points; a particle that has no neighbour is a
+ * line from itself to itself. */
+struct contact_edge {
+    int32_t a, b;
+    bool sided; /* the outside is to the right of the way from a to b; else on both sides */
+};
+
+/* Places by cell in a hash table: bodies may fly apart without making it larger. */
+struct contact_grid {
+    double side;
+    const double *x, *y;
+    int32_t *head, *next;
+    uint32_t mask;
+};
+
+/* The forces of one pair: on the point and on both ends of the edge, N/m. */
+struct contact_force {
+    double p[2], a[2], b[2];
+    bool touches;
+};
+
+/* The worst overlap of a step. */
+struct contact_depth {
+    double overlap; /* in spacings */
+    double x, y;
+    int body, other; /* walls behind solids */
+};
+
+/* Pairs of a body with itself, and with others: they move relative to each other at different speeds.
+ * */
+enum contact_with { CONTACT_SELF, CONTACT_OTHER, CONTACT_WITH };
+
+struct contact {
+    const struct scene *scene;
+    struct arena *arena; /* of the list */
+    const struct solid *solid;
+    int n_solids, n_walls, n_groups;
+    struct contact_law *law; /* [n_solids + n_walls][n_solids + n_walls] */
+    /* Particles at a surface: those of solids first, then those of walls that move. */
+    int64_t n_solid_points, n_moving_points, n_points;
+    int32_t *index;      /* among the particles of its kind */
+    int32_t *body;       /* walls behind solids */
+    int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: within */
+    int32_t *group;      /* solids that are bonded, and walls that move together, share a number */
+    double *X, *Y, *x, *y, *vx, *vy; /* where it began; where it is, and its velocity */
+    double *began;                   /* distance from another group where less than the reach, m */
+    int32_t *began_group;            /* and that group; -1: none */
+    double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
+    uint8_t *held;                   /* within the kernel of a clamped particle of its group */
+    int64_t n_edges;
+    struct contact_edge *edge;
+    struct contact_grid grid; /* of the edges' middles */
+    double *middle_x, *middle_y;
+    uint8_t *skip;         /* [n_edges] of walls far away */
+    double reach, spacing; /* the largest of any law */
+    /* The list: every pair nearer than its reach and `margin` when points were at at_x, at_y. */
+    bool known;
+    double margin[CONTACT_WITH];
+    double *at_x, *at_y;
+    int64_t n_pairs, most_pairs;
+    int32_t *pair_point, *pair_edge;
+    struct contact_force *force; /* [most_pairs] */
+    double *row, *row_damping;   /* [n_solid_points] sums of the bound of the step */
+    struct contact_mean *mean;   /* [n_groups] */
+    struct motion_state *motion; /* [n_walls] now */
+    int stale;                   /* some point has moved by half of the margin */
+    bool crowded;                /* no memory for a longer list */
+    double power;                /* of moving walls at the last call of contact_forces, W/m */
+    /* What the next step has to mind, by contact_watch. */
+    bool near;              /* some surfaces may touch */
+    double omega2, damping; /* what contact adds to the solid's eigenvalues, 1/s^2 and 1/s */
+    double approach;        /* longest step in which nothing can pass, s */
+    struct contact_depth deepest;
+    double seconds; /* that its forces have taken since they were last asked for */
+};
+
+/* --- loads and prescribed motion --- */
+
+/* One [load] section: its particles are `first` to `end` of the list. */
+struct load_region {
+    int section;
+    int64_t first, end;
+};
+
+struct loads {
+    const struct scene *scene;
+    int n_loads;
+    struct load_region *load;
+    int64_t n_loaded;
+    int32_t *loaded;
+    double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
+    double *factor;  /* [n_loads] now */
+    /* Particles of clamps that move; their `free` is 1, so that they feel what they resist. */
+    int64_t n_held;
+    int32_t *held;
+    double *held_power;          /* [n_held] of the clamp, W/m, */
+    double *held_rise;           /* and what its acceleration adds to that in a second, W/(m s) */
+    struct motion_state *motion; /* [n_solid] now */
+};
+
+/* --- parts --- */
+
+/* Particles that follow each other in the whole and in a part. */
+struct part_run {
+    int32_t here, there, n; /* first in the part, first in the whole, how many */
+    bool own;               /* the part steps them; others are copies */
+};
+
+struct part_message;
+
+struct solid_part {
+    _Alignas(64) uint32_t sequence; /* messages to each so far */
+    int n_runs, n_others;           /* other parts that are within reach */
+    struct solid solid;
+    struct particles p;
+    struct part_run *run;
+    struct part_message **out, **in;
+};
+
+#endif

@@ -1,0 +1,158 @@
+/* SPDX-License-Identifier: MIT
+ * Evaluations of the rates, with moving walls, forces of the program and open boundaries; and the fluid's
+ * advance, which all integrators share. */
+#include <string.h>
+
+#include "time/integrators.h"
+
+double phase_add(struct simulation *s, enum phase phase, double since)
+{
+    if (!phase_runs(phase, s->effects)) return since; /* what there is goes to the next one */
+    const double now = wall_clock();
+    s->phase_seconds[phase] += now - since;
+    if (phase == PHASE_solid && s->effects & FX_CONTACT) {
+        /* Its forces are found among the solid's sub-steps. */
+        s->phase_seconds[PHASE_solid] -= s->contact.seconds;
+        s->phase_seconds[PHASE_contact] += s->contact.seconds;
+        s->contact.seconds = 0;
+    }
+    return now;
+}
+
+void move_walls(struct simulation *s, double time)
+{
+    wall_motion_apply(&s->wall_motion, s->scene, &s->kind[KIND_WALL], time);
+}
+
+void find_push(struct simulation *s, enum kind kind, double time)
+{
+    struct push *const push = &s->push[kind];
+    const size_t bytes = (size_t)s->kind[kind].n * sizeof *push->ax;
+    memset(push->ax, 0, bytes);
+    memset(push->ay, 0, bytes);
+    push->at(push->context, time, &s->kind[kind], push->ax, push->ay);
+}
+
+/* Accelerations from outside count in the bound of the step as the model's own do. */
+static void push_fluid(struct simulation *s, double time)
+{
+    const struct push *const push = &s->push[KIND_FLUID];
+    struct particles *const p = &s->kind[KIND_FLUID];
+    find_push(s, KIND_FLUID, time);
+    double top = s->fluid.extremes.acceleration2;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ax[i] += push->ax[i];
+        p->ay[i] += push->ay[i];
+        top = max2(top, square(p->ax[i]) + square(p->ay[i]));
+    }
+    s->fluid.extremes.acceleration2 = top;
+}
+
+/* What the structure was given back or ahead in the last step stands in its force, also where no fluid is
+ * near any more and no evaluation writes it anew. */
+static void forget_given(struct particles *p)
+{
+    memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
+    memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
+}
+
+/* Half a step on, the predictor's state is no gain of its own. */
+static void set_buffers(struct simulation *s, double time)
+{
+    const double clock = wall_clock();
+    open_set(&s->open, &s->fluid.k, &s->kind[KIND_FLUID], &s->cells, time, time == s->state.time);
+    phase_add(s, PHASE_open, clock);
+}
+
+void evaluate_fluid(struct simulation *s, double time)
+{
+    s->state.evaluations++;
+    if (s->evaluated) return;
+    if (s->effects & FX_MOTION) move_walls(s, time);
+    if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
+    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) forget_given(&s->kind[KIND_SOLID]);
+    if (s->effects & FX_OPEN) set_buffers(s, time);
+    fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
+    if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
+    if (s->push[KIND_FLUID].at) push_fluid(s, time);
+    if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
+}
+
+void accept_evaluation(struct simulation *s)
+{
+    s->evaluated = false;
+    if (!(s->effects & FX_DAMPER)) return;
+    struct particles *const p = &s->kind[KIND_FLUID];
+    double *const before = p->swell;
+    p->swell = p->swell_new;
+    p->swell_new = before; /* which the next evaluation overwrites */
+}
+
+void evaluate_start(struct simulation *s)
+{
+    evaluate_fluid(s, s->state.time);
+    accept_evaluation(s);
+}
+
+/* The extremes of some of the fluid, found without a branch. */
+static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
+{
+    vdouble low = vset_double(0), high = low, speed2 = low, nan_probe = low;
+    int64_t i = from;
+    for (; i + LANES_DOUBLE <= end; i += LANES_DOUBLE) {
+        const vdouble vx = vload_double(&p->vx[i]), vy = vload_double(&p->vy[i]);
+        const vdouble d = vload_double(&p->dens[i]), v2 = vx * vx + vy * vy;
+        low = vmin_double(d, low);
+        high = vmax_double(d, high);
+        speed2 = vmax_double(v2, speed2);
+        nan_probe = nan_probe + (v2 + d) * 0.0;
+    }
+    struct extremes e = {-vtop_double(-low), vtop_double(high), vtop_double(speed2),
+                         vsum_double(nan_probe)};
+    for (; i < end; i++) {
+        const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
+        e.dens_low = min2(e.dens_low, p->dens[i]);
+        e.dens_high = max2(e.dens_high, p->dens[i]);
+        e.speed2 = max2(e.speed2, v2);
+        e.nan_probe += 0 * (v2 + p->dens[i]);
+    }
+    return e;
+}
+
+void advance_fluid(struct simulation *s, advance_rows *rows, const void *by)
+{
+    enum { BLOCK = 256 };
+    struct particles *const p = &s->kind[KIND_FLUID];
+    double low = 0, high = 0, speed2 = 0, nan_probe = 0;
+#pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
+    reduction(+ : nan_probe)
+    for (int64_t from = 0; from < p->n; from += BLOCK) {
+        const int64_t end = from + BLOCK < p->n ? from + BLOCK : p->n;
+        if (rows) rows(p, by, from, end);
+        const struct extremes e = extremes_of(p, from, end);
+        low = min2(low, e.dens_low);
+        high = max2(high, e.dens_high);
+        speed2 = max2(speed2, e.speed2);
+        nan_probe += e.nan_probe;
+    }
+    s->extremes = (struct extremes){low, high, speed2, nan_probe};
+}
+
+void update_extremes(struct simulation *s) { advance_fluid(s, NULL, NULL); }
+
+void simulation_refresh(struct simulation *s)
+{
+    if ((s->effects & FX_FLUID) && !s->crowded) {
+        double seconds[PHASE_COUNT];
+        memcpy(seconds, s->phase_seconds, sizeof seconds);
+        evaluate_fluid(s, s->state.time);
+        s->state.evaluations--;
+        /* A caller's own forces and motions may change between two looks. */
+        s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
+        if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
+    }
+    if (!(s->effects & FX_SOLID)) return;
+    /* Accelerations of parts would be out of reach after an evaluation of the whole. */
+    if (s->solid.in_parts) solid_show(&s->solid, &s->kind[KIND_SOLID]);
+    solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+}

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ * Steps of a solid without fluid. */
+#include <math.h>
+
+#include "time/guards.h"
+#include "time/integrators.h"
+#include "time/timestep.h"
+
+/* Steps of a lone solid that are taken between two looks at its state. */
+enum { SOLID_BATCH = LOOK_INTERVAL };
+
+/* Bounds of a lone solid; returns the one that binds. */
+static enum bound lone_bounds(struct simulation *s)
+{
+    const double fixed = s->scene->numerics.fixed_step;
+    for (int k = 0; k < BOUND_COUNT; k++) s->dt_bound[k] = (double)INFINITY;
+    if (fixed > 0) {
+        s->dt_bound[BOUND_fixed] = fixed;
+        return BOUND_fixed;
+    }
+    s->dt_bound[BOUND_solid] = s->dt_lone_solid;
+    if (!(s->dt_solid < s->dt_lone_solid)) return BOUND_solid;
+    s->dt_bound[BOUND_contact] = s->dt_solid;
+    return BOUND_contact;
+}
+
+static void advance_lone(struct simulation *s, double dt, int n)
+{
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
+        for (int k = 0; k < n; k++) symplectic_solid(s, dt);
+    } else {
+        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
+        s->state.solid_evaluations += n;
+    }
+}
+
+/* Where something is near each step is looked at for itself, and may be shorter than planned; returns the
+ * time that has gone by, or 0 where all steps were as long as planned. */
+static double advance_near(struct simulation *s, double dt, int n)
+{
+    double gone = 0;
+    bool shorter = false;
+    for (int k = 0; k < n; k++) {
+        if (k) timestep_watch_contact(s, s->solid.time, SOLID_BATCH);
+        const bool cut = !(s->scene->numerics.fixed_step > 0) && s->dt_solid < dt;
+        const double now = cut ? s->dt_solid : dt;
+        advance_lone(s, now, 1);
+        gone += now;
+        shorter |= cut;
+        s->state.dt_min = s->state.steps || k ? min2(s->state.dt_min, now) : now;
+    }
+    return shorter ? gone : 0;
+}
+
+static void book_lone(struct simulation *s, double dt, int n, enum bound binding)
+{
+    struct state *const st = &s->state;
+    st->dt_min = st->steps ? min2(st->dt_min, dt) : dt;
+    st->dt_max = max2(st->dt_max, dt);
+    st->dt = dt;
+    st->steps += n;
+    st->solid_substeps += n;
+    st->particle_steps += n * s->kind[KIND_SOLID].n;
+    st->bound_steps[binding] += n;
+    s->substeps = 1;
+}
+
+void solid_only_step(struct simulation *s, double t_limit)
+{
+    struct state *const st = &s->state;
+    const double start = wall_clock();
+    const bool near = timestep_watch_contact(s, st->time, SOLID_BATCH);
+    const enum bound binding = lone_bounds(s);
+    const double bound = s->dt_bound[binding];
+    const bool pushed = s->push[KIND_SOLID].at != NULL;
+    if (pushed) find_push(s, KIND_SOLID, st->time);
+    const int batch = pushed || s->gravity_varies ? 1 : SOLID_BATCH;
+    /* Equal steps up to the limit, as in timestep_choose; round-off of the times must not add one. */
+    const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
+    const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
+    const bool hits = steps <= batch;
+    const int n = hits ? (int)steps : batch;
+    const bool cut = dt < bound * (1 - 1e-9);
+    if (cut) s->dt_bound[BOUND_output] = dt;
+    double gone = 0;
+    if (near)
+        gone = advance_near(s, dt, n);
+    else
+        advance_lone(s, dt, n);
+    place_solid(&s->kind[KIND_SOLID]);
+    phase_add(s, PHASE_solid, start);
+    st->time = gone > 0 ? st->time + gone : hits ? t_limit : st->time + n * dt;
+    book_lone(s, dt, n, cut ? BOUND_output : binding);
+}
