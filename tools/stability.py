@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the hard cases of tests/stability/suite.toml and says which hold.
+"""Runs the hard cases of tests/stability/suite.toml and says which pass.
 
-  tools/stability.py --quick     coarse and short; exit status 1 where one does not do as the table says
+  tools/stability.py --quick     coarse and short; exit status 1 if a scene deviates from what the table expects
   tools/stability.py --report    the long form; writes docs/stability.md (make stability)
 
-What a criterion can use:
-  finished      the run came to its end; otherwise a guard stopped it
-  gain          energy that came from nowhere, at worst, over the largest energy in motion and strain
-  drift         the same, gained or lost, over the energy at the start (in motion and strain)
+Names that a criterion can use:
+  finished      the run reached its end; otherwise a guard stopped it
+  gain          the largest spurious energy over the largest kinetic plus strain energy
+  drift         the same, gained or lost, over the kinetic plus strain energy at the start
   resting       mean kinetic energy of the last fifth over the largest of the first
   dens, lowest_density   largest |rho/rho0 - 1|, smallest rho/rho0 - 1
   lost, crossed          particles out of the domain; whether fluid entered a wall or solid
@@ -38,7 +38,7 @@ SUITE = ROOT / "tests" / "stability"
 REPORT = ROOT / "docs" / "stability.md"
 
 
-# Steps of the comparison of the integrators, over the bound; the first run tells the bound.
+# Steps of the comparison of the integrators, over the limit; the first run finds the limit.
 FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
 
 
@@ -103,7 +103,7 @@ def cpu_seconds():
 
 
 def run(command, folder, minutes):
-    """What the program said, and its user time. Of a run that takes longer it is what it had said by then."""
+    """The output of the program, and its user time. A run that takes longer is stopped."""
     begin = cpu_seconds()
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         try:
@@ -187,12 +187,12 @@ def run_suite(scenes, form, top, minutes):
         as_said = holds != fails(scene, this)
         rows.append((scene, holds, as_said, found, seconds, this))
         print(f"{'ok  ' if as_said else 'NOT '} {seconds:6.1f} s  {scene['name']}: "
-              f"{'holds' if holds else 'does not hold'} ({words(found)})", flush=True)
+              f"{'passes' if holds else 'fails'} ({words(found)})", flush=True)
     return rows
 
 
 def integrators(top):
-    """Rows (factor of the solid's bound, what the plate did with each integrator)."""
+    """Rows (multiple of the solid's limit, result of the plate with each integrator)."""
     plate = {"name": "plate", "case": "plate.cfg", "set": ["numerics.multirate=off", "end_time=5 ms"]}
     rows = []
     for factor in FACTORS:
@@ -209,7 +209,7 @@ def integrators(top):
             bound = found["solid_bound"]
             continue
         rows.append((factor, cells))
-        print(f"step {factor:g} of the bound: {', '.join(cells)}", flush=True)
+        print(f"step {factor:g} of the limit: {', '.join(cells)}", flush=True)
     return rows
 
 
@@ -218,11 +218,11 @@ def main():
     parser.add_argument("--quick", action="store_true", help="coarse and short")
     parser.add_argument("--report", action="store_true", help="write docs/stability.md")
     parser.add_argument("--keep", action="store_true",
-                        help="keep the runs in build/stability; those that are there are not repeated")
+                        help="keep the runs in build/stability and do not repeat those that are there")
     parser.add_argument("--kept", action="store_true",
-                        help="the long form of scenes whose long run is kept, the quick one of others")
-    parser.add_argument("--minutes", type=float, default=60, help="a run that takes longer is ended (60)")
-    parser.add_argument("--only", default="", help="scenes whose name has this in it")
+                        help="the long form of scenes whose long run is kept, the quick form of others")
+    parser.add_argument("--minutes", type=float, default=60, help="stop a run that takes longer (60)")
+    parser.add_argument("--only", default="", help="only scenes whose name contains this")
     args = parser.parse_args()
     scenes = tomllib.loads((SUITE / "suite.toml").read_text(encoding="utf-8"))["scene"]
     scenes = [scene for scene in scenes if args.only in scene["name"]]
@@ -237,7 +237,7 @@ def work(scenes, form, top, args):
     rows = run_suite(scenes, form, top, args.minutes)
     bad = [row[0]["name"] for row in rows if not row[2]]
     if bad:
-        print(f"not as the table says: {', '.join(bad)}")
+        print(f"not as the table expects: {', '.join(bad)}")
     if args.report:
         command = {"quick": "tools/stability.py --quick --report", "long": "make stability",
                    "kept": "tools/stability.py --kept --report"}[form]
