@@ -29,7 +29,7 @@ MAIN_ERROR = {  # case of the accuracy study: its name, its main error, what the
     "still": ("still water, pressure", "pressure (L2)", "exact"),
     "wave": ("standing wave, period", "period", "exact"),
     "dam": ("dam break, front", "front", "experiment"),
-    "gate": ("elastic gate, motion", "RMS of M1 from the finest run", "finest run"),
+    "gate": ("elastic gate, motion", "tip motion (RMS) from the finest run", "finest run"),
 }
 STYLE = {"exact": "-", "experiment": ":", "finest run": "--"}
 # Each row adds one effect to the one above: label, settings, and whether the gate is elastic.

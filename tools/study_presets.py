@@ -5,19 +5,22 @@ import io
 
 from runfiles import np
 from study_points import SCENES
-from study_results import across, cost, finished, main_error, percent
+from study_results import CROSSING, across, cost, finished, main_error, percent
 from study_tables import table
 
-# The rule that proposes presets, in means over cases and resolutions against base settings: a draft is
-# at most this much worse, a fine one costs at most so many times as much and is at least so much better.
+# The rule that proposes presets, in means over cases and resolutions relative to the defaults: the largest
+# error of `draft`, the largest cost and error of `fine`, and the largest error in any point.
 DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
-RULE = f"""Means (geometric) of cost and main error over those of the base settings at the same resolution,
-over all cases of the kind; settings that choose a model rather than numerics (viscosity, diffusion, the
-solid's forces) are left to the case. The rule: `draft` is the cheapest setting with at most
-{DRAFT_WORSE:g} times the error; `fine` is the most exact one on the front for at most {FINE_COST:g} times
-the cost, if its error is at most {FINE_ERROR:g} times; neither may be more than {WORST:g} times worse in
-any point, or fail in one; else it is the base settings."""
+RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that of the
+defaults at the same resolution. Settings that choose a model instead of numerics (viscosity, diffusion, forces
+of the solid) are left to the case.
+
+* `draft` is the cheapest setting with at most {DRAFT_WORSE:g} times the error.
+* `fine` is the most exact setting on the front that costs at most {FINE_COST:g} times as much. Its error must be
+  at most {FINE_ERROR:g} times that of the defaults.
+* Neither may fail, or be more than {WORST:g} times worse, in any point. If no setting qualifies, the preset is
+  the defaults."""
 
 
 def mean(values):
@@ -67,10 +70,6 @@ def proposed(numbers):
     return {"draft": draft, "standard": ("base", ""), "fine": fine}
 
 
-def words(key):
-    return f"{key[0]} = {key[1]}" if key[1] else key[0]
-
-
 def front_section(study, scene):
     settings = candidates(study, scene)
     numbers = {k: v for k, v in settings.items() if not isinstance(v, str)}
@@ -81,17 +80,17 @@ def front_section(study, scene):
     def named(k):
         return ", ".join(p for p, key in chosen.items() if key == k)
 
-    rows = [[words(k), f"{c:.2f}", f"{e:.2f}", f"{worst:.2f}", "yes" if k in front else "", named(k)]
+    rows = [[study.label(*k), f"{c:.2f}", f"{e:.2f}", f"{worst:.2f}", "yes" if k in front else "", named(k)]
             for k, (c, e, worst) in sorted(numbers.items(), key=lambda item: item[1][0])]
-    rows += [[words(k), f"**{v}**", "", "", "", named(k)] for k, v in settings.items() if isinstance(v, str)]
+    rows += [[study.label(*k), f"**{v}**", "", "", "", named(k)] for k, v in settings.items() if isinstance(v, str)]
     rule = proposed(numbers)
     differ = [preset for preset in chosen if chosen[preset] != rule.get(preset, ("base", ""))]
-    verdict = "So it is in the program."
+    verdict = "The program follows the rule."
     if differ:
-        verdict = ", ".join(f"`{p}` is {words(chosen[p])}" for p in differ)
-        verdict = f"The program has it otherwise: {verdict}."
+        verdict = ", ".join(f"`{p}` is {study.label(*chosen[p])}" for p in differ)
+        verdict = f"The program differs: {verdict}."
     return table(["setting", "cost", "error", "worst error", "on the front", "preset"], rows) + \
-        "\n\nBy the rule: " + "; ".join(f"`{p}` is {words(k)}" for p, k in rule.items()) + f". {verdict}"
+        "\n\nBy the rule: " + "; ".join(f"`{p}` is {study.label(*k)}" for p, k in rule.items()) + f". {verdict}"
 
 
 def fronts(study):
@@ -116,7 +115,8 @@ def preset_table(study):
         if finished(p) and error is None:
             continue
         fineness = f"{across(entry, p):.3g} {entry.get('what', 'across')}" if p["dp"] else "-"
-        rows.append([case, preset, fineness, percent(error) if finished(p) else f"**{p['outcome']}**",
+        rows.append([case, preset, fineness, percent(error) + (f" {CROSSING}" if study.crosses(p) else "")
+                     if finished(p) else f"**{p['outcome']}**",
                      f"{cost(p):.3g}" if finished(p) else "-"])
     return table(["case", "preset", "resolution", "main error (%)", "CPU s"],
                  sorted(rows, key=lambda r: r[0]))

@@ -9,11 +9,12 @@ from pathlib import Path
 from matplotlib.ticker import LogFormatter
 
 from runfiles import COLOURS, WIDTH, BadFile, np, plt, read_text, save
-from study_points import ROOT
+from study_points import ROOT, SCENES
 from study_presets import fronts, preset_table, write_evidence
-from study_results import Study, across, cost, finished, machine_text, main_error, setting
+from study_results import (CROSSING, Study, across, against, cost, finished, machine_text, main_error,
+                           percent)
 from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table, halving_table,
-                          knob_table, order_table)
+                          knob_table, order_table, ranked_knobs)
 
 MARKS = "osD^v<>ph*XP"
 PANEL = 2.5  # inches
@@ -59,13 +60,13 @@ def draw_group(axes, study, case, group, settings):
     axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.85",
                 linewidth=7, solid_capstyle="round", zorder=1, label="Pareto front of all settings")
     draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6, zorder=4,
-              label="base settings")
+              label="defaults")
     knobs = list(dict.fromkeys(knob for knob, _ in settings))
     for number, (knob, value) in enumerate(settings):
         draw_line(axes, study, study.of(case, knob, value), color=COLOURS[number % len(COLOURS)],
                   linestyle=["-", "--", ":"][knobs.index(knob) % 3],
                   marker=MARKS[1 + number % (len(MARKS) - 1)], linewidth=0.9, zorder=3,
-                  label=f"{knob} = {value}")
+                  label=study.label(knob, value))
     axes.set_title(group, loc="left")
     axes.set_ylabel(f"{main_error(study.cases[case])} (%)", fontsize=7)
     axes.grid(True, which="both", linewidth=0.3, alpha=0.5)
@@ -92,18 +93,30 @@ def draw_case(study, case, path):
 
 TEXT = """# What accuracy costs in time
 
-Written by `make accuracy` (`tools/accuracy_cost.py`) from `{data}`; nothing here is typed by hand.
+{summary}
+
+`make accuracy` (`tools/accuracy_cost.py`) writes this report from `{data}`. Nothing in it is edited by hand.
 
 {circumstances}
 
-Cost is CPU time, the least of a point's repeats; beside it stand median and spread. Points that cost
-more than {repeat_below:g} s were run once. *Base settings* are those of the case file with the program's
-defaults. In the figures each setting has a line; the Pareto front is the broad grey one; crosses at the top
-stand for points that did not finish. {note}
+How to read the tables and figures:
 
-## The cheapest way to an error
+* A *point* is one run: a case, a resolution and a setting. *Defaults* are the settings of the case file with
+  the program's defaults. Every other setting is named by its key in the case file.
+* Cost is CPU time, the least of a point's repeats. Points that cost more than {repeat_below:g} s were run once.
+* An error is measured against an *exact* solution, against the *own finest run*, or against an *experiment*.
+  An error against an experiment includes the difference between the model and nature.
+* {crossing} marks a zero crossing. A finer run with the same setting has a larger error, so the error changes its
+  sign near this resolution. The small value is not an accuracy.
+* A dash (-) means that there is no value: no run is that exact, the run is its own reference, the error does not
+  fall with resolution, or the machine cannot measure it.
+* In the figures each setting has a line. The broad grey line is the Pareto front: the points that no other point
+  beats in both error and cost. Crosses at the top are points that did not finish. {note}
 
-CPU seconds, setting and resolution of the cheapest point whose main error is no larger.
+## The cheapest run for an error
+
+Each cell has the CPU seconds, the setting and the particles across of the cheapest point whose main error is no
+larger.
 
 {aims}
 
@@ -111,49 +124,50 @@ CPU seconds, setting and resolution of the cheapest point whose main error is no
 
 ## Order of convergence
 
-From the three finest runs with base settings: the observed order p, the extrapolated value, and the
-band of the finest run, 1.25 |f1 - f2|/(r^p - 1) relative to it (the grid convergence index; Roache 1994;
-Celik et al. 2008; p at most 2). Where the three do not converge monotonically, or p < 0.5, there is no order
-and the band is three times their largest difference (Eça and Hoekstra 2014). The order one level coarser
-leaves the finest run out and takes the next one in: how far the two are apart tells how far either can be
-relied upon. *Extrapolated* differs from *reference* where the model, not the resolution, is off, or where
-three grids do not yet tell the order.
+The three finest runs with defaults give the observed order p and the extrapolated value. The band of the finest
+run is 1.25 |f1 - f2|/(r^p - 1), relative to it, with p at most 2. This is the grid convergence index (Roache
+1994; Celik et al. 2008).
+
+Where the three runs do not converge monotonically, or p < 0.5, there is no order. The band is then three times
+their largest difference (Eça and Hoekstra 2014). The order one level coarser uses the next coarser run instead of
+the finest. If both orders differ much, neither is reliable. *Extrapolated* differs from *reference* if the model
+is in error, or if three grids are not enough for the order.
 
 {order}
 
 ## To halve the error
 
-Slope of error against cost, and against dp, over the resolutions with base settings.
+The slopes of the error over cost and over dp are fitted to all resolutions with defaults.
 
 {halving}
 
-## Which knob buys most accuracy per second
+## Which setting gives most accuracy per second
 
-In each column error and cost over those of the base settings at the same resolution. *Gain*: how many
-times longer the base settings, refined, would take to the same error (geometric mean over the columns):
-above 1 the setting is worth it. A gain of a quantity whose error passes through zero, or that hardly
-depends on resolution, says little; without a slope of error against cost there is none.
+Each column has error and cost over those of the defaults at the same resolution. *Gain* is how many times longer
+the defaults, refined, would take to the same error (geometric mean over the columns). Above 1 the setting saves
+time. A gain means little if an error crosses zero (z) or hardly depends on resolution. If the error does not
+fall with cost, there is no gain.
 
 {knobs}
 
 ### Best by kind of scene
 
-Settings that finished everywhere.
+Only settings with which every run finished are listed.
 
 {best}
 
 ## Presets
 
-`accuracy = draft | standard | fine` at the top of a case file sets what `src/case/presets.def` lists;
+`accuracy = draft | standard | fine` at the top of a case file sets the keys that `src/case/presets.def` lists.
 `standard` is the program's defaults.
 
 {fronts}
 
-### Their error in the study
+### Errors of the presets in the study
 
 {presets}
 
-## Forecast against reality
+## Forecast against measurement
 
 {forecast}
 
@@ -161,14 +175,16 @@ Settings that finished everywhere.
 
 {failures}
 
-## Holes
+## What is missing
 
 {holes}
 """
 
 CASE = """## {title}
 
-{words} Main error: **{error}**. {references}
+{words} Main error: **{error}**, measured against: {against}.
+
+{references}
 
 ![Error against cost](img/accuracy_{case}.png)
 
@@ -180,11 +196,37 @@ Pareto front, from cheap to exact: {front}.
 
 def case_text(study, case):
     entry = study.cases[case]
-    sources = [f"{e['name']}: {e['source']}." for e in entry["error"] if e.get("source")]
-    front = ", ".join(f"{setting(p)} at {across(entry, p):.3g}" for p in study.front(case))
+    sources = [f"* {e['name']}, against {against(e)}: {e['source']}." for e in entry["error"] if e.get("source")]
+    front = "; ".join(f"{study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
     return CASE.format(title=entry.get("title", case), words=entry.get("words", ""), case=case,
-                       error=main_error(entry), references=" ".join(sources),
+                       error=main_error(entry), against=against(entry["error"][0]), references="\n".join(sources),
                        table=base_table(study, case), front=front or "no finished point")
+
+
+def summary(study):
+    """Three sentences: the price of half the error, what the finest runs reach, the settings that save most."""
+    price, finest, none = [], [], []
+    for case, entry in study.cases.items():
+        b = study.slope(case, main_error(entry))
+        price += [(2 ** (1 / b), case)] if b else []
+        none += [] if b else [case]
+        known = [p for p in study.base(case) if study.error(p)]
+        finest += [(study.error(known[-1]), cost(known[-1]), case)] if known else []
+    text = "**What does accuracy cost?** "
+    if price:
+        (low, easy), (high, hard) = min(price), max(price)
+        text += f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times the CPU time"
+        text += (f"; in {', '.join(none)} it does not reduce the error. " if none else ". ")
+    if finest:
+        (low, fast, best), (high, slow, worst) = min(finest), max(finest)
+        text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to {percent(high)} % "
+                 f"({worst}, {slow:.3g} s). ")
+    saving = []
+    for scene, words in SCENES.items():
+        safe = [row for row in ranked_knobs(study, scene) if not row[4] and row[0] > 1]
+        saving += [f"`{study.label(*safe[0][2:4])}` ({words})"] if safe else []
+    return text + ("Without zero crossings, the settings that save most time at equal error are "
+                   f"{' and '.join(saving)}." if saving else "No setting saves time at equal error everywhere.")
 
 
 def circumstances(study):
@@ -193,20 +235,20 @@ def circumstances(study):
     timings = [t for p in points for t in p["timing"]]
     machines = "; ".join(map(machine_text, study.head["machines"])) or "unknown machine"
     versions = ", ".join(study.head["versions"]) or "unknown"
-    lines = [f"Program {versions} (sources {study.head['program']}); {machines}; threads of a run: "
-             f"{study.threads()}. {len(study.points)} points, of which {len(points)} ran, in {len(timings)} "
-             "runs."]
+    lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a run: "
+             f"{study.threads()}.",
+             f"* {len(points)} of {len(study.points)} points ran, in {len(timings)} runs."]
     if timings:
         loads = [t["load"] for t in timings]
-        lines.append(f"Load average before a run: median {np.median(loads):.1f}, {min(loads):.1f} to "
+        lines.append(f"* Load average before a run: median {np.median(loads):.1f}, {min(loads):.1f} to "
                      f"{max(loads):.1f}.")
-    for mark, is_so, words in (("†", study.busy, "was timed beside other work than the study's"),
+    for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
                                ("‡", study.beside, "was timed beside another run of the study"),
-                               ("§", study.older, "is of an older program in the same effective case")):
+                               ("§", study.older, "is of an older program with the same effective case")):
         number = sum(map(is_so, points))
-        lines.append(f"{mark} {words}: {number} of {len(points)} points.")
+        lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
     if not any(t.get("joules") is not None for t in timings):
-        lines.append("No energy: the machine has no counter in /sys/class/powercap.")
+        lines.append("* Energy (J) is not measured: the machine has no counter in /sys/class/powercap.")
     return "\n".join(lines)
 
 
@@ -215,8 +257,8 @@ def forecast_section(path):
         return "Not measured: `make forecast` does it."
     try:
         data = json.loads(read_text(path))
-        return ("What `--explain` said against what the shipped cases took, cut short so that a run was to "
-                f"take {data['seconds']:g} s (`make forecast`); {machine_text(data['machine'])}.\n\n"
+        return ("The table compares the forecast of `--explain` with runs of the shipped cases (`make forecast`). "
+                f"Runs were cut short to about {data['seconds']:g} s. {machine_text(data['machine'])}.\n\n"
                 f"{forecast_table(data)}")
     except (ValueError, KeyError, TypeError) as problem:
         raise BadFile(f"{path}: not the forecasts of tools/forecast.py ({problem})") from None
@@ -234,6 +276,7 @@ def write(data, out, evidence=None):
                         for case, entry in study.cases.items())
     inside = data.resolve().is_relative_to(ROOT)
     text = TEXT.format(
+        summary=summary(study), crossing=CROSSING,
         data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
         circumstances=circumstances(study), note=rules.get("note", ""),
         repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),

@@ -27,6 +27,9 @@ def machine_text(m):
     return f"{m['cpu']}, {m['cores']} cores, {m['compiler']}"
 
 
+CROSSING = "(z)"  # marks an error that is small because it changes its sign there
+
+
 # --- numbers of a point ---
 
 def cost(p):
@@ -57,8 +60,9 @@ def across(case, p):
     return case["across"] / p["dp"]
 
 
-def setting(p):
-    return p["knob"] + (f" = {p['value']}" if p["value"] else "")
+def against(error):
+    """What an error is measured against."""
+    return error.get("against", "own finest run" if error["kind"].endswith("finest") else "exact")
 
 
 class Study:
@@ -75,6 +79,22 @@ class Study:
 
     def threads(self):
         return self.definition["study"].get("threads", 1)
+
+    def label(self, knob, value):
+        """A setting by the keys of the case file."""
+        return f"{self.knobs[knob].get('label', knob)} = {value}" if value else "defaults"
+
+    def setting(self, p):
+        return self.label(p["knob"], p["value"]) + (f" {CROSSING}" if self.crosses(p) else "")
+
+    def crosses(self, p, error=None):
+        """Whether a finer run with the same setting has a larger error: it changed its sign on the way, so
+        the small value is a zero crossing, not an accuracy."""
+        error = error or main_error(self.cases[p["case"]])
+        own = p.get("errors", {}).get(error)
+        return bool(own) and any(own < 0.9 * (q["errors"].get(error) or 0) for q in
+                                 self.of(p["case"], p["knob"], p["value"])
+                                 if finished(q) and q["level"] > p["level"])
 
     def of(self, case, knob=None, value=None):
         return [p for p in self.points if p["case"] == case and

@@ -4,7 +4,7 @@
 from runfiles import np
 from study_order import convergence
 from study_points import SCENES
-from study_results import across, cost, finished, main_error, percent, seconds, setting
+from study_results import CROSSING, across, against, cost, finished, main_error, percent, seconds
 
 AIMS = (0.1, 0.05, 0.02, 0.01, 0.005)
 # Kinds of error whose reference is the value that the table of orders shows.
@@ -17,22 +17,23 @@ def table(head, rows):
 
 
 def aims_table(study):
-    """The cheapest way to be within some percent."""
+    """The cheapest run whose main error is within some percent."""
     rows = []
     for case, entry in study.cases.items():
         cells = []
         for aim in AIMS:
             good = [p for p in study.known(case) if study.error(p) <= aim]
             p = min(good, key=cost, default=None)
-            cells.append(f"{cost(p):.3g} s: {setting(p)} at {across(entry, p):.3g}" if p else "-")
-        rows.append([entry.get("title", case), main_error(entry), *cells])
-    return table(["case", "error"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
+            cells.append(f"{cost(p):.3g} s: {study.setting(p)}, {across(entry, p):.3g} particles" if p else "-")
+        rows.append([entry.get("title", case), main_error(entry), against(entry["error"][0]), *cells])
+    return table(["case", "error", "against"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
 
 
 def base_table(study, case):
     entry = study.cases[case]
     names = [e["name"] for e in entry["error"]]
-    head = [entry.get("what", "across"), "dp (mm)"] + [f"{n} (%)" for n in names] + \
+    head = [entry.get("what", "across"), "dp (mm)"] + \
+        [f"{e['name']} (%), against: {against(e)}" for e in entry["error"]] + \
         ["CPU s: median (spread)", "wall s", "million particle steps", "evaluations", "J",
          "ns a particle step"]
     rows = []
@@ -43,7 +44,8 @@ def base_table(study, case):
             continue
         energy = all(t.get("joules") is not None for t in p["timing"])
         rows.append([f"{across(entry, p):.3g}", f"{1e3 * p['dp']:.4g}"] +
-                    [percent(p["errors"].get(n)) for n in names] +
+                    [percent(p["errors"].get(n)) + (f" {CROSSING}" if study.crosses(p, n) else "")
+                     for n in names] +
                     [f"{seconds(p, 'cpu')} {study.marks(p)}", seconds(p, "wall"),
                      f"{1e-6 * p['particle_steps']:.3g}", f"{p['evaluations']:,}",
                      seconds(p, "joules") if energy else "-",
@@ -52,7 +54,7 @@ def base_table(study, case):
 
 
 def orders(values):
-    """Of the three finest, and the order of the three next to them."""
+    """Order of the three finest runs, and of the three that begin one level coarser."""
     c = convergence(*zip(*values[:3]))
     before = convergence(*zip(*values[1:4])) if len(values) > 3 else {"order": None, "why": "three only"}
     return c, f"{before['order']:.2f}" if before["order"] else f"none ({before['why']})"
@@ -69,33 +71,33 @@ def order_table(study):
                 continue
             c, before = orders(values)
             reference = error.get("reference") if error["kind"] in SCALAR else None
-            rows.append([case, error["name"], *(f"{v:.5g}" for _, v in values[:3]),
+            rows.append([case, error["name"], against(error), *(f"{v:.5g}" for _, v in values[:3]),
                          f"{c['order']:.2f}" if c["order"] else f"none ({c['why']})", before,
                          f"{c['extrapolated']:.5g}" if c["order"] else "-", f"{100 * c['band']:.2g}",
                          "-" if reference is None else f"{reference:.5g}"])
-    return table(["case", "quantity", "finest", "middle", "coarsest", "observed order",
+    return table(["case", "quantity", "against", "finest", "middle", "coarsest", "observed order",
                   "order one level coarser", "extrapolated", "band of the finest (%)", "reference"], rows)
 
 
 def halving_table(study):
     rows = []
     for case, entry in study.cases.items():
-        for error in [e["name"] for e in entry["error"]]:
+        for error, reference in [(e["name"], against(e)) for e in entry["error"]]:
             b = study.slope(case, error)
             points = sorted((p for p in study.base(case) if p["errors"].get(error)), key=lambda p: -p["dp"])
             if len(points) < 2:
                 continue
             order = np.polyfit(np.log([p["dp"] for p in points]),
                                np.log([p["errors"][error] for p in points]), 1)[0]
-            rows.append([case, error, f"{percent(points[0]['errors'][error])} to "
+            rows.append([case, error, reference, f"{percent(points[0]['errors'][error])} to "
                          f"{percent(points[-1]['errors'][error])}", f"{order:.2f}",
-                         f"{2 ** (1 / b):.1f}" if b else "cannot be bought with resolution here"])
-    return table(["case", "error", "coarsest to finest (%)", "power of dp", "to halve it costs x times"],
-                 rows)
+                         f"{2 ** (1 / b):.1f}" if b else "refinement does not reduce it"])
+    return table(["case", "error", "against", "coarsest to finest (%)", "power of dp",
+                  "halving it costs x times"], rows)
 
 
 def knob_rows(study, case, error):
-    """(gain, knob, value, {level: cell}, whether all finished)."""
+    """(gain, knob, value, {level: cell}, whether all finished, whether any error is a zero crossing)."""
     for knob, entry in study.knobs.items():
         for value in entry["values"]:
             points = study.of(case, knob, value)
@@ -105,11 +107,12 @@ def knob_rows(study, case, error):
             for p in points:
                 ratios = study.ratios(p, error)
                 cells[p["level"]] = f"**{p['outcome']}**" if not finished(p) else \
-                    f"{ratios[0]:.2f} / {ratios[1]:.2f}" if ratios else "-"
+                    f"{ratios[0]:.2f} / {ratios[1]:.2f}" + (f" {CROSSING}" if study.crosses(p, error) else "") \
+                    if ratios else "-"
                 gains.append(study.gain(p, error))
             gains = [g for g in gains if g]
             yield (float(np.exp(np.mean(np.log(gains)))) if gains else 0, knob, value, cells,
-                   all(finished(p) for p in points))
+                   all(finished(p) for p in points), any(study.crosses(p, error) for p in points))
 
 
 def gain_text(gain):
@@ -124,21 +127,27 @@ def knob_table(study, case):
                 for p in study.of(case) if p["dp"]}
     head = [f"error / cost, {fineness.get(k, f'level {k}')}" for k in levels]
     return table(["setting", *head, "gain"], [
-        [f"{k} = {v}"] + [cells.get(level, "") for level in levels] + [gain_text(g)]
-        for g, k, v, cells, _ in rows])
+        [study.label(k, v)] + [cells.get(level, "") for level in levels] + [gain_text(g)]
+        for g, k, v, cells, *_ in rows])
+
+
+def ranked_knobs(study, scene):
+    """(least gain, largest gain, knob, value, whether any error is a zero crossing), best first."""
+    found, crossed = {}, set()
+    for case in (c for c in study.cases if study.cases[c]["scene"] == scene):
+        for gain, knob, value, _, sound, zero in knob_rows(study, case, main_error(study.cases[case])):
+            found.setdefault((knob, value), []).append(gain if sound else 0)
+            crossed |= {(knob, value)} if zero else set()
+    return sorted(((min(g), max(g), *k, k in crossed) for k, g in found.items() if min(g) > 0), reverse=True)
 
 
 def best_knobs(study):
     """Per scene the settings with the largest gain in all cases where they ran."""
     rows = []
     for scene, words in SCENES.items():
-        found = {}
-        for case in (c for c in study.cases if study.cases[c]["scene"] == scene):
-            for gain, knob, value, _, sound in knob_rows(study, case, main_error(study.cases[case])):
-                found.setdefault((knob, value), []).append(gain if sound else 0)
-        ranked = sorted(((min(g), max(g), *k) for k, g in found.items() if min(g) > 0), reverse=True)
-        rows += [[words, f"{knob} = {value}", " to ".join(dict.fromkeys(map(gain_text, (low, high))))]
-                 for low, high, knob, value in ranked[:8]]
+        rows += [[words, study.label(knob, value) + (f" {CROSSING}" if zero else ""),
+                  " to ".join(dict.fromkeys(map(gain_text, (low, high))))]
+                 for low, high, knob, value, zero in ranked_knobs(study, scene)[:8]]
     return table(["scene", "setting", "gain, least and most over its cases"], rows)
 
 
@@ -153,7 +162,7 @@ def failures(study):
 
 
 def forecast_cells(row):
-    """Case, threads, and foreseen / taken of steps and seconds, with what the forecast is off."""
+    """Case, threads, and forecast / measured steps and seconds, with the error of the forecast."""
     head = [row["case"], row["threads"]]
     if "failed" in row:
         return head + [f"**{row['failed']}**"] + [""] * 5
@@ -165,7 +174,7 @@ def forecast_cells(row):
 
 
 def speed_up(data):
-    """What more threads gained, by the time of a step."""
+    """The speed-up by more threads, from the time of a step."""
     each = {(r["case"], r["threads"]): r["taken"]["seconds"] / r["taken"]["steps"]
             for r in data["rows"] if "failed" not in r}
     text = ""
@@ -173,14 +182,15 @@ def speed_up(data):
         gains = [each[case, 1] / each[case, n] for case, n in each if n == threads and (case, 1) in each]
         if gains:
             text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast as one, "
-                     f"in the geometric mean {np.exp(np.mean(np.log(gains))):.2f} times.")
+                     f"{np.exp(np.mean(np.log(gains))):.2f} times in the geometric mean.")
     return text
 
 
 def forecast_table(data):
     off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
            for r in data["rows"] if "failed" not in r]
-    text = f"Seconds within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs.{speed_up(data)}"
-    return table(["case", "threads", "until (s)", "steps foreseen / taken", "off (%)",
-                  "seconds foreseen / taken", "off (%)", "load before"],
+    text = (f"The seconds are right within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs."
+            f"{speed_up(data)}")
+    return table(["case", "threads", "until (s)", "steps forecast / measured", "error (%)",
+                  "seconds forecast / measured", "error (%)", "load before"],
                  [forecast_cells(row) for row in data["rows"]]) + "\n\n" + text
