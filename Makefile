@@ -8,7 +8,7 @@
 #   make memcheck        every shipped case, coarse and short, under valgrind
 #   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
 #   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
-#   make faults          the long forms of the rehearsed faults: 50 kills, many sizes of a full disk
+#   make faults          the long forms of the fault tests: 50 kills, many sizes of a full disk
 #   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make mutants         put small faults into the sources and count those that tests find: docs/mutants.md

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Runs the rehearsed faults and writes docs/reliability.md: what was tried, how often, what came out.
+"""Runs the fault tests and writes docs/reliability.md: what was tried, how often, and the outcome.
 
-Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every rehearsal, sanitizer and
-analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long and are run by --run (a
-part of the command, or `all`); --report writes the document from what is kept.
+Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every fault test, sanitizer and
+analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long; --run runs them (a part of the
+command, or `all`). --report writes the document from the kept outcomes.
 """
 import argparse
 import json
@@ -19,29 +19,29 @@ ROOT = Path(__file__).resolve().parent.parent
 CHECKS = ROOT / "tests" / "fault" / "checks.json"
 COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
 LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "5"}
-REHEARSALS = [
-    ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run is through"),
-    ("agree/test_stops.c", "a stop after every step, for every integrator, with sub-steps and without, and "
-     "after some steps of every shipped case; every other one goes on from an older checkpoint; two "
-     "threads instead of one: state, rows and snapshots compared bit for bit"),
-    ("agree/test_restart.sh", "cut runs against whole ones, bit for bit; another number of threads"),
+FAULT_TESTS = [
+    ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run finishes"),
+    ("agree/test_stops.c", "a stop after every step, for every integrator, with and without sub-steps, and after "
+     "some steps of every shipped case. Every second run continues from an older checkpoint, on two "
+     "threads instead of one. State, rows and snapshots are compared bit by bit"),
+    ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another number of threads"),
     ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
-    ("output/test_checkpoint.c", "a checkpoint with every byte flipped in turn, cut at every length, of "
-     "another case: found, and the one before it used"),
-    ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed under a run"),
+    ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at every length, or "
+     "of another case: it is recognised, and the one before it is used"),
+    ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed during a run"),
     ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file fails, or "
-     "kills the program before it is done (strace)"),
+     "the program is killed within it (strace)"),
     ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain fails "
      "once"),
     ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
-    ("fault/test_hostile.sh", "pipes, devices, links, giants and odd names in the place of files; storms of "
+    ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of files; bursts of "
      "signals"),
-    ("fault/test_audit.sh", "what the system says a run touches; clocks that step back"),
+    ("fault/test_audit.sh", "the files that a run touches, from the system calls; clocks that step back"),
     ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
     ("fault/test_fork.sh", "`--inspect`, `--fork`, other formats, byte orders, dp"),
-    ("case/test_case_errors.c", "bad case files against the exact sentence"),
+    ("case/test_case_errors.c", "bad case files against the exact message"),
     ("fault/test_bad_input.c", "damaged, shuffled, huge and cut case files"),
-    ("fault/test_corpus.c", "every input that the fuzzers kept"),
+    ("fault/test_corpus.c", "every input in the fuzzers' corpus"),
 ]
 CHECKED = [
     ("AddressSanitizer and UndefinedBehaviorSanitizer", "make test-sanitize"),
@@ -50,11 +50,11 @@ CHECKED = [
     ("cppcheck, clang-tidy, gcc -fanalyzer", "make analyze"),
 ]
 FUZZED = {
-    "case": "case reader (shapes wider than 40 dp are not sampled)",
+    "case": "case reader (without sampling of shapes wider than 40 dp)",
     "expr": "expressions",
     "motion": "motion tables",
-    "checkpoint": "checkpoint reader: every input as it is, then with its sums put right, loaded and "
-    "stepped once",
+    "checkpoint": "checkpoint reader: every input as it is, then with corrected checksums, loaded and "
+    "advanced by one step",
 }
 
 
@@ -78,7 +78,7 @@ def keep(name, outcome, found, version, seconds):
     print(f"{outcome} {name}: {'; '.join(found)} ({seconds:.0f} s)", flush=True)
 
 
-def rehearse(test, environment, version):
+def run_test(test, environment, version):
     """Whether it failed."""
     start = time.time()
     path = ROOT / "tests" / test
@@ -138,17 +138,33 @@ def row(first, record):
             f"{record['date']} | {record['seconds']} |")
 
 
+def summary(records):
+    """Three sentences that say whether the program survives faults."""
+    def state(names):
+        outcomes = [records[name]["outcome"] for name in names if name in records]
+        return sum(o == "passed" for o in outcomes), len(names)
+    (good, tests), (clean, checks) = (state([f"tests/{test}" for test, _ in FAULT_TESTS]),
+                                      state([command for _, command in CHECKED]))
+    lines = [line.split() for line in COUNTS.read_text().splitlines() if not line.startswith("#")] \
+        if COUNTS.exists() else []
+    bad = sum(line[3] != "0" for line in lines)
+    return (f"**Does the program survive faults?** {good} of {tests} fault tests passed: kills, full disks, failing "
+            f"calls, damaged files and bad input. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
+            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. {clean} of {checks} sanitizer "
+            "and analyser runs passed.")
+
+
 def report():
     records = kept()
-    lines = ["# Reliability", "",
-             f"Written by `make reliability` on {platform.system()} {platform.machine()}. Nothing in it is "
-             "typed by hand.", "",
-             "## Faults rehearsed", "", "Times are those of a machine that did other things as well.", "",
+    lines = ["# Reliability", "", summary(records), "",
+             f"`make reliability` writes this report on {platform.system()} {platform.machine()}. Nothing in it "
+             "is edited by hand.", "",
+             "## Fault tests", "", "Times were measured on a machine with other work.", "",
              "| test | what | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
-    lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test, what in REHEARSALS]
+    lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test, what in FAULT_TESTS]
     lines += ["", "## Fuzzers", "",
-              "libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer (`make fuzz`); "
-              "sums of tests/fuzz/counts.txt, which the tool writes from the fuzzers' own logs.", "",
+              "The fuzzers use libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer "
+              "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the fuzzers' logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
     lines += ["", "## Sanitizers and analysers", "",
               "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
@@ -161,8 +177,8 @@ def main():
     parser.add_argument("--short", action="store_true", help="the forms that make test runs")
     parser.add_argument("--run", metavar="PART", help="also run the sanitizers and analysers whose command "
                         "has this part, or all of them; `--only` those")
-    parser.add_argument("--report", action="store_true", help="no rehearsals, the report only")
-    parser.add_argument("--only", action="store_true", help="no rehearsals, no report")
+    parser.add_argument("--report", action="store_true", help="run no fault tests, only write the report")
+    parser.add_argument("--only", action="store_true", help="no fault tests, no report")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "reliability.md")
     args = parser.parse_args()
 
@@ -177,8 +193,8 @@ def main():
             failed += check(command, version)
     if args.only:
         return failed > 0
-    for test, _ in REHEARSALS if not args.report else []:
-        failed += rehearse(test, environment, version)
+    for test, _ in FAULT_TESTS if not args.report else []:
+        failed += run_test(test, environment, version)
     args.out.write_text(report())
     print(f"written: {args.out}")
     return failed > 0
