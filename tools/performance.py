@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Measures what the program costs and writes bench/<processor>.csv and docs/performance.md.
+"""Measures the cost of the program and writes bench/<processor>.csv and docs/performance.md.
 
 Four parts: the bench program (nanoseconds by phase, one thread and all; a million particles, too), the
-longest step of each integrator that stays sound (a dam break against a wall), whole runs, and all of that
+longest stable step of each integrator (a dam break against a wall), whole runs, and all of that
 against the targets there are (performance_targets.py).
 Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the bench
 only, prints the change against the file there was, and writes it anew.
@@ -161,7 +161,7 @@ def work_runs(threads):
 
 
 def shared_work(threads):
-    """How much faster all threads are on a gate in motion, in words; and the factors."""
+    """The speed-up of all threads on a moving gate, in words; and the factors."""
     seconds = {1: [], threads: []}
     for _ in range(5):
         for n, found in seconds.items():
@@ -172,10 +172,10 @@ def shared_work(threads):
             found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
     (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
     particles = sum(summary["particles"].values())
-    return (f"The first 0.02 s of the gate with dp = 0.5 mm, {particles} particles, take {one:.2f} s on one "
-            f"thread and {many:.2f} s on {threads}, {one / many:.2f} times as fast with what they write; "
-            f"the steps alone {steps_one:.2f} s and {steps_many:.2f} s, {steps_one / steps_many:.2f} times "
-            "as fast (medians of five runs in turn).",
+    return (f"The first 0.02 s of the gate with dp = 0.5 mm ({particles} particles) take {one:.2f} s on one thread "
+            f"and {many:.2f} s on {threads}: {one / many:.2f} times as fast with output. The steps alone take "
+            f"{steps_one:.2f} s and {steps_many:.2f} s: {steps_one / steps_many:.2f} times as fast. The numbers "
+            "are medians of five alternating runs.",
             {"with output": one / many, "steps alone": steps_one / steps_many})
 
 
@@ -192,15 +192,16 @@ def neighbour_words(rows):
     swept = {"clusters, pairs once": found["share", "look and sweep"],
              "clusters": found["cluster", "look and sweep"], "tile": found["tile", "copy and sweep"],
              "list": found["list", "sweep"]}
-    return (f"Where the neighbours come from, the bare laws alone over {n} particles, one thread: clusters "
-            "that look for those near them, pairs within a share of the cells taken once, "
-            f"{swept['clusters, pairs once']:.1f} ns a particle ({found['share', 'pairs']:.0f} pairs); all "
-            f"pairs from both sides {swept['clusters']:.1f} ns ({found['cluster', 'pairs']:.0f} pairs); a "
-            "tile of candidates around each cell "
-            f"{swept['tile']:.1f} ns with its copying; a neighbour list with a skin {swept['list']:.1f} ns, "
-            f"{found['list', 'build']:.0f} ns each time that it is built and "
-            f"{4 * found['list', 'entries']:.0f} bytes a particle. The fastest: "
-            f"{min(swept, key=swept.get)}.")
+    return (f"Four methods of neighbour search are compared, with the bare laws over {n} particles on one "
+            "thread (ns a particle):\n\n"
+            "* Neighbour clusters, each pair within a chunk of cells taken once: "
+            f"{swept['clusters, pairs once']:.1f} ns ({found['share', 'pairs']:.0f} pairs).\n"
+            f"* Neighbour clusters, all pairs from both sides: {swept['clusters']:.1f} ns "
+            f"({found['cluster', 'pairs']:.0f} pairs).\n"
+            f"* A tile of candidates around each cell: {swept['tile']:.1f} ns with its copies.\n"
+            f"* A neighbour list with a skin: {swept['list']:.1f} ns, and {found['list', 'build']:.0f} ns each time "
+            f"that it is built. It needs {4 * found['list', 'entries']:.0f} bytes a particle.\n\n"
+            f"The fastest method: {min(swept, key=swept.get)}.")
 
 
 def bench_tables(rows):
@@ -210,25 +211,25 @@ def bench_tables(rows):
     value = lambda *key: float(rows[key]["median"]) if key in rows else float("nan")
     variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
     parts = ["sort", "lanes", "wall", "fluid", "update", "all"]
-    text.append("ns per fluid particle and force evaluation, by phase:\n\n" + table(
+    text.append("Time in ns per fluid particle and force evaluation, by phase:\n\n" + table(
         ["kernel", "particles", "threads"] + parts + ["bytes/particle"],
         [(v, n, t, *(f"{value('fluid', v, n, t, p):.1f}" for p in parts),
           f"{value('fluid', v, n, t, 'memory'):.0f}")
          for v in variants for n in sizes for t in threads]))
-    text.append("ns per solid particle and step:\n\n" + table(
+    text.append("Time in ns per solid particle and step:\n\n" + table(
         ["form", "threads", "ns"],
         [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
          if key[0] == "solid" and key[4] == "step"]))
     written = [(v, n, t, *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
                for v in variants for n in sizes for t in threads if ("fluid", v, n, t, "snapshot") in rows]
     if written:
-        text.append("ns per fluid particle of a snapshot and of a checkpoint, files and folder synced:\n\n" +
+        text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of files and folder:\n\n" +
                     table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
     counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
                for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
     text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
-                "this machine lets no program count them; [absence.md](absence.md) has counts by valgrind")
-                + ".")
+                "not measured, because this machine has no counter. [absence.md](absence.md) has counts by "
+                "valgrind") + ".")
     if any(key[0] == "neighbours" for key in rows):
         text.append(neighbour_words(rows))
     peak = value("machine", "fma", 0, 1, "float")
@@ -238,36 +239,37 @@ def bench_tables(rows):
         met = value("fluid", rich, n, 1, "pairs")
         rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
         text.append(
-            f"One core reaches {peak:.0f} thousand million lane operations a second in chains of fma. "
-            f"The pair loop ({rich}, {n} particles) does {rate:.0f}, {100 * rate / peak:.0f} % of that: "
-            f"{met:.0f} pairs a particle with {OPERATIONS} operations each, a square root and a "
-            "division among them.")
+            f"One core reaches {peak:.0f} G lane operations a second (1 G = 10^9) in chains of fused multiply-add. "
+            f"The pair loop ({rich}, {n} particles) reaches {rate:.0f} G, {100 * rate / peak:.0f} % of that. "
+            f"It has {met:.0f} pairs a particle and {OPERATIONS} operations a pair, among them a square root "
+            "and a division.")
     slots = next((float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[4] == "slots"), None)
     if slots:
         ns = next(float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
         rate = slots * SOLID_OPERATIONS / ns
-        text.append(f"The solid's loops do {rate:.0f} thousand million in mixed precision, "
-                    f"{100 * rate / peak:.0f} % of {peak:.0f}: {slots:.0f} neighbours a particle, those that "
-                    f"fill up a pack among them, with {SOLID_OPERATIONS} operations each.")
+        text.append(f"The solid's loops reach {rate:.0f} G in mixed precision, {100 * rate / peak:.0f} % of "
+                    f"{peak:.0f} G. They have {slots:.0f} neighbours a particle, with those that fill up a pack, "
+                    f"and {SOLID_OPERATIONS} operations a neighbour.")
     if rich:
         bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
         copy = value("machine", "copy", 0, 1, "read + write")
-        text.append(f"All memory of a particle once an evaluation is {bytes_each / ns:.1f} GB/s, "
-                    f"{100 * bytes_each / ns / copy:.0f} % of what copying reaches ({copy:.0f} GB/s, one "
-                    "thread): the sweeps are bound by arithmetic.")
+        text.append(f"One pass over the memory of a particle in each evaluation is {bytes_each / ns:.1f} GB/s, "
+                    f"{100 * bytes_each / ns / copy:.0f} % of the speed of copying ({copy:.0f} GB/s, one "
+                    "thread). So arithmetic limits the sweeps, not memory.")
     if len(threads) > 1 and rich:
         one, many = threads[0], threads[-1]
         speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
         serial = max(0.0, (many / speed["all"] - 1) / (many - 1))
-        text.append(f"{many} threads against one, {n} particles: " + ", ".join(
+        text.append(f"Speed-up of {many} threads over one, {n} particles: " + ", ".join(
             f"{p} {s:.2f}" for p, s in speed.items()) +
-            f" times as fast; by Amdahl's law as if {100 * serial:.1f} % were serial.")
+            f". By Amdahl's law {100 * serial:.1f} % of the work is serial.")
     return "\n\n".join(text)
 
 
-def target_words(rows, numbers, speed):
+def target_rows(rows, numbers, speed):
+    """Rows of the table of targets."""
     sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
 
     def value(what, variant, particles, threads, part):
@@ -276,12 +278,30 @@ def target_words(rows, numbers, speed):
                      and particles in (None, key[2])), float("nan"))
     shares = {words: numbers[words]["phases"] for words in numbers if words.startswith("gate")
               and words.endswith("leapfrog")}
+    return [*run_rows(numbers), *bench_rows(value, sizes, shares, speed)]
+
+
+def summary(rows, numbers, speed):
+    """Three sentences: targets met, the cost of a gate, the speed-up."""
+    targets = target_rows(rows, numbers, speed)
+    missed = [row[0] for row in targets if row[-1] != "met"]
+    gate = numbers.get("gate, dp = 0.5 mm, leapfrog")
+    text = f"**How fast is it?** {len(targets) - len(missed)} of {len(targets)} targets are met" + \
+        (f"; missed: {'; '.join(missed)}. " if missed else ". ")
+    if gate:
+        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, {gate['ms']:.3g} ms a step of the "
+                 f"fluid and {gate['rate']:.3g} million particle steps a second. ")
+    return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one." if speed else
+                   "The speed-up by threads was not measured.")
+
+
+def target_words(rows, numbers, speed):
     return "\n\n".join([
-        "Seconds of other programs are of their own solvers on two threads of an AMD EPYC with AVX-512, "
-        "given and not measured again; the targets were set for the same machine. What is found is of "
-        "the processor above, on all threads unless one is named; how fast others are stands below.",
-        table(["work", "other programs", "target", "found", ""],
-              [*run_rows(numbers), *bench_rows(value, sizes, shares, speed)])])
+        "The seconds of other programs were measured with their own solvers on two threads of an AMD EPYC with "
+        "AVX-512. They are not measured again here. The targets were set for that machine. The measured "
+        "values are of the processor above, on all threads unless the row says one.",
+        table(["work", "other programs", "target", "measured", ""],
+              target_rows(rows, numbers, speed))])
 
 
 def other_processors(own):
@@ -318,11 +338,13 @@ def main():
     load = os.getloadavg()[0]
     version = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True,
                              check=False).stdout.strip()
-    report = f"""# What it costs
+    report = f"""# Speed and memory
 
-Written by `tools/performance.py` (`make performance`) with {version}.
+{summary(rows, numbers, speed)}
+
+`tools/performance.py` (`make performance`) writes this report. Program {version}.
 {notes[0]}; {notes[1]}; load {load:.1f} at the end.
-Medians of {args.reps} repetitions; rows: [{path.name}](../bench/{path.name}).
+The numbers are medians of {args.reps} repetitions. All rows: [{path.name}](../bench/{path.name}).
 
 ## Targets
 
@@ -332,29 +354,30 @@ Medians of {args.reps} repetitions; rows: [{path.name}](../bench/{path.name}).
 
 {bench_tables(rows)}
 
-## The longest step that stays sound
+## The longest stable step
 
-The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, runs against the wall and falls
-back: 0.8 s, one thread. An integrator whose step is too long shows it in the density long before it fails.
+The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, hits the wall and falls back (0.8 s, one
+thread). If the step is too long, the extremes of the density grow long before the run fails.
 
-{table(["integrator", "C_CFL", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
+{table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
 
-The defaults are 0.2 (symplectic, verlet: the paper's) and 0.4 (leapfrog; 0.2 where a body has less than
+The default `cfl` is 0.2 (symplectic and verlet, as in the paper) or 0.4 (leapfrog; 0.2 if a body has less than
 half of the fluid's density).
 
 ## Whole runs
 
-At the end times of the case files. The integrators of the paper take C = 0.2; M1 is the largest displacement.
+The runs end at the end times of the case files. The paper's integrators take `cfl = 0.2`. The column of
+displacements has the largest displacement of the tip (M1 of the paper).
 
 {table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
-        "million particle steps a second", "M1, mm", "share of phases, %"], whole)}
+        "million particle steps a second", "displacement, mm", "share of phases, %"], whole)}
 
 {shared}
 
 ## Other processors
 
-Rows of the bench that are committed, of the program and the load there were; one thread, the largest
-number of particles there is.
+These are the committed results of the bench on other processors, with the program and the load of that day, on
+one thread and with the largest number of particles.
 
 {table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
         "dam_break sweep, ns", "dam_break all, ns"], other_processors(path))}
