@@ -172,9 +172,12 @@ def shared_work(threads):
             found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
     (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
     particles = sum(summary["particles"].values())
-    return (f"The first 0.02 s of the gate with dp = 0.5 mm ({particles} particles) take {one:.2f} s on one thread "
-            f"and {many:.2f} s on {threads}: {one / many:.2f} times as fast with output. The steps alone take "
-            f"{steps_one:.2f} s and {steps_many:.2f} s: {steps_one / steps_many:.2f} times as fast. The numbers "
+    return (f"The first 0.02 s of the gate with dp = 0.5 mm ({particles} particles) take {one:.2f} s "
+            f"on one thread "
+            f"and {many:.2f} s on {threads}: {one / many:.2f} times as fast with output. The steps "
+            f"alone take "
+            f"{steps_one:.2f} s and {steps_many:.2f} s: {steps_one / steps_many:.2f} times as fast. "
+            f"The numbers "
             "are medians of five alternating runs.",
             {"with output": one / many, "steps alone": steps_one / steps_many})
 
@@ -199,7 +202,8 @@ def neighbour_words(rows):
             f"* Neighbour clusters, all pairs from both sides: {swept['clusters']:.1f} ns "
             f"({found['cluster', 'pairs']:.0f} pairs).\n"
             f"* A tile of candidates around each cell: {swept['tile']:.1f} ns with its copies.\n"
-            f"* A neighbour list with a skin: {swept['list']:.1f} ns, and {found['list', 'build']:.0f} ns each time "
+            f"* A neighbour list with a skin: {swept['list']:.1f} ns, and "
+            f"{found['list', 'build']:.0f} ns each time "
             f"that it is built. It needs {4 * found['list', 'entries']:.0f} bytes a particle.\n\n"
             f"The fastest method: {min(swept, key=swept.get)}.")
 
@@ -223,7 +227,8 @@ def bench_tables(rows):
     written = [(v, n, t, *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
                for v in variants for n in sizes for t in threads if ("fluid", v, n, t, "snapshot") in rows]
     if written:
-        text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of files and folder:\n\n" +
+        text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of "
+                    "files and folder:\n\n" +
                     table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
     counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
                for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
@@ -239,7 +244,8 @@ def bench_tables(rows):
         met = value("fluid", rich, n, 1, "pairs")
         rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
         text.append(
-            f"One core reaches {peak:.0f} G lane operations a second (1 G = 10^9) in chains of fused multiply-add. "
+            f"One core reaches {peak:.0f} G lane operations a second (1 G = 10^9) in chains of fused "
+            f"multiply-add. "
             f"The pair loop ({rich}, {n} particles) reaches {rate:.0f} G, {100 * rate / peak:.0f} % of that. "
             f"It has {met:.0f} pairs a particle and {OPERATIONS} operations a pair, among them a square root "
             "and a division.")
@@ -250,12 +256,14 @@ def bench_tables(rows):
                   if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
         rate = slots * SOLID_OPERATIONS / ns
         text.append(f"The solid's loops reach {rate:.0f} G in mixed precision, {100 * rate / peak:.0f} % of "
-                    f"{peak:.0f} G. They have {slots:.0f} neighbours a particle, with those that fill up a pack, "
+                    f"{peak:.0f} G. They have {slots:.0f} neighbours a particle, with those that fill "
+                    f"up a pack, "
                     f"and {SOLID_OPERATIONS} operations a neighbour.")
     if rich:
         bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
         copy = value("machine", "copy", 0, 1, "read + write")
-        text.append(f"One pass over the memory of a particle in each evaluation is {bytes_each / ns:.1f} GB/s, "
+        text.append(f"One pass over the memory of a particle in each evaluation is "
+                    f"{bytes_each / ns:.1f} GB/s, "
                     f"{100 * bytes_each / ns / copy:.0f} % of the speed of copying ({copy:.0f} GB/s, one "
                     "thread). So arithmetic limits the sweeps, not memory.")
     if len(threads) > 1 and rich:
@@ -289,15 +297,18 @@ def summary(rows, numbers, speed):
     text = f"**How fast is it?** {len(targets) - len(missed)} of {len(targets)} targets are met" + \
         (f"; missed: {'; '.join(missed)}. " if missed else ". ")
     if gate:
-        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, {gate['ms']:.3g} ms a step of the "
+        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, {gate['ms']:.3g} "
+                 f"ms a step of the "
                  f"fluid and {gate['rate']:.3g} million particle steps a second. ")
-    return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one." if speed else
+    return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one."
+                   if speed else
                    "The speed-up by threads was not measured.")
 
 
 def target_words(rows, numbers, speed):
     return "\n\n".join([
-        "The seconds of other programs were measured with their own solvers on two threads of an AMD EPYC with "
+        "The seconds of other programs were measured with their own solvers on two threads of an AMD "
+        "EPYC with "
         "AVX-512. They are not measured again here. The targets were set for that machine. The measured "
         "values are of the processor above, on all threads unless the row says one.",
         table(["work", "other programs", "target", "measured", ""],
@@ -356,13 +367,14 @@ The numbers are medians of {args.reps} repetitions. All rows: [{path.name}](../b
 
 ## The longest stable step
 
-The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, hits the wall and falls back (0.8 s, one
-thread). If the step is too long, the extremes of the density grow long before the run fails.
+The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, hits the wall and falls back
+(0.8 s, one thread). If the step is too long, the extremes of the density grow long before the run
+fails.
 
 {table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
 
-The default `cfl` is 0.2 (symplectic and verlet, as in the paper) or 0.4 (leapfrog; 0.2 if a body has less than
-half of the fluid's density).
+The default `cfl` is 0.2 (symplectic and verlet, as in the paper) or 0.4 (leapfrog; 0.2 if a body has
+less than half of the fluid's density).
 
 ## Whole runs
 
@@ -376,8 +388,8 @@ displacements has the largest displacement of the tip (M1 of the paper).
 
 ## Other processors
 
-These are the committed results of the bench on other processors, with the program and the load of that day, on
-one thread and with the largest number of particles.
+These are the committed results of the bench on other processors, with the program and the load of that
+day, on one thread and with the largest number of particles.
 
 {table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
         "dam_break sweep, ns", "dam_break all, ns"], other_processors(path))}

@@ -2,8 +2,8 @@
 """Runs the fault tests and writes docs/reliability.md: what was tried, how often, and the outcome.
 
 Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every fault test, sanitizer and
-analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long; --run runs them (a part of the
-command, or `all`). --report writes the document from the kept outcomes.
+analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long; --run runs them (a part of
+the command, or `all`). --report writes the document from the kept outcomes.
 """
 import argparse
 import json
@@ -21,12 +21,15 @@ COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
 LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "5"}
 FAULT_TESTS = [
     ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run finishes"),
-    ("agree/test_stops.c", "a stop after every step, for every integrator, with and without sub-steps, and after "
+    ("agree/test_stops.c", "a stop after every step, for every integrator, with and without "
+                           "sub-steps, and after "
      "some steps of every shipped case. Every second run continues from an older checkpoint, on two "
      "threads instead of one. State, rows and snapshots are compared bit by bit"),
-    ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another number of threads"),
+    ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another number "
+                              "of threads"),
     ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
-    ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at every length, or "
+    ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at every "
+                                 "length, or "
      "of another case: it is recognised, and the one before it is used"),
     ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed during a run"),
     ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file fails, or "
@@ -34,7 +37,8 @@ FAULT_TESTS = [
     ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain fails "
      "once"),
     ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
-    ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of files; bursts of "
+    ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of files; "
+                              "bursts of "
      "signals"),
     ("fault/test_audit.sh", "the files that a run touches, from the system calls; clocks that step back"),
     ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
@@ -148,23 +152,27 @@ def summary(records):
     lines = [line.split() for line in COUNTS.read_text().splitlines() if not line.startswith("#")] \
         if COUNTS.exists() else []
     bad = sum(line[3] != "0" for line in lines)
-    return (f"**Does the program survive faults?** {good} of {tests} fault tests passed: kills, full disks, failing "
+    return (f"**Does the program survive faults?** {good} of {tests} fault tests passed: kills, full "
+            f"disks, failing "
             f"calls, damaged files and bad input. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
-            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. {clean} of {checks} sanitizer "
+            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. {clean} of "
+            f"{checks} sanitizer "
             "and analyser runs passed.")
 
 
 def report():
     records = kept()
     lines = ["# Reliability", "", summary(records), "",
-             f"`make reliability` writes this report on {platform.system()} {platform.machine()}. Nothing in it "
+             f"`make reliability` writes this report on {platform.system()} {platform.machine()}. "
+             f"Nothing in it "
              "is edited by hand.", "",
              "## Fault tests", "", "Times were measured on a machine with other work.", "",
              "| test | what | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
     lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test, what in FAULT_TESTS]
     lines += ["", "## Fuzzers", "",
               "The fuzzers use libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer "
-              "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the fuzzers' logs.", "",
+              "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the "
+              "fuzzers' logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
     lines += ["", "## Sanitizers and analysers", "",
               "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]

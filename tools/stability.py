@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Runs the hard cases of tests/stability/suite.toml and says which pass.
 
-  tools/stability.py --quick     coarse and short; exit status 1 if a scene deviates from what the table expects
+  tools/stability.py --quick     coarse and short; exit status 1 if a scene deviates from the table
   tools/stability.py --report    the long form; writes docs/stability.md (make stability)
 
 Names that a criterion can use:

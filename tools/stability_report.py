@@ -31,8 +31,8 @@ FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` r
 
 
 # Limits that no scene of the table shows.
-LIMITS = """* The printed hourglass force (`hourglass_form = printed`) has growing modes at any step on some shapes, from
-  `hourglass` of about 10 on. The program warns.
+LIMITS = """* The printed hourglass force (`hourglass_form = printed`) has growing modes on some shapes at any step,
+  from `hourglass` of about 10 on. The program warns.
 * Time steps that change often (an accelerating fluid, outputs a few steps apart) can excite an undamped
   oscillation of the solid near its limit. `artificial_viscosity` or a smaller `solid_safety` helps.
 * Fluid on one side of a thin body interacts with fluid on the other side if the body is thinner than the
@@ -49,7 +49,8 @@ def summary(rows):
     odd = [row[0]["name"] for row in rows if not row[2]]
     last = "No scene deviates from what the suite expects." if not odd else \
         f"{len(odd)} scenes deviate from what the suite expects: {', '.join(odd)}."
-    return (f"**Do the hard cases stay stable?** {sum(row[1] and row[2] for row in rows)} of {len(rows)} scenes "
+    return (f"**Do the hard cases stay stable?** {sum(row[1] and row[2] for row in rows)} of "
+            f"{len(rows)} scenes "
             f"pass. {len(failed)} are expected failures: {limits} show known limits (listed below), "
             f"{len(failed) - limits} run without a remedy to show that it is needed. {last}")
 
@@ -89,8 +90,8 @@ def write(rows, integrators, path, form, command):
     text += """
 ## Integrators at and above the limit of the step
 
-The scene is the hydrostatic plate (`plate.cfg`) at a single rate. The step is a multiple of the solid's limit.
-Each cell has the largest gain of energy, or the time at which a guard stopped the run.
+The scene is the hydrostatic plate (`plate.cfg`) at a single rate. The step is a multiple of the solid's
+limit. Each cell has the largest gain of energy, or the time at which a guard stopped the run.
 
 | step over the limit | symplectic | Verlet | leapfrog |
 |---|---|---|---|

@@ -12,15 +12,15 @@ from study_tables import table
 # error of `draft`, the largest cost and error of `fine`, and the largest error in any point.
 DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
-RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that of the
-defaults at the same resolution. Settings that choose a model instead of numerics (viscosity, diffusion, forces
-of the solid) are left to the case.
+RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that
+of the defaults at the same resolution. Settings that choose a model instead of numerics (viscosity, diffusion,
+forces of the solid) are left to the case.
 
 * `draft` is the cheapest setting with at most {DRAFT_WORSE:g} times the error.
-* `fine` is the most exact setting on the front that costs at most {FINE_COST:g} times as much. Its error must be
-  at most {FINE_ERROR:g} times that of the defaults.
-* Neither may fail, or be more than {WORST:g} times worse, in any point. If no setting qualifies, the preset is
-  the defaults."""
+* `fine` is the most exact setting on the front that costs at most {FINE_COST:g} times as much. Its
+  error must be at most {FINE_ERROR:g} times that of the defaults.
+* Neither may fail, or be more than {WORST:g} times worse, in any point. If no setting qualifies, the
+  preset is the defaults."""
 
 
 def mean(values):
@@ -82,7 +82,8 @@ def front_section(study, scene):
 
     rows = [[study.label(*k), f"{c:.2f}", f"{e:.2f}", f"{worst:.2f}", "yes" if k in front else "", named(k)]
             for k, (c, e, worst) in sorted(numbers.items(), key=lambda item: item[1][0])]
-    rows += [[study.label(*k), f"**{v}**", "", "", "", named(k)] for k, v in settings.items() if isinstance(v, str)]
+    rows += [[study.label(*k), f"**{v}**", "", "", "", named(k)]
+             for k, v in settings.items() if isinstance(v, str)]
     rule = proposed(numbers)
     differ = [preset for preset in chosen if chosen[preset] != rule.get(preset, ("base", ""))]
     verdict = "The program follows the rule."
@@ -90,7 +91,8 @@ def front_section(study, scene):
         verdict = ", ".join(f"`{p}` is {study.label(*chosen[p])}" for p in differ)
         verdict = f"The program differs: {verdict}."
     return table(["setting", "cost", "error", "worst error", "on the front", "preset"], rows) + \
-        "\n\nBy the rule: " + "; ".join(f"`{p}` is {study.label(*k)}" for p, k in rule.items()) + f". {verdict}"
+        "\n\nBy the rule: " + "; ".join(f"`{p}` is {study.label(*k)}" for p, k in rule.items()) + \
+        f". {verdict}"
 
 
 def fronts(study):

@@ -101,22 +101,23 @@ TEXT = """# What accuracy costs in time
 
 How to read the tables and figures:
 
-* A *point* is one run: a case, a resolution and a setting. *Defaults* are the settings of the case file with
-  the program's defaults. Every other setting is named by its key in the case file.
-* Cost is CPU time, the least of a point's repeats. Points that cost more than {repeat_below:g} s were run once.
-* An error is measured against an *exact* solution, against the *own finest run*, or against an *experiment*.
-  An error against an experiment includes the difference between the model and nature.
-* {crossing} marks a zero crossing. A finer run with the same setting has a larger error, so the error changes its
-  sign near this resolution. The small value is not an accuracy.
-* A dash (-) means that there is no value: no run is that exact, the run is its own reference, the error does not
-  fall with resolution, or the machine cannot measure it.
-* In the figures each setting has a line. The broad grey line is the Pareto front: the points that no other point
-  beats in both error and cost. Crosses at the top are points that did not finish. {note}
+* A *point* is one run: a case, a resolution and a setting. *Defaults* are the settings of the case file
+  with the program's defaults. Every other setting is named by its key in the case file.
+* Cost is CPU time, the least of a point's repeats. Points that cost more than {repeat_below:g} s were
+  run once.
+* An error is measured against an *exact* solution, against the *own finest run*, or against an
+  *experiment*. An error against an experiment includes the difference between the model and nature.
+* {crossing} marks a zero crossing. A finer run with the same setting has a larger error, so the error
+  changes its sign near this resolution. The small value is not an accuracy.
+* A dash (-) means that there is no value: no run is that exact, the run is its own reference, the error
+  does not fall with resolution, or the machine cannot measure it.
+* In the figures each setting has a line. The broad grey line is the Pareto front: the points that no
+  other point beats in both error and cost. Crosses at the top are points that did not finish. {note}
 
 ## The cheapest run for an error
 
-Each cell has the CPU seconds, the setting and the particles across of the cheapest point whose main error is no
-larger.
+Each cell has the CPU seconds, the setting and the particles across of the cheapest point whose main
+error is no larger.
 
 {aims}
 
@@ -124,14 +125,14 @@ larger.
 
 ## Order of convergence
 
-The three finest runs with defaults give the observed order p and the extrapolated value. The band of the finest
-run is 1.25 |f1 - f2|/(r^p - 1), relative to it, with p at most 2. This is the grid convergence index (Roache
-1994; Celik et al. 2008).
+The three finest runs with defaults give the observed order p and the extrapolated value. The band of
+the finest run is 1.25 |f1 - f2|/(r^p - 1), relative to it, with p at most 2. This is the grid
+convergence index (Roache 1994; Celik et al. 2008).
 
-Where the three runs do not converge monotonically, or p < 0.5, there is no order. The band is then three times
-their largest difference (Eça and Hoekstra 2014). The order one level coarser uses the next coarser run instead of
-the finest. If both orders differ much, neither is reliable. *Extrapolated* differs from *reference* if the model
-is in error, or if three grids are not enough for the order.
+Where the three runs do not converge monotonically, or p < 0.5, there is no order. The band is then
+three times their largest difference (Eça and Hoekstra 2014). The order one level coarser uses the next
+coarser run instead of the finest. If both orders differ much, neither is reliable. *Extrapolated*
+differs from *reference* if the model is in error, or if three grids are not enough for the order.
 
 {order}
 
@@ -143,10 +144,10 @@ The slopes of the error over cost and over dp are fitted to all resolutions with
 
 ## Which setting gives most accuracy per second
 
-Each column has error and cost over those of the defaults at the same resolution. *Gain* is how many times longer
-the defaults, refined, would take to the same error (geometric mean over the columns). Above 1 the setting saves
-time. A gain means little if an error crosses zero (z) or hardly depends on resolution. If the error does not
-fall with cost, there is no gain.
+Each column has error and cost over those of the defaults at the same resolution. *Gain* is how many
+times longer the defaults, refined, would take to the same error (geometric mean over the columns).
+Above 1 the setting saves time. A gain means little if an error crosses zero (z) or hardly depends on
+resolution. If the error does not fall with cost, there is no gain.
 
 {knobs}
 
@@ -158,8 +159,8 @@ Only settings with which every run finished are listed.
 
 ## Presets
 
-`accuracy = draft | standard | fine` at the top of a case file sets the keys that `src/case/presets.def` lists.
-`standard` is the program's defaults.
+`accuracy = draft | standard | fine` at the top of a case file sets the keys that `src/case/presets.def`
+lists. `standard` is the program's defaults.
 
 {fronts}
 
@@ -196,15 +197,17 @@ Pareto front, from cheap to exact: {front}.
 
 def case_text(study, case):
     entry = study.cases[case]
-    sources = [f"* {e['name']}, against {against(e)}: {e['source']}." for e in entry["error"] if e.get("source")]
+    sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
+               for e in entry["error"] if e.get("source")]
     front = "; ".join(f"{study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
     return CASE.format(title=entry.get("title", case), words=entry.get("words", ""), case=case,
-                       error=main_error(entry), against=against(entry["error"][0]), references="\n".join(sources),
+                       error=main_error(entry), against=against(entry["error"][0]),
+                       references="\n".join(sources),
                        table=base_table(study, case), front=front or "no finished point")
 
 
 def summary(study):
-    """Three sentences: the price of half the error, what the finest runs reach, the settings that save most."""
+    """Three sentences: the price of half the error, the finest runs, the settings that save most."""
     price, finest, none = [], [], []
     for case, entry in study.cases.items():
         b = study.slope(case, main_error(entry))
@@ -215,18 +218,20 @@ def summary(study):
     text = "**What does accuracy cost?** "
     if price:
         (low, easy), (high, hard) = min(price), max(price)
-        text += f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times the CPU time"
+        text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times "
+                 "the CPU time")
         text += (f"; in {', '.join(none)} it does not reduce the error. " if none else ". ")
     if finest:
         (low, fast, best), (high, slow, worst) = min(finest), max(finest)
-        text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to {percent(high)} % "
-                 f"({worst}, {slow:.3g} s). ")
+        text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to "
+                 f"{percent(high)} % ({worst}, {slow:.3g} s). ")
     saving = []
     for scene, words in SCENES.items():
         safe = [row for row in ranked_knobs(study, scene) if not row[4] and row[0] > 1]
         saving += [f"`{study.label(*safe[0][2:4])}` ({words})"] if safe else []
     return text + ("Without zero crossings, the settings that save most time at equal error are "
-                   f"{' and '.join(saving)}." if saving else "No setting saves time at equal error everywhere.")
+                   f"{' and '.join(saving)}." if saving else "No setting saves time at equal error "
+                                                             "everywhere.")
 
 
 def circumstances(study):
@@ -257,7 +262,8 @@ def forecast_section(path):
         return "Not measured: `make forecast` does it."
     try:
         data = json.loads(read_text(path))
-        return ("The table compares the forecast of `--explain` with runs of the shipped cases (`make forecast`). "
+        return ("The table compares the forecast of `--explain` with runs of the shipped cases (`make "
+                "forecast`). "
                 f"Runs were cut short to about {data['seconds']:g} s. {machine_text(data['machine'])}.\n\n"
                 f"{forecast_table(data)}")
     except (ValueError, KeyError, TypeError) as problem:

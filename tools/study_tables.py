@@ -24,7 +24,8 @@ def aims_table(study):
         for aim in AIMS:
             good = [p for p in study.known(case) if study.error(p) <= aim]
             p = min(good, key=cost, default=None)
-            cells.append(f"{cost(p):.3g} s: {study.setting(p)}, {across(entry, p):.3g} particles" if p else "-")
+            cells.append(f"{cost(p):.3g} s: {study.setting(p)}, {across(entry, p):.3g} particles"
+                         if p else "-")
         rows.append([entry.get("title", case), main_error(entry), against(entry["error"][0]), *cells])
     return table(["case", "error", "against"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
 
@@ -107,7 +108,7 @@ def knob_rows(study, case, error):
             for p in points:
                 ratios = study.ratios(p, error)
                 cells[p["level"]] = f"**{p['outcome']}**" if not finished(p) else \
-                    f"{ratios[0]:.2f} / {ratios[1]:.2f}" + (f" {CROSSING}" if study.crosses(p, error) else "") \
+                    f"{ratios[0]:.2f} / {ratios[1]:.2f}{f' {CROSSING}' if study.crosses(p, error) else ''}" \
                     if ratios else "-"
                 gains.append(study.gain(p, error))
             gains = [g for g in gains if g]

@@ -56,11 +56,11 @@ def cantilever(report):
     head = ["period (s)", "error (%)", "mean period, error (%)", "phase at the end (deg)", "amplitude (mm)",
             "loss (%/s)", "RMSE, elasticity (mm)", "RMSE, thin plate (mm)", *COST[1:]]
     lines = [
-        f"Free end, mid-thickness, 1 s, kappa = 50 unless said otherwise. Linear two-dimensional "
-        f"elasticity (converged FE): period {PERIOD} s, amplitude {1e3 * AMPLITUDE:.2f} mm; thin "
-        f"plate in plane strain: 0.25406 s, 23.06 mm. The two references are 1.0 mm (RMS over 1 s) "
-        f"apart, so an RMSE against the thin plate below that is not the aim. A positive phase is "
-        f"late.", "",
+        "The probe is at the free end, mid-thickness, for 1 s. `hourglass` (kappa) is 50 unless a row "
+        f"says another value. Linear two-dimensional elasticity (converged FE) gives the period {PERIOD} "
+        f"s and the amplitude {1e3 * AMPLITUDE:.2f} mm. The thin plate in plane strain gives 0.25406 s "
+        "and 23.06 mm. The two references differ by 1.0 mm (RMS over 1 s), so a smaller RMSE against the "
+        "thin plate is not the aim. A positive phase is late.", "",
         *report.table(head, [s for s in starting("cantilever") if "kappa" not in s.name], cells),
         *table_one(report, plate, elastic),
         *report.draw("plot_m1", ["cantilever-20", "cantilever-20-symplectic", "cantilever-40",
@@ -78,9 +78,9 @@ def table_one(report, plate, elastic):
     printed = {20: "3.76", 40: "1.71", 80: "1.68"}
     kappas = (0, 1, 10, 50)
     lines = ["### Table 1 of the paper", "",
-             "RMSE of the deflection over 1 s in mm, against the thin plate / against 2-D "
-             "elasticity, and below it the error of the mean period in %. The paper's row is "
-             "against its analytic solution (thin plate, inferred), with kappa = 50.", "",
+             "Each cell has the RMSE of the deflection over 1 s in mm, against the thin plate / against "
+             "2-D elasticity. In brackets is the error of the mean period in %. The paper's column is "
+             "against its analytic solution (presumably the thin plate), with kappa = 50.", "",
              "| ts/dp | paper | " + " | ".join(f"kappa = {k}" for k in kappas) + " |", "|---" * 6 + "|"]
     for ratio in (10, 20, 40, 80):
         cells = []
@@ -159,26 +159,27 @@ def plate(report):
             "half range (%)", "faster than 5 ms (%)", "first peak (1e-5 m, ms)",
             "first frequency (Hz)", *COST]
     return [
-        f"Mid-span, mean over 0.5 s to 1 s, with the plate's own weight: converged 2-D elasticity "
-        f"{1e5 * exact:.3f}e-5 m, thin plate {1e5 * thin:.3f}e-5 m (the paper's line). The load is "
-        f"applied at once: a first peak of nearly twice that, and ringing near the dry frequency, "
-        f"{DRY:.0f} Hz, since water this compressible (c0 = 44.3 m/s) is shorter of breath than the "
-        f"plate is long: it radiates instead of moving along. The slow ripple is the column's acoustic "
-        f"quarter wave, 4H/c0 = 0.18 s.", "",
+        "The deflection is that of the mid-span, the mean over 0.5 s to 1 s, with the plate's own "
+        f"weight. Converged 2-D elasticity gives {1e5 * exact:.3f}e-5 m, the thin plate "
+        f"{1e5 * thin:.3f}e-5 m (the paper's line). The load is sudden, so the first peak is nearly twice "
+        f"that, and the plate rings near its dry frequency, {DRY:.0f} Hz. The water (c0 = 44.3 m/s) does "
+        "not lower this frequency: the acoustic wavelength is shorter than the plate, so the water "
+        "radiates sound instead of moving with the plate. The slow ripple is the acoustic quarter wave "
+        "of the column, 4H/c0 = 0.18 s.", "",
         *report.table(head, starting("plate"), cells), *both_integrators(report, sides),
         *plate_figure(report, exact, thin),
         *report.draw("plot_fields", ["plate-verlet", "plate"], "plate-fields",
                      "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time", 0.3),
-        "*Why the ripple.* The start is hydrostatic, but not the discrete equilibrium: the sum "
-        "over the even lattice of h/dp = 1.35 makes 0.983 of a gradient (docs/theory.md), and the "
-        "water is compressed by 1 % at the floor, so the column first falls by some 3 % and then "
-        "breathes with little to damp it. The runs with h/dp = 1.5, whose lattice sum is 0.997, "
-        "show how much of it is the lattice. It is a wave of the water, not noise of the plate: what is "
-        "faster than 5 ms is a small part of it (the table); but with the paper's alpha it has not died "
-        "away when the paper's second ends.", "",
-        "*Eq. 18 as printed.* The viscous force with the tensors of one particle only feeds the "
-        "plate's bending modes: with it the run stops, with or without water (docs/theory.md, D8). "
-        "The symmetric form is the default for that reason.", "", *ledgers(report, ["plate"])]
+        "*Why the deflection fluctuates.* The start is hydrostatic, but it is not the equilibrium of the "
+        "discrete equations. The sum over the even lattice of h/dp = 1.35 gives 0.983 of a gradient "
+        "(docs/theory.md). The water at the floor is compressed by 1 %, so the column first falls by "
+        "about 3 % and then oscillates with little damping. The runs with h/dp = 1.5, whose lattice sum "
+        "is 0.997, show the part of the lattice. The fluctuation is a wave of the water, not noise of "
+        "the plate: the part faster than 5 ms is small (see the table). With the paper's alpha it has "
+        "not died out when the paper's second ends.", "",
+        "*Eq. 18 as printed.* As printed, the viscous force has the tensors of one particle only and "
+        "drives the plate's bending modes. With it the run stops, with or without water (docs/theory.md, "
+        "D8). Therefore the symmetric form is the default.", "", *ledgers(report, ["plate"])]
 
 
 def both_integrators(report, sides):
@@ -188,14 +189,13 @@ def both_integrators(report, sides):
         return [f"*What symplectic gives over Verlet: {problem}.*", ""]
     ratio = b["fast"] / a["fast"]
     verdict = ("Verlet's is the larger, as the paper says" if ratio > 1.2 else
-               "the paper's claim that symplectic is steadier is not seen here" if ratio > 0.8 else
+               "the paper's claim that symplectic is steadier is not confirmed here" if ratio > 0.8 else
                "symplectic's is the larger, against the paper's claim")
-    return [f"Symplectic against Verlet: the settled deflections differ by "
-            f"{100 * abs(b['mean'] / a['mean'] - 1):.2g} %; the standard deviation is "
-            f"{-100 * a['std'] / a['mean']:.2f} % (symplectic) and "
-            f"{-100 * b['std'] / b['mean']:.2f} % (Verlet), the part faster than 5 ms "
-            f"{-100 * a['fast'] / a['mean']:.4f} % and {-100 * b['fast'] / b['mean']:.4f} %: "
-            f"{verdict}.", ""]
+    return ["Symplectic and Verlet: the settled deflections differ by "
+            f"{100 * abs(b['mean'] / a['mean'] - 1):.2g} %. The standard deviation is "
+            f"{-100 * a['std'] / a['mean']:.2f} % (symplectic) and {-100 * b['std'] / b['mean']:.2f} % "
+            f"(Verlet). The part faster than 5 ms is {-100 * a['fast'] / a['mean']:.4f} % and "
+            f"{-100 * b['fast'] / b['mean']:.4f} %: {verdict}.", ""]
 
 
 def plate_figure(report, exact, thin):
@@ -250,9 +250,9 @@ def gate(report):
     show = [*(fine if len(fine) == 2 else ["gate-1mm", "gate-1mm-verlet"]), "gate-leapfrog",
             "gate-1mm-plane-stress"]
     return [
-        f"Free end. Measured (Antoci et al. 2007, mean of two digitisations): peak {top:.1f} mm at "
-        f"0.16 s, 37.3 mm at 0.36 s; RMS is over its nine points. The displacement is compared as "
-        f"it is, without a shift in time.", "",
+        "The displacement is that of the free end. Antoci et al. (2007, mean of two digitisations) "
+        f"measured a peak of {top:.1f} mm at 0.16 s and 37.3 mm at 0.36 s. The RMS is over their nine "
+        "points. The displacement is compared without a shift in time.", "",
         *report.table(["peak (mm)", "at (s)", "at 0.36 s (mm)", "RMS x (mm)", "RMS y (mm)", *COST],
                       starting("gate"), cells),
         "Peaks of other computations of this gate, mm (at s): Antoci et al. 2007 SPH 50.1 (0.164), "
@@ -275,9 +275,9 @@ def gate(report):
 
 def gate_reading(report, numbers):
     """What moves the curve, in numbers of the runs at 1 mm."""
-    lines = ["*Why the target is missed.* The rise is followed; then the computed gate falls back "
-             "while the measured one stays out. What was changed, and what it moved at dp = 1 mm "
-             "(leapfrog), in mm at the peak and at 0.36 s:", ""]
+    lines = ["*Why the target is missed.* The computed gate rises like the measured one, but then falls "
+             "back while the measured one stays out. The list has what was changed and how it moved the "
+             "curve at dp = 1 mm (leapfrog), in mm at the peak and at 0.36 s:", ""]
     try:
         base = numbers(report.run("gate-1mm-leapfrog"))
     except (Missing, BadFile) as problem:
@@ -299,25 +299,25 @@ def gate_reading(report, numbers):
                          f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} for {base['rms']:.1f}")
         except (Missing, BadFile) as problem:
             lines.append(f"* {words}: {problem}")
-    return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants hold "
-                        "the gate out; the stiffness of the body does (plane stress is softer by 1 "
-                        "- nu^2 = 0.84). Khayyer et al. 2018 have nearly this curve, with another "
-                        "method and the same linear rubber. Antoci's own material was E = 12 MPa "
-                        "at small strain and stiffens further, the water leaks past the sides of "
-                        "the laboratory's gate, and 7.8 MPa is a fit. The paper itself reports \"a "
-                        "fewer agreement with experimental measurement\" here. No constant was "
-                        "tuned to the curve.", ""]
+    return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants keep the "
+                        "gate out. The stiffness of the body does: plane stress is softer by 1 - nu^2 = "
+                        "0.84. Khayyer et al. 2018 have nearly this curve, with another method and the "
+                        "same linear rubber. Antoci's own material has E = 12 MPa at small strain and "
+                        "stiffens further; 7.8 MPa is a fit. In the laboratory the water leaks past the "
+                        "sides of the gate. The paper itself reports \"a fewer agreement with "
+                        "experimental measurement\" here. No constant was tuned to the curve.", ""]
 
 
 # --- interfaces, 3.4, 3.5 ---
 def interface(report, names):
     """Gaps and penetration between water and structure over the snapshots."""
     lines = ["### Interface", "",
-             "Distances between particles of the water and of the structure over all snapshots, in "
-             "spacings (1 in the even lattice). A gap: a particle of the structure's surface whose "
-             "nearest water is 1.5 to 3 spacings away; the edge of the wetted part and splashes count. "
-             "Pressed in: water particles in bodies, in walls (deeper than some 0.8 spacings, or below "
-             "the floor), the most in any snapshot, and the share of the snapshots with any.", "",
+             "Distances are between particles of the water and of the structure over all snapshots, in "
+             "spacings (1 in the even lattice). A gap is a surface particle of the structure whose "
+             "nearest water is 1.5 to 3 spacings away. The edge of the wetted part and splashes count. "
+             "*Pressed in* has the most water particles in any snapshot that are in bodies or in walls "
+             "(deeper than about 0.8 spacings, or below the floor). The last column has the part of the "
+             "snapshots with any.", "",
              "| run | closest | median, wetted surface | surface with a gap (%) | pressed into bodies, "
              "walls | snapshots with any (%) |", "|---" * 6 + "|"]
     for name in names:
@@ -355,8 +355,8 @@ def in_air(length, young):
     return metrics.beam_frequency(young, 0.4, 1250, 0.007, length)
 
 
-ABOUT_MEAN = ("Frequency and RMS are of what is left when the mean over 0.2 s around each instant is "
-              "taken out; the frequency by changes of sign.")
+ABOUT_MEAN = ("Frequency and RMS are of the difference from the mean over 0.2 s around each instant. The "
+              "frequency is counted by changes of sign.")
 
 
 def about_mean(time, value, since):
@@ -386,13 +386,13 @@ def baffle(report):
     coarse = report.coarse("baffle-2.5mm", "baffle-4mm")
     shown = report.shown("baffle", coarse)
     return [
-        f"The laboratory's curve and parts of the geometry are not available: **no agreement with "
-        f"the experiment is claimed**. What can be checked: Stoker's bore over a wet bed, depth "
-        f"{1e3 * depth:.1f} mm and speed {speed:.3f} m/s for a dam that vanishes at once (the "
-        f"plate here is lifted, so the bore comes later and starts lower); first contact near t = "
-        f"0.3 s (the paper); the baffle's frequency, {in_air(0.08, 5.7e6):.1f} Hz in air, "
-        f"{in_air(0.064, 5.7e6):.1f} Hz with 64 mm free (Euler and Bernoulli, plane strain), lower in "
-        f"water; the interface. {ABOUT_MEAN}", "",
+        "The laboratory's curve and parts of the geometry are not available: **no agreement with the "
+        "experiment is claimed**. What can be checked:\n\n* Stoker's bore over a wet bed has the depth "
+        f"{1e3 * depth:.1f} mm and the speed {speed:.3f} m/s if the dam vanishes. Here the plate is "
+        "lifted, so the bore comes later and starts lower.\n* The first contact is near t = 0.3 s (the "
+        f"paper).\n* The baffle's frequency is {in_air(0.08, 5.7e6):.1f} Hz in air and "
+        f"{in_air(0.064, 5.7e6):.1f} Hz with 64 mm free (Euler and Bernoulli, plane strain). It is lower "
+        f"in water.\n* The table of the interface below has gaps and penetration.\n\n{ABOUT_MEAN}", "",
         *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)", "largest M1 (mm)",
                        "at (s)",
                        "frequency after 0.7 s (Hz)", "RMS (mm)", "mean after 0.7 s (mm)", *COST],
@@ -429,15 +429,15 @@ def sluice(report):
     shown = report.shown("sluice", coarse)
     window = ("--window", 0.55, 1.15, -0.01, 0.24)
     return [
-        f"The laboratory's curve, the opening under the gate and the removal of the plate are not "
-        f"available: **no agreement with the experiment is claimed**. What can be checked: the "
-        f"front is slower than Ritter's 2 sqrt(gH) = {ritter:.2f} m/s; the gate swings at "
-        f"{in_air(0.125, 4e6):.2f} Hz in air (Euler and Bernoulli, plane strain); the paper reports "
-        f"oscillations after t = 1 s from vortices at the gate, which depend on the numerical "
-        f"parameters. Here the gate falls back once after 1 s; the frequency of what is on top of that "
-        f"depends on the window. {ABOUT_MEAN} Walls and gate push back fluid that comes nearer than 0.8 dp "
-        f"(`wall_repulsion`), which the paper's scheme does not: the rows without repulsion show what "
-        f"particles that are pressed into the bed come to.", "",
+        "The laboratory's curve, the opening under the gate and the removal of the plate are not "
+        "available: **no agreement with the experiment is claimed**. What can be checked:\n\n* The front "
+        f"is slower than Ritter's 2 sqrt(gH) = {ritter:.2f} m/s.\n* The gate oscillates at "
+        f"{in_air(0.125, 4e6):.2f} Hz in air (Euler and Bernoulli, plane strain).\n* The paper reports "
+        "oscillations after t = 1 s from vortices at the gate, which depend on the numerical parameters. "
+        "Here the gate falls back once after 1 s. The frequency of the rest depends on the time window.\n\n"
+        f"{ABOUT_MEAN} Walls and gate repel fluid that comes nearer than 0.8 dp (`wall_repulsion`), "
+        "unlike in the paper. The rows without repulsion show the effect of particles that are pressed "
+        "into the bed.", "",
         *report.table(["front (m/s, of Ritter's)", "first contact (s)", "largest M1 (mm)", "at (s)",
                        "mean after 1 s (mm)",
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", "RMS (mm)", *COST],

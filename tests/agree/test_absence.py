@@ -3,9 +3,9 @@
 a program compiled without the effect, and its state is the same to the bit. A wall that no fluid reaches
 costs nothing either.
 
-Valgrind counts the instructions within simulation_step, which are the same in every run. Those of the allocator
-are left out: the threads' library calls it at each parallel region, and they depend on earlier frees. Bytes are
-those of the run's arena.
+Valgrind counts the instructions within simulation_step, which are the same in every run. Those of the
+allocator are left out: the threads' library calls it at each parallel region, and they depend on earlier
+frees. Bytes are those of the run's arena.
 
   test_absence.py           all effects that no scene here uses, left out together (two programs), and
                             docs/absence.md, which must have a row for every effect
@@ -132,19 +132,22 @@ def summary(effects, costs):
     """Three sentences: whether an effect that a scene does not use costs anything."""
     most, size = (max(abs(cell[k]) for cell in costs.values()) for k in (0, 1))
     over = sum(max(cell) > ALLOWED for cell in costs.values())
-    return (f"**Does an effect cost anything in a scene that does not use it?** In {len(costs)} pairs of "
-            f"{len(effects)} effects and {len(SCENES)} scenes the largest difference is {100 * most:.2f} % of the "
-            f"instructions and {100 * size:.2f} % of the bytes. {over} pairs are above the limit of "
+    return (f"**Does an effect cost anything in a scene that does not use it?** {len(costs)} pairs of "
+            f"{len(effects)} effects and {len(SCENES)} scenes were compared. The largest difference is "
+            f"{100 * most:.2f} % of the instructions and {100 * size:.2f} % of the bytes. {over} "
+            f"pairs are above the limit of "
             f"{100 * ALLOWED:.0f} %. The results are the same to the bit.")
 
 
 def report(whole, effects, costs, far, version):
     lines = [
         "# What an absent effect costs", "", summary(effects, costs), "",
-        f"`make absence` writes this report. It builds {len(effects) + 1} programs: one with all effects, and for "
+        f"`make absence` writes this report. It builds {len(effects) + 1} programs: one with all "
+        f"effects, and for "
         "each effect one without it. Each runs four small scenes (`tests/agree/test_absence.py`) over "
         f"{STEPS} steps on one thread, for x86-64-v3. Valgrind counts the instructions within "
-        "`simulation_step`, which are the same in every run. Bytes are those of the run's arena. The hash of the "
+        "`simulation_step`, which are the same in every run. Bytes are those of the run's arena. The "
+        "hash of the "
         f"state was the same in all programs. Program: {version}.", "",
         row("program with all effects", SCENES), row("---", ["---:"] * len(SCENES)),
         row("instructions a step", [f"{whole[s][0]:.0f}" for s in SCENES]),
@@ -158,7 +161,8 @@ def report(whole, effects, costs, far, version):
             "on" if (effect, s) not in costs else
             "{:+.2f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]))
     near, both, _ = far
-    lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes {both:.0f} instructions a "
+    lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes {both:.0f} "
+                  f"instructions a "
               f"step with it and {near:.0f} without it ({100 * (both / near - 1):+.2f} %).", ""]
     REPORT.write_text("\n".join(lines))
 
