@@ -31,7 +31,8 @@ FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` r
 
 
 # Limits that no scene of the table shows.
-LIMITS = """* The printed hourglass force (`hourglass_form = printed`) has growing modes on some shapes at any step,
+LIMITS = """\
+* The printed hourglass force (`hourglass_form = printed`) has growing modes on some shapes at any step,
   from `hourglass` of about 10 on. The program warns.
 * Time steps that change often (an accelerating fluid, outputs a few steps apart) can excite an undamped
   oscillation of the solid near its limit. `artificial_viscosity` or a smaller `solid_safety` helps.

@@ -13,8 +13,8 @@ from study_tables import table
 DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
 RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that
-of the defaults at the same resolution. Settings that choose a model instead of numerics (viscosity, diffusion,
-forces of the solid) are left to the case.
+of the defaults at the same resolution. Settings that choose a model instead of numerics (viscosity,
+diffusion, forces of the solid) are left to the case.
 
 * `draft` is the cheapest setting with at most {DRAFT_WORSE:g} times the error.
 * `fine` is the most exact setting on the front that costs at most {FINE_COST:g} times as much. Its
