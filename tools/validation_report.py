@@ -380,7 +380,7 @@ def write_report(docs, failed, kept, newest):
         "`make validate` (`tools/validate.py`) writes this report. Nothing in it is edited by hand: "
         "the numbers "
         "come from the runs, the sentences from the tool.", "",
-        "* Program: " + (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items())
+        "* Program " + (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items())
                          or newest) + ".",
         f"* {taken} of the {len(done)} runs are kept results (`docs/validation/`).",
         f"* Date and machine of the report: {datetime.date.today()}, {machine()}.",

@@ -170,7 +170,7 @@ def older_program(folder, environment):
     status, text = study(folder, environment, "--older")
     check(status == 0 and "points to run" not in text, f"older runs were not taken: {text}")
     report = (folder / "accuracy.md").read_text()
-    check("§ is of an older program in the same effective case: 7 of 7" in report,
+    check("§ is of an older program with the same effective case: 7 of 7" in report,
           "points of an older program are not marked")
 
 
