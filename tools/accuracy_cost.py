@@ -5,12 +5,12 @@ error against cost.
 
 Reads tools/study/study.toml (its head explains it), runs every point that is not in the cache
 (runs/study, keyed by the effective case and the sources of the program), and writes
-tools/study/results.json, docs/accuracy.md and its figures. An interrupted study goes on where
-it was. Examples:
+tools/study/results.json, docs/accuracy.md and its figures. An interrupted study continues where
+it stopped. Examples:
 
-  tools/accuracy_cost.py                      all that is missing, then the report
-  tools/accuracy_cost.py --list               the points, and how long those take that are not cached
-  tools/accuracy_cost.py --only gate          only points whose name begins like this
+  tools/accuracy_cost.py                      run all missing points, then write the report
+  tools/accuracy_cost.py --list               list the points and the time of those that are not cached
+  tools/accuracy_cost.py --only gate          only points whose names begin with this
   tools/accuracy_cost.py --point gate/2/base  one of them (what a workflow engine calls)
   tools/accuracy_cost.py --report             the report from tools/study/results.json alone
 """
@@ -43,21 +43,21 @@ def arguments():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--study", type=Path, default=STUDY, help="the definition")
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "study", help="the cache")
-    parser.add_argument("--only", default="", help="run only points whose name begins like this")
+    parser.add_argument("--only", default="", help="run only points whose names begin with this")
     parser.add_argument("--point", help="run this one point and write no report")
-    parser.add_argument("--list", action="store_true", help="list the points and what they will cost")
+    parser.add_argument("--list", action="store_true", help="list the points and their expected cost")
     parser.add_argument("--plan", action="store_true", help="the points as JSON, run nothing")
     parser.add_argument("--cached", action="store_true",
-                        help="run nothing; the report of what is cached, or was collected before")
-    parser.add_argument("--report", action="store_true", help="no runs; only the report")
+                        help="run nothing; report what is cached or was collected before")
+    parser.add_argument("--report", action="store_true", help="only write the report")
     parser.add_argument("--again", nargs="?", const="", metavar="NAMES",
                         help="time once more the finished points whose names begin like one of "
                         "these (commas between), or, without NAMES, those of the fronts")
     parser.add_argument("--jobs", type=int, default=1,
                         help="points at a time; their timings are marked as taken side by side")
     parser.add_argument("--older", action="store_true",
-                        help="points that only an older program has run in the same effective case are "
-                        "not run anew but shown with its version")
+                        help="do not repeat points that an older program has run with the same effective "
+                        "case; the report marks them")
     parser.add_argument("--prefix", default="", help="command in front of each run, such as nice")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of the report")
     parser.add_argument("--data", type=Path, help="collected results (beside the definition)")
@@ -90,7 +90,7 @@ def run_all(points, study, args, again):
 
 
 def collected(data):
-    """Points of the last results by name, with their errors: they stand for those that have no run here."""
+    """Points of the last results by name, with their errors. They replace points without a run here."""
     try:
         return {p["name"]: p for p in json.loads(data.read_text())["points"] if p["outcome"] != "not run"}
     except (OSError, ValueError, KeyError, TypeError):

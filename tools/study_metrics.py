@@ -55,7 +55,7 @@ def period(error, run, _finest, _root):
 
 
 def damped(error, run):
-    """Frequency and decay of the damped sine that fits best: unlike zero crossings it does not mind noise."""
+    """Frequency and decay of the damped sine that fits best. Noise disturbs it less than zero crossings."""
     time, value = window(*column(run, error["column"]), error)
     return metrics.damped_sine(time, value, 2 * np.pi / error["reference"])
 
@@ -136,7 +136,7 @@ def hydrostatic(error, run, _finest, _root):
 
 
 def places(run):
-    """Times of the snapshots, and where the water's foremost particle is."""
+    """Times of the snapshots, and positions of the water's foremost particle."""
     shots = Snapshots(Run(run).folder / "fields.vtkhdf")
     found = []
     for step in range(len(shots.times)):
@@ -146,7 +146,7 @@ def places(run):
 
 
 def front(error, run, _finest, root):
-    """Way of the foremost particle against measured rows of time and place."""
+    """Position of the foremost particle against measured rows of time and position."""
     time, place = places(run)
     table, _ = read_table(root / error["file"])
     when, wanted = table.values()

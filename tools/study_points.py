@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The definition of a study: its points, what they are called in the cache, what they will cost."""
+"""The definition of a study: its points, their keys in the cache, their expected cost."""
 
 import json
 import os
@@ -31,7 +31,7 @@ def complain(text):
 # --- the definition ---
 
 def read_study(path):
-    """The definition, and what is wrong with it; wrong parts are taken out, the rest goes on."""
+    """The definition, without its wrong parts, which are listed."""
     try:
         study = tomllib.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
@@ -100,7 +100,7 @@ def knob_trouble(knob):
 
 
 def preset_trouble(study):
-    """Presets whose points do not exist; they are taken out."""
+    """Removes and returns presets whose points do not exist."""
     for preset, scenes in list(study.setdefault("preset", {}).items()):
         for scene, setting in list(scenes.items()):
             knob, _, value = setting.partition("=")
@@ -135,8 +135,8 @@ def knob_points(study, name, levels):
 
 
 def points_of(study):
-    """Every point: (name, case, level, knob, value, --set arguments), the most telling first: base settings,
-    what stands for presets, then the other knobs, each from coarse to fine."""
+    """Every point: (name, case, level, knob, value, --set arguments), the most important first: defaults,
+    points of presets, then the other knobs, each from coarse to fine."""
     chosen = {tuple(setting.partition("=")[::2]) for scenes in study["preset"].values()
               for setting in scenes.values()}
     points = []
@@ -149,10 +149,10 @@ def points_of(study):
                                          p["level"]))
 
 
-# --- what a point is called in the cache ---
+# --- key of a point in the cache ---
 
 def program_hash():
-    """Of everything in the program that results can depend on."""
+    """Hash of everything in the program that results can depend on."""
     total = sha256()
     for path in sorted([*ROOT.glob("src/*/*"), *ROOT.glob("include/*")]):
         if path.suffix in (".c", ".h", ".def") and not ASIDE.fullmatch(path.name):
@@ -168,7 +168,7 @@ def set_arguments(sets):
 
 
 def ask(case, p, option):
-    """What the program says of the point when it is asked with `option` instead of run."""
+    """The program's answer for a point with `option`, which runs nothing."""
     command = [str(PROGRAM), option, str(ROOT / case["file"]), *set_arguments(p["set"])]
     try:
         return subprocess.run(command, capture_output=True, text=True, check=False, timeout=120,
@@ -201,7 +201,7 @@ def give_keys(points, study):
 
 
 def cached_record(runs, key):
-    """What the cache holds of a key; a run that failed for no reason of its own is to run again."""
+    """The cached record of a key. A run that failed for an outside reason is left out: it runs again."""
     try:
         record = json.loads((runs / key / "result.json").read_text()) if key else None
     except (OSError, ValueError):
@@ -210,7 +210,7 @@ def cached_record(runs, key):
 
 
 def take_older(points, runs):
-    """Points that only an older program has run stand for those of this one."""
+    """Uses results of an older program for points that the present one has not run."""
     found = {}
     for path in sorted(runs.glob("*/result.json"), key=lambda p: p.stat().st_mtime):
         record = cached_record(runs, path.parent.name)
@@ -221,10 +221,10 @@ def take_older(points, runs):
             p["key"] = found.get(p["effective"], p["key"])
 
 
-# --- what is still to be paid ---
+# --- expected cost ---
 
 def foreseen(case, p):
-    """CPU s as the program foresees them; None: it does not."""
+    """CPU s by the program's forecast; None: there is none."""
     said = ask(case, p, "--explain").stdout
     found = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", said)
     return float(found[1]) * {"s": 1, "min": 60, "h": 3600}[found[2]] if found else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Presets and the front that they follow from, and the file of evidence that the program carries."""
+"""Presets and the front that they follow from, and the file of evidence in the program."""
 import csv
 import io
 
@@ -52,7 +52,7 @@ def candidates(study, scene):
 
 
 def mean_front(numbers):
-    """Settings that no other one beats in both mean cost and mean error."""
+    """Settings that no other setting beats in both mean cost and mean error."""
     found, best = [], np.inf
     for key, (_, error, _) in sorted(numbers.items(), key=lambda item: item[1][:2]):
         if error < best:

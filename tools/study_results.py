@@ -124,7 +124,7 @@ class Study:
         return found
 
     def slope(self, case, error):
-        """b of error = a cost^-b along the resolutions of the base settings; None: it does not fall."""
+        """b of error = a cost^-b along the resolutions of the defaults; None: it does not fall."""
         points = [(cost(p), p["errors"].get(error)) for p in self.base(case)]
         points = [(c, e) for c, e in points if e]
         if len(points) < 2:
@@ -133,14 +133,14 @@ class Study:
         return b if b > 0.05 else None
 
     def ratios(self, p, error):
-        """Error and cost over those of the base settings at the same resolution; None where unknown."""
+        """Error and cost over those of the defaults at the same resolution; None where unknown."""
         base = self.base_at(p["case"], p["level"])
         if not base or not finished(p) or not p["errors"].get(error) or not base["errors"].get(error):
             return None
         return p["errors"][error] / base["errors"][error], cost(p) / cost(base)
 
     def gain(self, p, error):
-        """How many times longer the base settings would take to the same error; None: unknown."""
+        """How many times longer the defaults would take to the same error; None: unknown."""
         b, ratios = self.slope(p["case"], error), self.ratios(p, error)
         return ratios[0] ** (-1 / b) / ratios[1] if b and ratios else None
 

@@ -108,7 +108,7 @@ def settled(run):
 
 
 def deflections():
-    """Of two-dimensional elasticity and of the thin plate, both with the plate's own weight, m."""
+    """Deflections by two-dimensional elasticity and by the thin plate, with the plate's own weight, m."""
     return [float(reference(f"hydrostatic_plate_{name}").value[-1]) for name in ("elasticity", "thin_plate")]
 
 
@@ -120,7 +120,7 @@ def plate_targets(report, sides):
         return f"{100 * off(name):+.2f} %", abs(off(name)) <= 0.04
 
     def closer():
-        """What is off at half the paper's spacing, and whether that is less than at the paper's."""
+        """The error at half the paper's spacing, and whether it is smaller than at the paper's."""
         fine, coarse = off("plate-3.125mm-leapfrog"), off(report.first("plate-leapfrog", "plate-verlet"))
         return f"{100 * fine:+.2f} %", abs(fine) < abs(coarse)
 
@@ -134,7 +134,7 @@ def plate_targets(report, sides):
             report.try_target("hydrostatic plate",
                               f"fluctuation after 0.5 s below 2 % ({measure}), {words}",
                               lambda name=name, what=what: steady(name, what))
-    report.try_target("hydrostatic plate", "closer at half the spacing", closer)
+    report.try_target("hydrostatic plate", "deflection closer to 2-D elasticity at half the spacing", closer)
     report.try_target("hydrostatic plate",
                       "fluctuation after 0.5 s below 2 % (standard deviation), half the spacing",
                       lambda: steady("plate-3.125mm-leapfrog", "std"))
@@ -274,7 +274,7 @@ def gate(report):
 
 
 def gate_reading(report, numbers):
-    """What moves the curve, in numbers of the runs at 1 mm."""
+    """What moves the curve, by the runs at 1 mm."""
     lines = ["*Why the target is missed.* The computed gate rises like the measured one, but then falls "
              "back while the measured one stays out. The list has what was changed and how it moved the "
              "curve at dp = 1 mm (leapfrog), in mm at the peak and at 0.36 s:", ""]
@@ -296,7 +296,7 @@ def gate_reading(report, numbers):
         try:
             n = numbers(report.run(name))
             lines.append(f"* {words}: {n['peak'] - base['peak']:+.1f} and "
-                         f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} for {base['rms']:.1f}")
+                         f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} instead of {base['rms']:.1f}")
         except (Missing, BadFile) as problem:
             lines.append(f"* {words}: {problem}")
     return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants keep the "
@@ -342,7 +342,7 @@ def dry_target(report, case, *names):
 
 
 def contact_time(run, least=2e-4):
-    """First instant at which M1 has moved by more than `least` (m) from where it hangs at rest."""
+    """First instant at which M1 has moved by more than `least` (m) from its position at rest."""
     time, dx = series(run, "M1_dx_m")
     moved = np.flatnonzero(np.abs(dx) > least)
     if not len(moved):

@@ -146,7 +146,7 @@ def vortices(report):
 
 
 def judged_by(load, report, *targets):
-    """What a reference holds; where it cannot be read, its targets say so."""
+    """The reference. If it cannot be read, its targets say so."""
     try:
         return load()
     except BadFile as problem:
@@ -169,7 +169,7 @@ FRONT = "front within 5 % of Martin-Moyce, column of height 2a, t sqrt(2g/a)"
 
 def front(report):
     known_t, known_x = judged_by(front_places, report, FRONT)
-    seen = {}  # the way of a front takes many snapshots to find
+    seen = {}  # a front's path needs many snapshots
 
     def curve(run, scale):
         width = number(run, "a")
@@ -199,7 +199,7 @@ def front(report):
         return f"{100 * largest:.1f} %", largest <= 0.05
     report.try_target("dry dam break", FRONT,
                       lambda: target(report.first("front-80", "front-40", "front-20"), 2))
-    square = "the same table read as that of a square column, t sqrt(g/a)"
+    square = "the same table read as a square column, t sqrt(g/a)"
     report.try_target("dry dam break", square, lambda: target("front-40-square", 1))
 
     def moved(name):
@@ -294,7 +294,7 @@ def impact(report):
         name = report.first(f"impact-60-{smoothing}", f"impact-30-{smoothing}")
         found, short, row = (float(curve(report.run(name), "P1", n)[1].max()) for n in (5, 2, 1))
         low = sensors[0][2]
-        words = f"{found:.2f} rho g H for {low:g} ({short:.2f} over 2 ms, {row:.2f} in a row of 1 ms)"
+        words = f"{found:.2f} rho g H, measured {low:g} ({short:.2f} over 2 ms, {row:.2f} over 1 ms)"
         return words, abs(found / low - 1) <= 0.25
     for smoothing, words in kernels:
         report.try_target("dry dam break", IMPACT.format(words), lambda h=smoothing: target(h))
@@ -381,8 +381,8 @@ def block(report):
     def target():
         momentum, strain, _ = spin(report.run(report.first("block-20", "block-10")))
         return f"{momentum:+.1e}; {strain:.1e}", abs(momentum) < 1e-6 and strain < 1e-3
-    report.try_target("free rotation", "angular momentum kept (1e-6); energy of strain below 1e-3 "
-                                       "of the kinetic", target)
+    report.try_target("free rotation", "angular momentum conserved to 1e-6; strain energy below "
+                                       "1e-3 of the kinetic energy", target)
     return ["The block makes one turn. The strain energy is that of the centrifugal stress, of the order "
             "of rho (omega L)^2/E = 1e-4. Velocities in the snapshots are single precision, which limits "
             "the check of the angular momentum.", "",

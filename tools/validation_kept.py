@@ -29,7 +29,7 @@ ROWS = ("gate", "wave", "taylor", "block")  # runs of whose ledger it reads the 
 
 
 def archive(files):
-    """The bytes of a zip file that depend on nothing but the files' names and texts."""
+    """A zip file whose bytes depend on the names and texts of the files only."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:
         for name in sorted(files):

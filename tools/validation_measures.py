@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of the validation that take more of a run than is kept of it (validation_kept.py): its snapshots,
-or every row of its ledger. Of a run with all its files they are computed, of a kept one read."""
+"""Numbers of the validation that need snapshots or all rows of the ledger, which are not kept
+(validation_kept.py). They are computed from a run with all its files, and read from a kept one."""
 
 import functools
 import json
@@ -16,11 +16,11 @@ MEASURES = {}  # name: (function, beginnings of the names of the runs that it is
 
 
 class Missing(Exception):
-    """There is no finished run to report on; the text says what there is."""
+    """There is no finished run to report on; the text says how the run stands."""
 
 
 class NotRun(Missing):
-    """There is nothing of a run; the text says what is wrong with what is kept of it, if something is."""
+    """There are no files of a run; the text says what is wrong with its kept result, if there is one."""
 
     def __init__(self, wrong=""):
         super().__init__("not run" + (f"; what is kept of it {wrong}" if wrong else ""))
@@ -51,7 +51,7 @@ def measures_of(name):
 
 
 def measure_all(run):
-    """All that is to be kept of a run, as JSON takes it."""
+    """The measures of a run to keep, for JSON."""
     found = {}
     for name in measures_of(run.name):
         compute, _, parts = MEASURES[name]
@@ -100,7 +100,7 @@ def water(file, step):
 
 @whole_run([""], "play", "lost", "gain", "momentum_x", "momentum_y", "mass", "density")
 def balance(run):
-    """Of the ledger: the energy in play, what was dissipated, the largest gain from nowhere; momentum
+    """From the ledger: the energy in play, the dissipated energy, the largest spurious gain; momentum
     and relative change of the mass at the end; the largest relative deviation of the density."""
     ledger = read_ledger(run)
     lost, mass = ledger["dissipated"], ledger["mass"]

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Writes docs/validation.md and its figures from the runs that there are.
+"""Writes docs/validation.md and its figures from the existing runs.
 
-A run that is not there is taken from what is kept of it (validation_kept.py). A run that failed, has not
-ended or was not run stands in its table with that word. Whatever is wrong with a run, a row, a target or a
-section stands in its place, and the rest goes on."""
+A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or was not run,
+its table says so. An error in a run, a row, a target or a section is reported in its place, and the rest
+continues."""
 
 import datetime
 import subprocess
@@ -22,7 +22,7 @@ ORIGIN = "Runs"  # entry of a picture that says of which runs and version it is
 
 
 class Report:
-    """What the sections share: the folder of figures, targets, runs that failed just now, kept results."""
+    """Data of all sections: the folder of figures, targets, runs that failed just now, kept results."""
 
     def __init__(self, docs, failed, kept):
         self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
@@ -32,8 +32,8 @@ class Report:
         self.replaced = {}  # runs that are damaged, and what is kept of them stands instead: what is wrong
 
     def why(self, where, problem):
-        """What the report says instead of a result, while an exception is handled. That a run is missing
-        is no fault; a file that is, or an error that nobody foresaw, makes the command fail."""
+        """The text instead of a result, while an exception is handled. A missing run is no fault. A missing
+        file or an unexpected error makes the command fail."""
         if isinstance(problem, Missing):
             return str(problem)
         text = sentence(problem)
@@ -41,8 +41,8 @@ class Report:
         return text
 
     def load(self, spec):
-        """The result of a run: its own folder if it has ended there and is of the case that is meant now, or
-        else what is kept of it, or else its own folder, such as it is."""
+        """The result of a run: its own folder if it has ended there with the present case, else the kept
+        result, else its own folder as it is."""
         own = damage = None
         try:
             if (spec.folder / "summary.json").is_file():
@@ -110,19 +110,18 @@ class Report:
         return found[0]
 
     def coarse(self, *families):
-        """By the paper's two integrators: the first family of which one has finished, or the last."""
+        """Runs with the paper's two integrators: the first family with a finished run, or the last."""
         pairs = [[f"{name}-verlet", name] for name in families]
         return next((pair for pair in pairs if self.has(*pair)), pairs[-1])
 
     def shown(self, fine, coarse):
-        """The runs that a figure puts side by side: the finer ones, if both of the paper's integrators
-        or else leapfrog have got through."""
+        """The runs that a figure compares: the finer ones, if both of the paper's integrators or leapfrog
+        have finished."""
         pair = self.has(f"{fine}-verlet", fine)
         return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or coarse
 
     def target(self, case, words, value, met):
-        """A row of the table of targets; met: True, False, None where there is no run, or why it is not
-        known."""
+        """A row of the table of targets. met: True, False, None if there is no run, or why it is unknown."""
         told = {True: "met", False: MISSED, None: "not run"}
         self.targets.append((case, words, value, told.get(met, met)))
 
@@ -149,8 +148,8 @@ class Report:
 
     # --- figures ---
     def draw(self, tool, names, image, caption, *options):
-        """A figure by one of the drawing tools, or the sentence why there is none. Where the snapshots
-        that it shows are not kept, the picture that there is stays, and the report says of what it is."""
+        """A figure by one of the drawing tools, or why there is none. If the snapshots are not kept, the
+        existing picture stays, and the report says which runs it shows."""
         runs = [self.run(name) for name in self.has(*names)]
         if not runs:
             return [f"*No figure: none of {', '.join(names)} has finished.*", ""]
@@ -188,7 +187,7 @@ class Report:
         except (OSError, ValueError) as problem:
             return [f"*No figure: the snapshots are not kept, and {path.name} cannot be read "
                     f"({problem}).*", ""]
-        return [f"![{caption}](img/{path.name})", "", f"*{caption}; drawn before, of {origin}*", ""]
+        return [f"![{caption}](img/{path.name})", "", f"*{caption}; an earlier picture, of {origin}*", ""]
 
 
 def series(run, column, since=-1.0):
@@ -246,7 +245,7 @@ def by_version(report, newest):
 
 
 def what_was_run(report, versions):
-    """The runs by how they stand; those of another version than the newest for themselves."""
+    """The runs by state. Finished runs of older versions are listed separately."""
     stand, done = {"unfinished or failed": [], "damaged": [], "not run": []}, {}
     for k, (version, names) in enumerate(versions.items()):
         done[f"finished, by {version}" if k else "finished"] = names
@@ -365,8 +364,8 @@ def target_tables(targets):
 
 
 def write_report(docs, failed, kept, newest):
-    """Returns what is wrong with files or the program, a sentence each. `newest`: the version of the program
-    as it is now."""
+    """Returns what is wrong with files or the program, a sentence each. `newest`: the present version of the
+    program."""
     report = Report(docs, failed, kept)
     report.images.mkdir(parents=True, exist_ok=True)
     body = []

@@ -40,7 +40,7 @@ class Spec:
 
 
 def all_integrators(name, case, sets, words, quick=False):
-    """The same run by the paper's two integrators and by leapfrog, at its own, longer step."""
+    """The same run with the paper's two integrators and with leapfrog, which has a longer step."""
     return [Spec(name, case, [*sets, "integrator=symplectic"], f"{words}, symplectic", quick),
             Spec(f"{name}-verlet", case, [*sets, "integrator=verlet"], f"{words}, Verlet", quick),
             Spec(f"{name}-leapfrog", case, [*sets, "integrator=leapfrog"], f"{words}, leapfrog", quick)]
@@ -118,7 +118,7 @@ def single_rates():
 
 
 def at_2mm(prefix, case, at, name, sets, words):
-    """What the assumptions of the cases without a laboratory's curve are worth."""
+    """The effect of the assumptions in cases without a measured curve."""
     return Spec(f"{prefix}-2mm-{name}", case, [*at(2, "integrator=leapfrog"), *sets],
                 f"dp = 2 mm, leapfrog{words}")
 
@@ -226,19 +226,19 @@ def physics(text):
 
 
 def last_line(done):
-    """What a program that failed said last."""
+    """The last line of output of a failed program."""
     return (done.stderr.strip().splitlines() or [f"no message, exit status {done.returncode}"])[-1]
 
 
 def holds_results(folder):
-    """Whether the program would take the folder for that of a run."""
+    """Whether the program recognises the folder as that of a run."""
     return any(path.suffix == ".ckpt" or path.name in ("summary.json", "probes.csv", "ledger.csv",
                                                        "fields.vtkhdf", "case.cfg")
                for path in (folder.iterdir() if folder.is_dir() else ()))
 
 
 def refuses_checkpoint(done):
-    """Whether the program ended because of the checkpoint that it was to go on from."""
+    """Whether the program ended because of the checkpoint that it should continue from."""
     text = last_line(done)
     return done.returncode in (1, 2) and ("checkpoint" in text or ".ckpt" in text) and \
         "no memory" not in text

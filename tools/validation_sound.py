@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Whether the folder of a run that has ended holds what the report reads of it, whole and of the right kind:
-numbers of a run that was cut short, or a traceback in the middle of a section, would be worse than none."""
+"""Checks that the folder of a finished run has all that the report reads, complete and of the right type.
+Numbers of an incomplete run, or a traceback within a section, would be worse than none."""
 
 import math
 
@@ -13,7 +13,7 @@ SUMMARY = {**STOPPED, "steps": int, "solid_substeps": int, "wall_seconds": float
            "fluid_left_domain": int, "derived": dict}
 WORDS = {str: "a text", int: "a whole number", float: "a number", dict: "an object"}
 TABLES = {"probes.csv": "probe_interval", "ledger.csv": "ledger_interval"}
-LATE = 1.001  # output intervals that a table may end before its run, with room for round-off
+LATE = 1.001  # output intervals that a table may end before its run, with a tolerance for round-off
 
 
 def is_of(kind, value):
@@ -34,7 +34,7 @@ def need(path, entries, key, kind):
 
 
 def check_standing(run):
-    """Complains of a summary that does not even say how the run stands."""
+    """Complains of a summary without the state of the run."""
     for key, kind in STOPPED.items():
         need(run.folder / "summary.json", run.summary, key, kind)
 
@@ -77,7 +77,7 @@ def is_written(run, name):
 
 
 def check_table(run, name):
-    """Complains of a table of a finished run that is missing, torn or not of numbers."""
+    """Complains of a table of a finished run that is missing, incomplete or not numeric."""
     path = run.folder / name
     if not path.exists() and not is_written(run, name):
         return

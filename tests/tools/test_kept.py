@@ -240,10 +240,10 @@ def test_picture(bench):
     assert "snapshots are not kept" in draw("fields")
     bench.run(again=True)
     path = bench.folder / "img" / "validation-fields.png"
-    assert "drawn before" not in draw("fields") and path.is_file()
+    assert "an earlier picture" not in draw("fields") and path.is_file()
     shutil.rmtree(bench.spec.folder)
     before = path.read_bytes()
-    assert f"drawn before, of {NAME} by {SPHFSI.version}" in draw("fields")
+    assert f"an earlier picture, of {NAME} by {SPHFSI.version}" in draw("fields")
     assert path.read_bytes() == before
     path.write_bytes(b"no picture")
     assert "cannot be read" in draw("fields")

@@ -112,7 +112,7 @@ def test_plate_targets():
         for fine, verdict in ((1.01, ("+1.00 %", True)), (1.03, ("+3.00 %", False))):
             made = Made(plate=exact * 1.05, plate_fine_leapfrog=fine * exact, plate_leapfrog=0.98 * exact)
             validation_cases.plate_targets(made, [("plate", "symplectic")])
-            assert made.found["closer at half the spacing"] == verdict
+            assert made.found["deflection closer to 2-D elasticity at half the spacing"] == verdict
         words = "fluctuation after 0.5 s below 2 % ({}), symplectic"
         assert made.found[words.format("standard deviation")] == ("1.90 %", True)
         assert made.found[words.format("half of the range")] == ("5.00 %", False)
