@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Writes docs/validation.md and its figures from the existing runs.
 
-A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or was not run,
-its table says so. An error in a run, a row, a target or a section is reported in its place, and the rest
+A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or was not
+run, its table says so. An error in a run, a row, a target or a section is reported in its place, and the rest
 continues."""
 
 import datetime
