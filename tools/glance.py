@@ -78,7 +78,7 @@ def stability_rows():
     for line in table.splitlines():
         cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
         if len(cells) == 7 and cells[0] not in ("scene", "---"):
-            yield cells[0], cells[4] in ("holds", "passes"), cells[0] in needed
+            yield cells[0], cells[4] == "passes", cells[0] in needed
 
 
 def draw_stability():
