@@ -250,6 +250,7 @@ EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
 $(EXAMPLES): $(B)/example_%: $(B)/examples/%.o $(LIB)
 	$(Q)$(LINK)
 examples: $(EXAMPLES)
+	@echo "programs:"; printf '  %s\n' $(EXAMPLES)
 
 gate: $(PROGRAM)
 	@if grep -qs '"exit_reason": *"finished"' $(OUT)/summary.json; then \

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Finds what sphfsi needs and, where it may, installs what is missing.
 #
-#   tools/setup.sh build    C compiler with OpenMP, HDF5, zlib     -> build/hdf5.mk
+#   tools/setup.sh build    C compiler with OpenMP, HDF5, zlib     -> build/hdf5.mk, and
+#                           build/python where there is a Python for plot
 #   tools/setup.sh test     the above, Unity, Python as for plot   -> build/unity.mk
 #   tools/setup.sh plot     Python 3 with numpy, matplotlib, h5py  -> build/python
 #
@@ -155,6 +156,9 @@ make_venv() {
     return 1
 }
 
+# Notes a Python that has all, where none is known yet; a build misses nothing without one.
+note_python() { [ -e build/python ] || (find_python); }
+
 # --- Unity ---
 
 # Takes Unity from directory $1 if its source is there (Canonical's desktop has a unity.h, too).
@@ -244,7 +248,7 @@ find_all() {
     local need
     for need in "$@"; do
         case $need in
-            build) find_build ;;
+            build) find_build; note_python ;;
             plot) find_python ;;
             test) find_build && find_python && find_unity ;;
             *) say "unknown need '$need'; one of: build test plot"; exit 1 ;;

@@ -17,9 +17,12 @@ WORDS = {"dx": "horizontal displacement", "dy": "vertical displacement", "p": "p
          "szz": "stress $\\sigma_{zz}$", "sxy": "stress $\\sigma_{xy}$",
          "mises": "von Mises stress", "front": "front", "q": "flux",
          "fx": "horizontal force", "fy": "vertical force", "mz": "moment",
+         "ax": "horizontal acceleration", "ay": "vertical acceleration",
+         "Exx": "strain $E_{xx}$", "Eyy": "strain $E_{yy}$", "Exy": "strain $E_{xy}$",
+         "cx": "x of the centre", "cy": "y of the centre", "angle": "rotation",
          "kinetic": "kinetic energy", "elastic": "strain energy", "hourglass": "hourglass energy"}
 UNITS = {"SI": "SI", "m_per_s": "m/s", "N_per_m": "N/m", "Nm_per_m": "N m/m", "J_per_m": "J/m",
-         "m2_per_s": "m²/s"}
+         "m2_per_s": "m²/s", "m_per_s2": "m/s²"}
 DASHES = [(0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (8, 3))]
 GREYS = ["0.25", "0.45", "0.35", "0.55"]
 MARKERS = "osD^v<>"
@@ -41,6 +44,14 @@ def choose_columns(runs, tables, refs, asked=()):
     if not chosen:
         raise BadFile("the runs have no column of probes.csv in common")
     return chosen
+
+
+def all_columns(runs, tables, refs, asked=()):
+    """Columns to draw: those asked for, else all that the runs have in common."""
+    if asked:
+        return choose_columns(runs, tables, refs, asked)
+    shared = [name for name in tables[0] if all(name in t for t in tables)]
+    return shared or choose_columns(runs, tables, refs)
 
 
 def curves_of(runs, tables, columns):
@@ -177,4 +188,59 @@ def draw_figure(columns, curves, refs):
         fig.align_ylabels(axes[:, k])
     fig.legend([legend[name] for name in names], [texts[name] for name in names], ncol=ncol,
                loc="lower center", bbox_to_anchor=(0.53, 0.0))
+    return fig, units
+
+
+def panels_of(columns):
+    """Columns of the same unit together; a displacement of millimetres stands apart from a position.
+    Displacements come first, forces and moments behind all that moves or flows, energies last."""
+    late = {"N/m": 2, "N m/m": 2, "J/m": 3}
+    panels = {}
+    for column in columns:
+        unit = column_words(column, float("inf"))[2]
+        moved = bool(re.search(r"_d[xy]_m$", column))
+        panels.setdefault((0 if moved else late.get(unit, 1), unit), []).append(column)
+    return [panels[key] for key in sorted(panels, key=lambda key: key[0])]
+
+
+def draw_panel(axes, columns, curves, refs):
+    """The columns of one unit; gives its factor and name. Each of several runs has its colour."""
+    size = max(np.abs(value).max() for column in columns for _, _, value in curves[column])
+    styles = reference_style(refs)
+    several = len(curves[columns[0]]) > 1
+    for ref in refs:
+        scale = column_words(ref.probe, size)[1]
+        axes.plot(ref.time, scale * ref.value, label=ref.label, **styles[ref])
+    for c, column in enumerate(columns):
+        words, scale, unit = column_words(column, size)
+        for k, (run, time, value) in enumerate(curves[column]):
+            name = words.rpartition(" (")[0] + (f", {run.label()}" if several else "")
+            colour = COLOURS[(k if several else c) % len(COLOURS)]
+            style = DASHES[(c - 1) % len(DASHES)] if several and c else "-"
+            axes.plot(time, scale * value, color=colour, linestyle=style, zorder=3, label=name)
+            if run.failure():
+                axes.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
+                          markeredgewidth=2, zorder=5)
+    times = [time for column in columns for _, time, _ in curves[column]]
+    kinds = {column_words(column, size)[0].rpartition(" (")[0].split()[-1] for column in columns}
+    label = words.rpartition(" (")[0] if len(columns) == 1 else kinds.pop() if len(kinds) == 1 else ""
+    axes.set(ylabel=f"{label} ({unit})".strip(),
+             xlim=(min(time[0] for time in times), max(time[-1] for time in times) or 1))
+    low, high = axes.get_ylim()
+    if low < 0 < high:
+        axes.axhline(0, color="0.8", linewidth=0.6, zorder=1)
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5))
+    return scale, unit
+
+
+def draw_panels(columns, curves, refs):
+    """One panel for each unit, one below the other, with a legend beside each."""
+    panels = panels_of(columns)
+    fig, axes = plt.subplots(len(panels), 1, figsize=(WIDTH, 0.4 + 1.9 * len(panels)), squeeze=False,
+                             layout="constrained")
+    units = {}
+    for row, names in zip(axes[:, 0], panels):
+        own = [ref for ref in refs if ref.probe in names]
+        units.update(dict.fromkeys(names, draw_panel(row, names, curves, own)))
+    axes[-1, 0].set_xlabel("Time (s)")
     return fig, units

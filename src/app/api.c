@@ -69,7 +69,10 @@ static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi
     TRY(session_open(&s->session, o, d));
     struct simulation *const sim = &s->session.simulation;
     const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
-    if (e) session_close(&s->session);
+    if (e)
+        session_close(&s->session);
+    else
+        probes_follow(&s->probes, sim);
     s->threads = thread_count();
     return e;
 }
@@ -117,6 +120,7 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
                          "step: the limit %.17g s is not later than the simulated time %.17g s",
                          limit, sim->state.time);
     const enum err e = simulation_step(sim, limit, d);
+    if (!e) probes_follow(&s->probes, sim);
     s->stopped = e == ERR_GUARD;
     return e;
 }

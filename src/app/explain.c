@@ -2,6 +2,7 @@
 #include "app/explain.h"
 
 #include "app/forecast.h"
+#include "app/slow.h"
 #include "case/params.h"
 #include "output/snapshot_file.h"
 
@@ -216,6 +217,7 @@ static enum err say_trial(struct simulation *s, int threads, const struct sphfsi
 {
     struct unit_costs c;
     TRY(forecast_calibrate(&c, s, d));
+    slow_warn(s, d);
     say_bounds(s, o);
     say_cost(s, &c, threads, o);
     forecast_say_errors(s->scene, o);

@@ -335,29 +335,89 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
 
 /* --- the error --- */
 
-void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
+/* Least and largest error of the study's cases of a kind, each at its finest resolution that is no finer than
+ * n; `coarser`: than all of a case. */
+struct band {
+    double low, high;
+    bool coarser;
+};
+
+static struct band band_of(enum scene_kind kind, const char *accuracy, double n)
 {
-    const enum scene_kind kind = s->n_fluid && s->n_solid ? SCENE_COUPLED
-                                 : s->n_fluid             ? SCENE_FLUID
-                                                          : SCENE_SOLID;
-    char accuracy[SCENE_NAME];
-    param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
-    session_say(o, "expected error at accuracy = %s, from the study in docs/accuracy.md", accuracy);
-    char before[EVIDENCE_TEXT] = "", line[512] = "";
-    size_t at = 0;
+    struct band band = {.low = (double)INFINITY};
+    char before[EVIDENCE_TEXT] = "";
+    double best = -1;
     struct evidence row;
     for (const char *rest = evidence_first(); evidence_next(&rest, &row);) {
         if (row.kind != kind || strcmp(row.accuracy, accuracy) != 0) continue;
         if (strcmp(before, row.name) != 0) {
-            if (at > 0) session_say(o, "%s", line);
-            at = (size_t)snprintf(line, sizeof line, "  %s, %s:", row.name, row.error);
+            if (best >= 0) band.low = min2(band.low, best), band.high = max2(band.high, best);
             snprintf(before, sizeof before, "%s", row.name);
+            best = -1;
+            band.coarser |= row.resolution > n;
         }
-        if (at < sizeof line - 100)
-            at += (size_t)snprintf(line + at, sizeof line - at, " %.3g %% at %.3g %s;", row.percent,
-                                   row.resolution, row.what);
+        if (row.resolution <= n || best < 0) best = row.percent;
     }
-    session_say(o, "%s", at > 0 ? line : "  the study has no scene of this kind");
+    if (best >= 0) band.low = min2(band.low, best), band.high = max2(band.high, best);
+    return band;
+}
+
+/* Particles across the thinner side of a body, or over the height of the fluid. */
+static double particles_across(const struct scene *s, enum kind kind, int body)
+{
+    const struct scene_points *const p = &s->points[kind];
+    const struct scene_lattice *const l =
+        kind == KIND_SOLID ? &s->solid_lattice[body] : &s->lattice;
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL}, at[2], n[2];
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != body) continue;
+        lattice_place(l, p->x[i], p->y[i], at);
+        for (int c = 0; c < 2; c++) low[c] = min2(low[c], at[c]), high[c] = max2(high[c], at[c]);
+    }
+    for (int c = 0; c < 2; c++) n[c] = floor((high[c] - low[c]) / l->spacing[c] + 1.5);
+    return kind == KIND_SOLID ? min2(n[0], n[1]) : n[1];
+}
+
+static void say_error(const struct scene *s, enum kind kind, int body, const char *accuracy,
+                      const struct sphfsi_options *o)
+{
+    const enum scene_kind like = kind == KIND_FLUID ? SCENE_FLUID
+                                 : s->n_fluid       ? SCENE_COUPLED
+                                                    : SCENE_SOLID;
+    const double n = particles_across(s, kind, body);
+    const struct band band = band_of(like, accuracy, n);
+    const char *const name =
+        kind == KIND_FLUID ? s->fluid[body].common.name : s->solid[body].common.name;
+    char range[64];
+    snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
+             band.low, band.high);
+    if (!isfinite(band.low))
+        session_say(o, "  %s: %.0f particles across: the study has no case of this kind", name, n);
+    else if (band.coarser)
+        session_say(o,
+                    "  %s: %.0f particles across, fewer than any case of this kind has: its error "
+                    "is not known; a finer dp mends it",
+                    name, n);
+    else if (kind == KIND_FLUID)
+        session_say(o,
+                    "  %s: %.0f particles over its height: off by about %s (cases of this kind, "
+                    "docs/accuracy.md)",
+                    name, n, range);
+    else
+        session_say(o,
+                    "  %s: %.0f particles across: tip within about %s of converged (cases of this "
+                    "kind, docs/accuracy.md)",
+                    name, n, range);
+}
+
+void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o)
+{
+    char accuracy[SCENE_NAME];
+    param_choice_name(param_find(SECTION_top, "accuracy"), s->top.accuracy, accuracy);
+    session_say(o, "expected error at accuracy = %s", accuracy);
+    for (int k = 0; k < s->n_solid; k++) say_error(s, KIND_SOLID, k, accuracy, o);
+    for (int k = 0; k < s->n_fluid && s->n_solid == 0; k++)
+        say_error(s, KIND_FLUID, k, accuracy, o);
 }
 
 void forecast_say_preset(const struct scene *s, const struct sphfsi_options *o)

@@ -37,7 +37,7 @@ void forecast_close(struct session *x, int threads);
 enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Prints the errors of the accuracy study (docs/accuracy.md) at this `accuracy`, in cases of this kind. */
+/* Prints the error that the study (docs/accuracy.md) lets expect of each body at its resolution. */
 void forecast_say_errors(const struct scene *s, const struct sphfsi_options *o);
 
 /* The same, if the case names its `accuracy`. */

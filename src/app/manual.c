@@ -170,10 +170,10 @@ static void say_quantities(const struct sphfsi_options *o)
     };
     static const char *const needs[] = {
         [TARGET_SOLID_POINT] = "`body` (solid), `point`",
-        [TARGET_FLUID_POINT] = "`point`",
-        [TARGET_ANY_POINT] = "`point`; `body`",
+        [TARGET_FLUID_POINT] = "`point`; `on`",
+        [TARGET_ANY_POINT] = "`point`; `body` or `on`",
         [TARGET_SOLID] = "`body` (solid)",
-        [TARGET_BODY] = "`body`; `point` of the moment",
+        [TARGET_BODY] = "`body` (solids or walls); `point` of the moment",
         [TARGET_FLUID] = "",
         [TARGET_FLUID_LINE] = "`point`, `to`",
     };

@@ -334,13 +334,13 @@ static void describe_probe(const struct scene_probe *p, char *text, size_t size)
                  p->to[0], p->to[1]);
     else if (has_position(p))
         snprintf(place, sizeof place, " at (%g, %g) m", p->point[0], p->point[1]);
-    snprintf(text, size, "probe %s: %s%s%s%s", p->common.name, quantity, p->body[0] ? " of " : "",
-             p->body, place);
+    snprintf(text, size, "probe %s: %s%s%s%s%s%s", p->common.name, quantity,
+             p->body[0] ? " of " : "", p->body, place, p->on[0] ? ", moves with " : "", p->on);
 }
 
 static void put_list(const struct drawing *g, double y)
 {
-    char text[640];
+    char text[1024];
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int k = 0; k < section_count(g->s, sections[kind]); k++, y += LINE) {
             const bool moves = kind == KIND_WALL && g->s->wall[k].motion[0];

@@ -4,6 +4,7 @@
 #include "app/case_change.h"
 #include "app/due.h"
 #include "app/forecast.h"
+#include "app/plot_hint.h"
 #include "base/run_dir.h"
 #include "output/checkpoint.h"
 #include "output/probes.h"
@@ -242,8 +243,7 @@ static void show_progress(struct run *r, bool finished)
     int binding = 0;
     for (int k = 1; k < BOUND_COUNT; k++)
         if (k != BOUND_output && r->s->dt_bound[k] < r->s->dt_bound[binding]) binding = k;
-    const double done = st->time - r->record.start_time;
-    const double end = r->session.scene.top.end_time;
+    const double done = st->time - r->record.start_time, end = r->session.scene.top.end_time;
     const struct sphfsi_progress p = {
         .time = st->time,
         .end_time = end,
@@ -282,11 +282,13 @@ static enum err between_steps(struct run *r)
 static enum err advance(struct run *r)
 {
     const double end = r->session.scene.top.end_time;
+    probes_follow(&r->probes, r->s);
     TRY(write_due(r, false));
     while (r->s->state.time < end) {
         const double next = next_time(r);
         while (r->s->state.time < next) {
             TRY(simulation_step(r->s, next, r->diag));
+            probes_follow(&r->probes, r->s);
             TRY(between_steps(r));
         }
         TRY(write_due(r, false));
@@ -526,8 +528,7 @@ static enum err simulate(struct run *r)
                 r->record.wall_seconds);
     say_results(r);
     warn_of_losses(r);
-    if (r->session.scene.n_probe > 0)
-        session_say(r->options, "plot it with: tools/plot_m1.py %s", r->folder.path);
+    if (r->session.scene.n_probe > 0) say_plot_hint(r->folder.path, r->options);
     return ERR_OK;
 }
 

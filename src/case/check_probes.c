@@ -6,26 +6,85 @@
 #include <stdio.h>
 #include <string.h>
 
-static enum err no_section(struct reader *r, const struct scene_probe *p, bool walls_too)
+static enum err no_section(struct reader *r, const struct scene_probe *p, const char *key,
+                           const char *name, bool walls_too)
 {
     struct nearest near = {0};
     for (int k = 0; k < r->scene->n_solid; k++)
-        nearest_offer(&near, p->body, r->scene->solid[k].common.name);
+        nearest_offer(&near, name, r->scene->solid[k].common.name);
     for (int k = 0; walls_too && k < r->scene->n_wall; k++)
-        nearest_offer(&near, p->body, r->scene->wall[k].common.name);
-    return bad_line(r, p->common.line, "body = %.60s: there is no [solid]%s of that name%s%s%s",
-                    p->body, walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
+        nearest_offer(&near, name, r->scene->wall[k].common.name);
+    return bad_line(r, p->common.line, "%s = %.60s: there is no [solid]%s of that name%s%s%s", key,
+                    name, walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
                     near.name ? near.name : "", near.name ? "`?" : "");
 }
 
-static enum err check_body(struct reader *r, const struct scene_probe *p, bool walls_too)
+static bool is_section(const struct scene *s, const char *name, bool walls_too)
+{
+    return scene_find_solid(s, name) >= 0 || (walls_too && scene_find_wall(s, name) >= 0);
+}
+
+static enum err check_body(struct reader *r, const struct scene_probe *p)
 {
     if (!*p->body)
-        return bad_line(r, p->common.line, "[probe %s] needs `body`, the solid%s it belongs to",
-                        p->common.name, walls_too ? " or wall" : "");
-    if (scene_find_solid(r->scene, p->body) >= 0) return ERR_OK;
-    if (walls_too && scene_find_wall(r->scene, p->body) >= 0) return ERR_OK;
-    return no_section(r, p, walls_too);
+        return bad_line(r, p->common.line, "[probe %s] needs `body`, the solid it belongs to",
+                        p->common.name);
+    if (is_section(r->scene, p->body, false)) return ERR_OK;
+    return no_section(r, p, "body", p->body, false);
+}
+
+/* Each once: a force that counts twice is a mistake. */
+static enum err check_bodies(struct reader *r, const struct scene_probe *p)
+{
+    char name[SCENE_TEXT], other[SCENE_TEXT];
+    if (!*p->body)
+        return bad_line(r, p->common.line,
+                        "[probe %s] needs `body`, the solids or walls it belongs to",
+                        p->common.name);
+    for (int k = 0; scene_listed(p->body, k, name); k++) {
+        if (!is_section(r->scene, name, true)) return no_section(r, p, "body", name, true);
+        for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
+            if (strcmp(name, other) == 0)
+                return bad_line(r, p->common.line, "body = %.60s: %.60s stands there twice",
+                                p->body, name);
+    }
+    return ERR_OK;
+}
+
+static enum err check_on(struct reader *r, const struct scene_probe *p)
+{
+    if (!*p->on) return ERR_OK;
+    if (scene_probe_target(p) != TARGET_FLUID_POINT)
+        return bad_line(r, p->common.line,
+                        "[probe %s] on = %.60s: only the point of a pressure, level or velocity of "
+                        "the fluid moves with a body; leave `on` out",
+                        p->common.name, p->on);
+    if (is_section(r->scene, p->on, true)) return ERR_OK;
+    return no_section(r, p, "on", p->on, true);
+}
+
+/* A row then needs no more than the steps since the row before. */
+static enum err check_average(struct reader *r, const struct scene_probe *p)
+{
+    const struct scene_output *const out = &r->scene->output;
+    const double common =
+        out->probe_interval > 0 ? out->probe_interval : 1e-3 * r->scene->top.end_time;
+    const double interval = p->interval > 0 ? p->interval : common;
+    if (p->average <= interval * (1 + 1e-12)) return ERR_OK;
+    return bad_line(r, p->common.line,
+                    "[probe %s] average = %g s is longer than the %g s between its rows; give it "
+                    "`interval = %g s` or more",
+                    p->common.name, p->average, interval, p->average);
+}
+
+static enum err check_clamp(struct reader *r, const struct scene_probe *p)
+{
+    if (p->quantity != PROBE_REACTION) return ERR_OK;
+    if (r->scene->solid[scene_find_solid(r->scene, p->body)].clamp.n > 0) return ERR_OK;
+    return bad_line(r, p->common.line,
+                    "[probe %s] measures the force of the clamps of [solid %s], which has none; "
+                    "give the solid a `clamp`",
+                    p->common.name, p->body);
 }
 
 static enum err check_fluid(struct reader *r, const struct scene_probe *p)
@@ -50,10 +109,12 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
 
 static enum err check_probe(struct reader *r, const struct scene_probe *p)
 {
+    TRY(check_on(r, p));
+    TRY(check_average(r, p));
     switch (scene_probe_target(p)) {
-    case TARGET_BODY: TRY(check_body(r, p, true)); return check_fluid(r, p);
+    case TARGET_BODY: TRY(check_bodies(r, p)); return check_fluid(r, p);
     case TARGET_SOLID:
-    case TARGET_SOLID_POINT: return check_body(r, p, false);
+    case TARGET_SOLID_POINT: TRY(check_body(r, p)); return check_clamp(r, p);
     default: return check_fluid(r, p);
     }
 }

@@ -61,9 +61,11 @@ static bool has_gravity(const struct scene *s)
 /* The first probe of the force on a wall; -1: none. */
 static int first_wall_force(const struct scene *s)
 {
+    char name[SCENE_TEXT];
     for (int k = 0; k < s->n_probe; k++)
-        if (s->probe[k].quantity == PROBE_FORCE && scene_find_solid(s, s->probe[k].body) < 0)
-            return k;
+        for (int n = 0;
+             s->probe[k].quantity == PROBE_FORCE && scene_listed(s->probe[k].body, n, name); n++)
+            if (scene_find_solid(s, name) < 0) return k;
     return -1;
 }
 

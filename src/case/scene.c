@@ -78,6 +78,20 @@ const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b
     return found->enabled ? found : NULL;
 }
 
+bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
+{
+    for (; k > 0; k--) {
+        list = strchr(list, ',');
+        if (!list) return false;
+        list++;
+    }
+    list += strspn(list, " \t");
+    size_t length = strcspn(list, ",");
+    while (length > 0 && (list[length - 1] == ' ' || list[length - 1] == '\t')) length--;
+    snprintf(name, SCENE_TEXT, "%.*s", (int)length, list);
+    return true;
+}
+
 bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 {
     const char *comma = strchr(text, ',');

@@ -419,6 +419,9 @@ enum probe_target scene_probe_target(const struct scene_probe *probe);
  * not. */
 const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b);
 
+/* The k-th name of a list with commas between them, without blanks around it; false: there are fewer. */
+bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
+
 /* The two names of `a, b`; false: it is something else. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 

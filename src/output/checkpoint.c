@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/checkpoint.h"
+#include "output/checkpoint_files.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
-enum { FORMAT = 3, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32, KEEP = 2 };
+enum { FORMAT = 3, BYTE_ORDER_MARK = 0x01020304, NAME_TEXT = 32 };
 
 /* Owners of blocks: the kinds of particles, then these. */
 enum { OWNER_STATE = KIND_COUNT, OWNER_CASE };
@@ -100,6 +98,7 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
         2 * sizeof(struct block_header) + sizeof s->state.bound_steps + sizeof s->state.account;
     bytes += 3 * sizeof(struct block_header) + sizeof s->open.next_id +
              (size_t)s->open.n * (sizeof *s->open.sum + sizeof *s->open.count);
+    bytes += sizeof(struct block_header) + (size_t)s->carried.n * sizeof *s->carried.value;
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
             bytes +=
@@ -127,6 +126,15 @@ static uint32_t put_open(struct image *m, const struct open *o)
     put_block(m, "open_count", OWNER_STATE, ITEM_INT64, o->count, (size_t)o->n * OPEN_COUNTS);
     put_block(m, "open_next_id", OWNER_STATE, ITEM_INT64, &o->next_id, 1);
     return 3;
+}
+
+static const char carried_name[] = "probe_means";
+
+static uint32_t put_carried(struct image *m, const struct simulation *s)
+{
+    if (s->carried.n == 0) return 0;
+    put_block(m, carried_name, OWNER_STATE, ITEM_DOUBLE, s->carried.value, (size_t)s->carried.n);
+    return 1;
 }
 
 static uint32_t put_particles(struct image *m, const struct simulation *s)
@@ -162,7 +170,8 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
     for (int k = 0; k < KIND_COUNT; k++) head.count[k] = s->kind[k].n;
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
-    head.blocks = 1 + put_state(m, &s->state) + put_open(m, &s->open) + put_particles(m, s);
+    head.blocks = 1 + put_state(m, &s->state) + put_open(m, &s->open) + put_carried(m, s) +
+                  put_particles(m, s);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
@@ -221,58 +230,6 @@ void checkpoint_seal(struct image *m)
     memcpy(m->bytes + m->size - sizeof foot, &foot, sizeof foot);
 }
 
-static void name_of(char name[NAME_TEXT], int64_t steps)
-{
-    snprintf(name, NAME_TEXT, "step-%09" PRId64 ".ckpt", steps);
-}
-
-/* Steps in the name of a checkpoint, or -1 for other files, including other spellings of the number. */
-static int64_t steps_of(const struct dirent *entry)
-{
-    char name[NAME_TEXT];
-    int64_t steps;
-    if (entry->d_type != DT_REG && entry->d_type != DT_LNK && entry->d_type != DT_UNKNOWN)
-        return -1;
-    if (sscanf(entry->d_name, "step-%18" SCNd64, &steps) != 1 || steps < 0) return -1;
-    name_of(name, steps);
-    return strcmp(entry->d_name, name) == 0 ? steps : -1;
-}
-
-/* Replaces *steps by the largest number of steps below it among the folder's checkpoints, or by -1. */
-static enum err next_newest(const char *folder, int64_t *steps, struct diag *d)
-{
-    const int64_t limit = *steps;
-    DIR *dir = opendir(folder);
-    if (!dir) return diag_fail(d, ERR_IO, "%s: cannot be read: %s", folder, strerror(errno));
-    *steps = -1;
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        const int64_t found = steps_of(entry);
-        if (found > *steps && found < limit) *steps = found;
-    }
-    closedir(dir);
-    return ERR_OK;
-}
-
-static enum err remove_checkpoint(const char *folder, int64_t steps, struct diag *d)
-{
-    char name[NAME_TEXT], path[PATH_BYTES];
-    name_of(name, steps);
-    TRY(path_join(path, folder, name, d));
-    if (unlink(path) != 0)
-        return diag_fail(d, ERR_IO, "%s: cannot be removed: %s", path, strerror(errno));
-    return ERR_OK;
-}
-
-static enum err remove_older(const char *folder, int64_t newest, struct diag *d)
-{
-    int64_t steps = newest + 1;
-    for (int kept = 0;; kept++) {
-        TRY(next_newest(folder, &steps, d));
-        if (steps < 0) return ERR_OK;
-        if (kept >= KEEP) TRY(remove_checkpoint(folder, steps, d));
-    }
-}
-
 enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BYTES],
                           struct diag *d)
 {
@@ -280,7 +237,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
     char name[NAME_TEXT];
     const struct image_info info = checkpoint_info(m);
     checkpoint_seal(m);
-    name_of(name, info.steps);
+    checkpoint_name(name, info.steps);
     TRY(atomic_file_open(&out, folder, name, d));
     /* atomic_file_commit reports a short write, by ferror. */
     if (fwrite(m->bytes, 1, m->size, out.file) != m->size && !ferror(out.file)) {
@@ -290,34 +247,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
     TRY(atomic_file_commit(&out, d));
     memcpy(path, out.path, PATH_BYTES);
     struct diag why = {.code = ERR_OK}; /* a failure to remove does not stop the run */
-    if (remove_older(folder, info.steps, &why)) diag_warn(d, "%s", why.text);
-    return ERR_OK;
-}
-
-/* Removes unfinished checkpoints of killed runs. */
-static void remove_parts(const char *folder)
-{
-    static const char end[] = ".ckpt.part";
-    DIR *dir = opendir(folder);
-    if (!dir) return;
-    for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
-        const size_t length = strlen(entry->d_name);
-        if (strncmp(entry->d_name, "step-", 5) == 0 && length > sizeof end &&
-            strcmp(entry->d_name + length - (sizeof end - 1), end) == 0)
-            unlinkat(dirfd(dir), entry->d_name, 0);
-    }
-    closedir(dir);
-}
-
-enum err checkpoint_remove_later(const char *folder, int64_t steps, struct diag *d)
-{
-    for (;;) {
-        int64_t later = INT64_MAX;
-        TRY(next_newest(folder, &later, d));
-        if (later <= steps) break;
-        TRY(remove_checkpoint(folder, later, d));
-    }
-    remove_parts(folder);
+    if (checkpoint_remove_older(folder, info.steps, &why)) diag_warn(d, "%s", why.text);
     return ERR_OK;
 }
 
@@ -413,9 +343,9 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
     int damaged_ones = 0;
     for (int64_t steps = INT64_MAX;; damaged_ones++) {
         struct diag why = {.code = ERR_OK};
-        TRY(next_newest(folder, &steps, d));
+        TRY(checkpoint_next(folder, &steps, d));
         if (steps < 0) break;
-        name_of(name, steps);
+        checkpoint_name(name, steps);
         TRY(path_join(path, folder, name, d));
         const enum err e = checkpoint_read(m, path, &why);
         if (e == ERR_OK) return ERR_OK;
@@ -582,7 +512,11 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
 #undef STATE
     TRY(load_block(m, "account", OWNER_STATE, ITEM_DOUBLE, ACCOUNT_NUMBERS, &st->account, d));
     TRY(load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d));
-    return load_open(m, s, d);
+    TRY(load_open(m, s, d));
+    /* The probes of a fork may be others: they begin anew. */
+    if (fork || s->carried.n == 0) return ERR_OK;
+    return load_block(m, carried_name, OWNER_STATE, ITEM_DOUBLE, (size_t)s->carried.n,
+                      s->carried.value, d);
 }
 
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)

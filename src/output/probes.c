@@ -80,6 +80,7 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
 {
     const int body = pr->body;
     const struct particles *p = &s->kind[KIND_SOLID];
+    const char *const name = s->scene->solid[body].common.name;
     const double h = scene_solid_h(s->scene, body), reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
     if (!(distance < h))
@@ -87,7 +88,7 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
             d, ERR_INPUT,
             "line %d: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
             "[solid %s]; at most h = %.3g m is possible",
-            sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance, sp->body, h);
+            sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
     pr->n = find_near(p, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);
@@ -107,7 +108,45 @@ static int quantity_columns(int quantity)
 /* Whether a quantity depends on fields that only simulation_refresh updates. */
 static bool needs_refresh(int quantity)
 {
-    return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY;
+    return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY ||
+           quantity == PROBE_STRAIN || quantity == PROBE_ACCELERATION || quantity == PROBE_REACTION;
+}
+
+static struct probe_body find_body(const struct scene *s, const char *name)
+{
+    const int solid = scene_find_solid(s, name);
+    if (solid >= 0) return (struct probe_body){KIND_SOLID, solid};
+    return (struct probe_body){KIND_WALL, scene_find_wall(s, name)};
+}
+
+/* The bodies of a force. */
+static enum err find_bodies(struct probe *pr, const struct scene *s, const char *list,
+                            struct arena *a, struct diag *d)
+{
+    char name[SCENE_TEXT];
+    scene_listed(list, 0, name);
+    const struct probe_body first = find_body(s, name);
+    pr->kind = first.kind;
+    pr->body = first.body;
+    while (scene_listed(list, 1 + pr->n_more, name)) pr->n_more++;
+    pr->more = arena_alloc(a, (size_t)pr->n_more, sizeof *pr->more, "probe", d);
+    if (!pr->more) return ERR_MEMORY;
+    for (int k = 0; k < pr->n_more && scene_listed(list, 1 + k, name); k++)
+        pr->more[k] = find_body(s, name);
+    return ERR_OK;
+}
+
+/* The body that carries a point of the fluid. */
+static enum err ride(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
+                     struct arena *a, struct diag *d)
+{
+    const struct probe_body on = find_body(s->scene, sp->on);
+    if (on.kind == KIND_WALL) {
+        pr->motion = scene_find_motion(s->scene, s->scene->wall[on.body].motion);
+        return ERR_OK;
+    }
+    pr->body = on.body;
+    return attach(pr, sp, s, a, d);
 }
 
 static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
@@ -119,13 +158,31 @@ static enum err create_probe(struct probe *pr, const struct scene_probe *sp,
                          .columns = quantity_columns(sp->quantity)};
     memcpy(pr->point, sp->point, sizeof pr->point);
     memcpy(pr->to, sp->to, sizeof pr->to);
+    pr->average = sp->average;
+    pr->motion = -1;
     pr->kind = KIND_SOLID;
     pr->body = scene_find_solid(s->scene, sp->body);
-    if (pr->target == TARGET_BODY && pr->body < 0) {
-        pr->kind = KIND_WALL;
-        pr->body = scene_find_wall(s->scene, sp->body);
-    }
+    if (pr->target == TARGET_BODY) return find_bodies(pr, s->scene, sp->body, a, d);
+    if (*sp->on) return ride(pr, sp, s, a, d);
     return pr->target == TARGET_SOLID_POINT ? attach(pr, sp, s, a, d) : ERR_OK;
+}
+
+static enum err create_means(struct probes *p, struct simulation *s, struct arena *a,
+                             struct diag *d)
+{
+    int n = 0;
+    for (int k = 0; k < p->n; k++) n += p->probe[k].average > 0;
+    if (n == 0) return ERR_OK;
+    struct probe_mean *mean = arena_alloc(a, (size_t)n, sizeof *mean, "means of probes", d);
+    if (!mean) return ERR_MEMORY;
+    s->carried.n = n * (int64_t)(sizeof *mean / sizeof(double));
+    s->carried.value = &mean->row;
+    for (int k = 0; k < p->n; k++) {
+        if (!(p->probe[k].average > 0)) continue;
+        p->probe[k].mean = mean;
+        *mean++ = (struct probe_mean){.row = -1};
+    }
+    return ERR_OK;
 }
 
 /* --- files --- */
@@ -167,8 +224,7 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
     return ERR_OK;
 }
 
-enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
-                       struct diag *d)
+enum err probes_create(struct probes *p, struct simulation *s, struct arena *a, struct diag *d)
 {
     const struct scene *scene = s->scene;
     *p = (struct probes){.n = scene->n_probe};
@@ -176,6 +232,7 @@ enum err probes_create(struct probes *p, const struct simulation *s, struct aren
     p->file = arena_alloc(a, (size_t)p->n + 1, sizeof *p->file, "probes", d);
     if (!p->probe || !p->file) return ERR_MEMORY;
     for (int k = 0; k < p->n; k++) TRY(create_probe(&p->probe[k], &scene->probe[k], s, a, d));
+    TRY(create_means(p, s, a, d));
     TRY(create_file(p, scene, -1, a, d));
     for (int k = 0; k < p->n; k++)
         if (scene->probe[k].interval > 0) TRY(create_file(p, scene, k, a, d));
@@ -205,16 +262,81 @@ static void stress(const struct probe *pr, const struct simulation *s, double ou
     out[4] = solid_von_mises(mean);
 }
 
+static void strain(const struct probe *pr, const struct simulation *s, double out[3])
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    out[0] = out[1] = out[2] = 0;
+    for (int k = 0; k < pr->n; k++) {
+        const int32_t i = pr->particle[k];
+        const double xx = p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = p->Uyy[i];
+        out[0] += pr->weight[k] * (xx + 0.5 * (xx * xx + yx * yx));
+        out[1] += pr->weight[k] * (yy + 0.5 * (xy * xy + yy * yy));
+        out[2] += pr->weight[k] * 0.5 * (xy + yx + xx * xy + yx * yy);
+    }
+}
+
+/* Adds the forces fx, fy on the particles of a body, and their moment about the probe's point. */
+static void add_forces(const struct probe *pr, const struct particles *p, int body,
+                       const double *fx, const double *fy, double out[3])
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != body) continue;
+        out[0] += fx[i];
+        out[1] += fy[i];
+        out[2] += (p->x[i] - pr->point[0]) * fy[i] - (p->y[i] - pr->point[1]) * fx[i];
+    }
+}
+
 static void force(const struct probe *pr, const struct simulation *s, double out[3])
 {
-    const struct particles *const p = &s->kind[pr->kind];
+    const struct particles *p = &s->kind[pr->kind];
     out[0] = out[1] = out[2] = 0;
+    add_forces(pr, p, pr->body, p->fx, p->fy, out);
+    for (int k = 0; k < pr->n_more; k++) {
+        p = &s->kind[pr->more[k].kind];
+        add_forces(pr, p, pr->more[k].body, p->fx, p->fy, out);
+    }
+}
+
+static void acceleration(const struct probe *pr, struct simulation *s, double out[2])
+{
+    const struct solid_forces_now now =
+        solid_forces_now(&s->solid, &s->kind[KIND_SOLID], s->state.time);
+    weighted_sum(pr, now.ax, now.ay, out);
+}
+
+static void reaction(const struct probe *pr, struct simulation *s, double out[3])
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const struct solid_forces_now now = solid_forces_now(&s->solid, p, s->state.time);
+    out[0] = out[1] = out[2] = 0;
+    add_forces(pr, p, pr->body, now.clamp_x, now.clamp_y, out);
+}
+
+/* T-75: the particles of a body have equal masses. */
+static void pose(const struct probe *pr, const struct simulation *s, double out[3])
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    double X = 0, Y = 0, ux = 0, uy = 0, across = 0, along = 0, n = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] != pr->body) continue;
-        out[0] += p->fx[i];
-        out[1] += p->fy[i];
-        out[2] += (p->x[i] - pr->point[0]) * p->fy[i] - (p->y[i] - pr->point[1]) * p->fx[i];
+        n++;
+        X += p->X[i];
+        Y += p->Y[i];
+        ux += p->ux[i];
+        uy += p->uy[i];
     }
+    X /= n, Y /= n, ux /= n, uy /= n;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->body[i] != pr->body) continue;
+        const double a = p->X[i] - X, b = p->Y[i] - Y;
+        const double x = a + (p->ux[i] - ux), y = b + (p->uy[i] - uy);
+        across += a * y - b * x;
+        along += a * x + b * y;
+    }
+    out[0] = X + ux;
+    out[1] = Y + uy;
+    out[2] = atan2(across, along);
 }
 
 static void energy(const struct probe *pr, const struct simulation *s, double out[3])
@@ -227,33 +349,118 @@ static void energy(const struct probe *pr, const struct simulation *s, double ou
     solid_energy(&s->solid, p, pr->body, &out[1], &out[2], &det);
 }
 
+/* Where a point of the fluid is now. */
+static void place(const struct probe *pr, const struct simulation *s, double at[2])
+{
+    memcpy(at, pr->point, sizeof pr->point);
+    if (pr->motion >= 0) {
+        const struct motion_state m = motion_at(s->scene, pr->motion, s->state.time);
+        memcpy(at, motion_of_point(&m, pr->point[0], pr->point[1]).x, sizeof pr->point);
+    } else if (pr->n > 0) {
+        const struct particles *const p = &s->kind[KIND_SOLID];
+        double u[2];
+        weighted_sum(pr, p->ux, p->uy, u);
+        at[0] += u[0];
+        at[1] += u[1];
+    }
+}
+
 static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
 {
-    const struct sample at = simulation_sample(s, pr->point[0], pr->point[1]);
+    double x[2];
+    place(pr, s, x);
+    const struct sample at = simulation_sample(s, x[0], x[1]);
     out[0] = at.vx;
     out[1] = at.vy;
 }
 
-static void values(const struct probe *pr, const struct simulation *s, double *row)
+static void velocity(const struct probe *pr, const struct simulation *s, double out[2])
+{
+    if (pr->target == TARGET_SOLID_POINT)
+        weighted_sum(pr, s->kind[KIND_SOLID].vx, s->kind[KIND_SOLID].vy, out);
+    else
+        fluid_velocity(pr, s, out);
+}
+
+static void values(const struct probe *pr, struct simulation *s, double *row)
 {
     const struct particles *const solid = &s->kind[KIND_SOLID];
+    double at[2] = {0};
+    if (pr->target == TARGET_FLUID_POINT) place(pr, s, at);
     switch ((enum probe_quantity)pr->quantity) {
     case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
-    case PROBE_VELOCITY:
-        if (pr->target == TARGET_SOLID_POINT)
-            weighted_sum(pr, solid->vx, solid->vy, row);
-        else
-            fluid_velocity(pr, s, row);
-        break;
-    case PROBE_PRESSURE: *row = simulation_pressure_at(s, pr->point[0], pr->point[1]); break;
+    case PROBE_VELOCITY: velocity(pr, s, row); break;
+    case PROBE_PRESSURE: *row = simulation_pressure_at(s, at[0], at[1]); break;
     case PROBE_STRESS: stress(pr, s, row); break;
-    case PROBE_LEVEL: *row = simulation_level(s, pr->point[0], pr->point[1]); break;
+    case PROBE_LEVEL: *row = simulation_level(s, at[0], at[1]); break;
     case PROBE_FORCE: force(pr, s, row); break;
     case PROBE_FRONT: *row = simulation_front(s, pr->direction); break;
     case PROBE_ENERGY: energy(pr, s, row); break;
     case PROBE_FLUX: *row = simulation_flux(s, pr->point, pr->to); break;
+    case PROBE_STRAIN: strain(pr, s, row); break;
+    case PROBE_ACCELERATION: acceleration(pr, s, row); break;
+    case PROBE_POSE: pose(pr, s, row); break;
+    case PROBE_REACTION: reaction(pr, s, row); break;
     case PROBE_QUANTITIES: break;
     }
+}
+
+/* --- means in time --- */
+
+/* Number of the first row at or after the time, and where its mean begins, s. */
+static double next_row(const struct probes *p, const struct probe *pr, double time, double *begin)
+{
+    const double interval = p->file[pr->file].interval, row = ceil(time / interval - 1e-9);
+    *begin = row * interval - pr->average - 1e-9 * interval;
+    return row;
+}
+
+/* T-76: the trapezoidal rule. What lies before the first value within the mean, less than a step, has that
+ * value. */
+static void add_to_mean(const struct probe *pr, double row, double begin, double time, double dt,
+                        const double *now)
+{
+    struct probe_mean *const m = pr->mean;
+    const bool joined = m->row >= 0 && m->time >= begin;
+    if (m->row != row && joined) m->begin = m->time;
+    if (m->row != row && !joined) {
+        m->begin = m->time = max2(begin, time - dt);
+        memcpy(m->last, now, sizeof m->last);
+    }
+    if (m->row != row) memset(m->sum, 0, sizeof m->sum);
+    m->row = row;
+    for (int c = 0; c < pr->columns; c++) {
+        m->sum[c] += 0.5 * (m->last[c] + now[c]) * (time - m->time);
+        m->last[c] = now[c];
+    }
+    m->time = time;
+}
+
+void probes_follow(const struct probes *p, struct simulation *s)
+{
+    const double time = s->state.time;
+    for (int k = 0; k < p->n; k++) {
+        const struct probe *const pr = &p->probe[k];
+        double begin, now[PROBE_MAX_COLUMNS] = {0};
+        if (!pr->mean) continue;
+        const double row = next_row(p, pr, time, &begin);
+        if (time < begin || (pr->mean->row >= 0 && time <= pr->mean->time)) continue;
+        if (needs_refresh(pr->quantity)) simulation_refresh(s);
+        values(pr, s, now);
+        add_to_mean(pr, row, begin, time, s->state.dt, now);
+    }
+}
+
+/* The mean, or the value now where none has been begun. */
+static void present(const struct probe *pr, struct simulation *s, double *row)
+{
+    const struct probe_mean *const m = pr->mean;
+    if (!m || m->row < 0 || m->time != s->state.time) {
+        values(pr, s, row);
+        return;
+    }
+    for (int c = 0; c < pr->columns; c++)
+        row[c] = m->time > m->begin ? m->sum[c] / (m->time - m->begin) : m->last[c];
 }
 
 void probes_sample(const struct probes *p, struct simulation *s, int file, double *row)
@@ -262,7 +469,7 @@ void probes_sample(const struct probes *p, struct simulation *s, int file, doubl
     *row++ = s->state.time;
     for (int k = 0; k < p->n; k++) {
         if (p->probe[k].file != file) continue;
-        values(&p->probe[k], s, row);
+        present(&p->probe[k], s, row);
         row += p->probe[k].columns;
     }
 }
@@ -270,5 +477,5 @@ void probes_sample(const struct probes *p, struct simulation *s, int file, doubl
 void probes_values(const struct probes *p, struct simulation *s, int probe, double *row)
 {
     if (needs_refresh(p->probe[probe].quantity)) simulation_refresh(s);
-    values(&p->probe[probe], s, row);
+    present(&p->probe[probe], s, row);
 }

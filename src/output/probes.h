@@ -5,18 +5,36 @@
 
 #include "time/simulation.h"
 
+struct probe_body {
+    enum kind kind;
+    int body; /* index of its section */
+};
+
+/* The time mean of a probe, up to now; all numbers are double so that a checkpoint takes them as they are. */
+struct probe_mean {
+    double row;             /* number of the row that it is for; -1: none yet */
+    double begin;           /* s, of the mean */
+    double time;            /* s, of the last value */
+    double sum[5], last[5]; /* integral over time since `begin`; last values */
+};
+
 struct probe {
     int quantity; /* enum probe_quantity */
     enum probe_target target;
     int columns, file;
-    int direction;     /* enum probe_direction */
-    enum kind kind;    /* of the body */
-    int body;          /* index of its section; -1: none */
-    double point[2];   /* m, in the initial configuration */
-    double to[2];      /* m */
-    int n;             /* particles of the interpolation at a material point */
-    int32_t *particle; /* of the solid */
-    double *weight;    /* sum 1; reproduce linear fields */
+    int direction;  /* enum probe_direction */
+    enum kind kind; /* of the body */
+    int body;       /* index of its section, the first if there are several; -1: none */
+    int n_more;     /* further bodies, of a force */
+    struct probe_body *more;
+    int motion;              /* that carries the point of a probe on a wall; -1: none */
+    double point[2];         /* m, in the initial configuration */
+    double to[2];            /* m */
+    double average;          /* s; 0: none */
+    struct probe_mean *mean; /* in the simulation's `carried`; NULL: none */
+    int n;                   /* particles of the interpolation at a material point */
+    int32_t *particle;       /* of the solid */
+    double *weight;          /* sum 1; reproduce linear fields */
 };
 
 /* Probes that are sampled at the same times share one file. */
@@ -38,8 +56,11 @@ enum { PROBE_MAX_COLUMNS = 5 };
 
 /* Finds the particles and weights of each probe, and the columns of each file; the arena owns the memory.
  * ERR_INPUT: a probe is too far from its body. */
-enum err probes_create(struct probes *p, const struct simulation *s, struct arena *a,
-                       struct diag *d) SPHFSI_CHECKED;
+enum err probes_create(struct probes *p, struct simulation *s, struct arena *a, struct diag *d)
+    SPHFSI_CHECKED;
+
+/* Adds the present to the means; at the start of a run and after each step. The state stays as it is. */
+void probes_follow(const struct probes *p, struct simulation *s);
 
 /* One row of a file: the time, then the values of its probes. */
 void probes_sample(const struct probes *p, struct simulation *s, int file, double *row);

@@ -169,6 +169,7 @@ void loads_forces(struct loads *v, const struct solid *s, struct particles *p, d
             p->sy[i] += v->fy[k] * per_mass;
         }
     }
+    if (v->released) return;
     move(v, time);
     for (int64_t k = 0; k < v->n_held; k++) {
         const int32_t i = v->held[k];

@@ -18,6 +18,13 @@ void solid_stress(struct solid *s, struct particles *p);
  * velocities; zero where clamped. */
 void solid_forces(const struct solid *s, struct particles *p);
 
+/* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from what
+ * solid_stress has found. They stay in the scratch of s until that is used again; p is as it was. */
+struct solid_forces_now {
+    const double *ax, *ay, *clamp_x, *clamp_y;
+};
+struct solid_forces_now solid_forces_now(struct solid *s, struct particles *p, double time);
+
 /* n sub-steps of dt with the fluid's force and its impedance. Semi-implicit Euler (Eq. 27): kick, drift. With
  * `centred`: half drift, kick, half drift, which is second order in time. Gradients, stresses and
  * accelerations of p and the lanes are not those of the last sub-step before solid_show and solid_stress. */

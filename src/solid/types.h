@@ -240,6 +240,7 @@ struct loads {
     double *held_power;          /* [n_held] of the clamp, W/m, */
     double *held_rise;           /* and what its acceleration adds to that in a second, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
+    bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
 };
 
 /* --- parts --- */

@@ -436,7 +436,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         return ERR_OK;
     }
     const double speed2_before = s->extremes.speed2;
+    const double watch = wall_clock();
     timestep_watch_contact(s, s->state.time, 1);
+    /* As phase_add takes all seconds of contact out of the solid's. */
+    if (s->effects & FX_CONTACT) s->phase_seconds[PHASE_solid] += wall_clock() - watch;
     if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC)
         symplectic_step(s, t_limit);
     else if (s->scene->top.integrator == INTEGRATOR_VERLET)

@@ -59,6 +59,10 @@ struct simulation {
     bool evaluated;     /* rates, pressures and the fluid's force belong to the present state */
     bool crowded;       /* cells hold more than the sweeps can take: nothing is evaluated */
     bool gravity_varies; /* with time */
+    struct {
+        int64_t n;
+        double *value;
+    } carried; /* by probes from step to step (output/probes.h): checkpointed, not hashed */
     struct guard guard;
     struct push push[KIND_COUNT]; /* of fluid and solid */
 };

@@ -67,6 +67,8 @@ static const char *companion(const struct param *p)
     if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(p, "probe", "point") || is(p, "probe", "to")) return "probe more.quantity=flux";
+    if (is(p, "probe", "on")) return "probe more.quantity=pressure";
+    if (is(p, "probe", "average")) return "probe more.interval=0.01";
     if (is(p, "motion", "poly_x") || is(p, "motion", "poly_y"))
         return "motion more.kind=polynomial";
     if (is(p, "motion", "x") || is(p, "motion", "y") || is(p, "motion", "turn"))
@@ -104,7 +106,7 @@ static void example_is_accepted(const struct param *p)
     if (is(p, "outflow", "velocity") || is(p, "outflow", "speed") || is(p, "outflow", "level"))
         *strstr(text, "pressure = 0") = '#';
     if (is(p, "load", "traction")) *strstr(text, "force") = '#';
-    if (is(p, "probe", "point") || is(p, "probe", "to"))
+    if (is(p, "probe", "point") || is(p, "probe", "to") || is(p, "probe", "on"))
         memset(strstr(strstr(text, "[probe more]"), "body = post"), ' ', 11);
     diag.code = ERR_OK;
     const enum err e = scene_load_text(&scene, text, "examples.cfg", sets[1] ? 2 : 1, sets, &diag);

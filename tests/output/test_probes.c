@@ -263,6 +263,156 @@ static void walls_carry_forces_only_when_asked(void)
     TEST_ASSERT_NOT_NULL(rig.sim.kind[KIND_WALL].fx);
 }
 
+/* --- points that move, several bodies --- */
+
+/* Density that differs from place to place. */
+static void set_uneven_density(void)
+{
+    struct particles *p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 1e-2 * p->x[i] + 3e-2 * p->y[i];
+}
+
+/* The last two probes see the same. */
+static void last_two_agree(const char *what)
+{
+    double a[PROBE_MAX_COLUMNS] = {0}, b[PROBE_MAX_COLUMNS] = {0};
+    probes_values(&probes, &rig.sim, probes.n - 2, a);
+    probes_values(&probes, &rig.sim, probes.n - 1, b);
+    TEST_ASSERT_TRUE(a[0] != 0);
+    for (int c = 0; c < PROBE_MAX_COLUMNS; c++) assert_near(1e-12 * fabs(a[0]), a[c], b[c], what);
+}
+
+static void a_point_rides_on_a_solid(void)
+{
+    open_with("[probe F]\nquantity = pressure\npoint = 0.08, 0.06\n"
+              "[probe R]\nquantity = pressure\non = gate\npoint = 0.1, 0.05\n",
+              NULL);
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) p->ux[i] = -0.2 * p->X[i], p->uy[i] = 0.2 * p->Y[i];
+    set_uneven_density();
+    last_two_agree("pressure at a point of a stretched solid");
+}
+
+static void a_point_rides_on_a_wall(void)
+{
+    static const int quantity[] = {PROBE_PRESSURE, PROBE_LEVEL, PROBE_VELOCITY};
+    for (size_t k = 0; k < COUNT_OF(quantity); k++) {
+        open_with("[wall flap]\nshape = box 0.3, 0, 0.33, 0.1\nmotion = swing\n"
+                  "[motion swing]\nkind = rotation\nangle = 1.5707963267948966\n"
+                  "centre = 0.1, 0\n"
+                  "[probe F]\nquantity = pressure\npoint = 0.06, 0.03\n"
+                  "[probe R]\nquantity = pressure\non = flap\npoint = 0.13, 0.04\n",
+                  NULL);
+        probes.probe[probes.n - 1].quantity = probes.probe[probes.n - 2].quantity = quantity[k];
+        set_flow(2, -0.5);
+        set_uneven_density();
+        rig.sim.state.time = 1; /* a quarter turn */
+        last_two_agree("at a point of a turned wall");
+        tearDown();
+    }
+}
+
+static void force_on_several_bodies(void)
+{
+    open_with("[probe T]\nquantity = force\nbody = tank\npoint = 0.1, 0\n"
+              "[probe G]\nquantity = force\nbody = gate\npoint = 0.1, 0\n"
+              "[probe B]\nquantity = force\nbody = gate , tank\npoint = 0.1, 0\n",
+              NULL);
+    double one[3], two[3], both[3];
+    probes_values(&probes, &rig.sim, probes.n - 3, one);
+    probes_values(&probes, &rig.sim, probes.n - 2, two);
+    probes_values(&probes, &rig.sim, probes.n - 1, both);
+    for (int c = 0; c < 3; c++) {
+        TEST_ASSERT_TRUE(one[c] != 0 && two[c] != 0);
+        assert_near(1e-10, one[c] + two[c], both[c], "sum of both");
+    }
+}
+
+/* --- strain, pose, acceleration, reaction --- */
+
+/* Turns the gate about the origin by an angle after stretching it along x by a share, and shifts it. */
+static void set_pose(double angle, double e, const double shift[2])
+{
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    const double c = cos(angle), s = sin(angle);
+    for (int64_t i = 0; i < p->n; i++) {
+        const double x = (1 + e) * p->X[i], y = p->Y[i];
+        p->ux[i] = c * x - s * y + shift[0] - p->X[i];
+        p->uy[i] = s * x + c * y + shift[1] - p->Y[i];
+    }
+}
+
+static void strain_of_a_turned_body(void)
+{
+    static const double shift[2] = {0.01, 0.02};
+    open_with("[probe E]\nquantity = strain\nbody = gate\npoint = 0.13, 0\n", NULL);
+    set_pose(0.7, 0.01, shift);
+    assert_near(1e-10, 0.01 + 0.5e-4, last_values()[0], "Exx");
+    assert_near(1e-10, 0, last_values()[1], "Eyy");
+    assert_near(1e-10, 0, last_values()[2], "Exy");
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) p->ux[i] = 0.02 * p->Y[i], p->uy[i] = 0;
+    assert_near(1e-10, 0.01, last_values()[2], "Exy of a shear");
+    assert_near(1e-10, 0.5 * 4e-4, last_values()[1], "Eyy of a shear");
+}
+
+static void pose_of_a_turned_body(void)
+{
+    static const double shift[2] = {-0.3, 0.05};
+    open_with("[solid post]\nlike = gate\nshape = box 0.3, 0, 0.33, 0.1\n"
+              "[probe Q]\nquantity = pose\nbody = gate\n",
+              NULL);
+    set_pose(-2.5, 0, shift);
+    const double c = cos(-2.5), s = sin(-2.5), x = 0.115, y = 0.075;
+    assert_near(1e-12, c * x - s * y + shift[0], last_values()[0], "x");
+    assert_near(1e-12, s * x + c * y + shift[1], last_values()[1], "y");
+    assert_near(1e-12, -2.5, last_values()[2], "angle");
+}
+
+static void acceleration_of_a_falling_body(void)
+{
+    open_with("[solid stone]\nlike = gate\nshape = box 0.3, 0.2, 0.33, 0.3\n"
+              "[probe A]\nquantity = acceleration\nbody = stone\npoint = 0.31, 0.25\n"
+              "[probe C]\nquantity = acceleration\nbody = gate\npoint = 0.115, 0.145\n",
+              NULL);
+    double fall[2], held[2];
+    probes_values(&probes, &rig.sim, probes.n - 2, fall);
+    probes_values(&probes, &rig.sim, probes.n - 1, held);
+    assert_near(1e-12, 0, fall[0], "ax");
+    assert_near(1e-12, -9.81, fall[1], "ay");
+    assert_near(1e-12, 0, held[0], "ax in the clamp");
+    assert_near(1e-12, 0, held[1], "ay in the clamp");
+}
+
+/* Newton's second law of the whole body: the reaction is what fluid, gravity and load leave. */
+static void reaction_balances(const char *set)
+{
+    open_with("[motion shake]\nkind = sine\namplitude = 0.001, 0.0005\nperiod = 0.05\nphase = 1\n"
+              "[load pull]\nbody = gate\nshape = box 0.1, 0, 0.13, 0.15\nforce = 3, 1\n"
+              "[contact none]\nenabled = off\n[probe R]\nquantity = reaction\nbody = gate\n",
+              set);
+    rig_steps(&rig, 40, 1);
+    const uint64_t before = simulation_hash(&rig.sim);
+    double got[3];
+    memcpy(got, last_values(), sizeof got);
+    TEST_ASSERT_TRUE(before == simulation_hash(&rig.sim));
+    struct particles *p = &rig.sim.kind[KIND_SOLID];
+    const double mass = rig.sim.solid.body[0].mass;
+    const struct solid_forces_now now = solid_forces_now(&rig.sim.solid, p, rig.sim.state.time);
+    double x = -3, y = -1;
+    for (int64_t i = 0; i < p->n; i++) {
+        x += mass * now.ax[i] - p->fx[i];
+        y += mass * (now.ay[i] + 9.81) - p->fy[i];
+    }
+    assert_near(1e-6 * fabs(x), x, got[0], "fx");
+    assert_near(1e-6 * fabs(y), y, got[1], "fy");
+    TEST_ASSERT_TRUE(fabs(got[0]) > 1 && fabs(got[1]) > 1 && got[2] != 0);
+}
+
+static void reaction_of_a_clamp_at_rest(void) { reaction_balances(NULL); }
+
+static void reaction_of_a_moving_clamp(void) { reaction_balances("gate.clamp_motion=shake"); }
+
 /* --- columns and files --- */
 
 static void columns_are_named(void)
@@ -329,6 +479,14 @@ int main(void)
     RUN_TEST(forces_balance);
     RUN_TEST(moment_about_a_point);
     RUN_TEST(walls_carry_forces_only_when_asked);
+    RUN_TEST(a_point_rides_on_a_solid);
+    RUN_TEST(a_point_rides_on_a_wall);
+    RUN_TEST(force_on_several_bodies);
+    RUN_TEST(strain_of_a_turned_body);
+    RUN_TEST(pose_of_a_turned_body);
+    RUN_TEST(acceleration_of_a_falling_body);
+    RUN_TEST(reaction_of_a_clamp_at_rest);
+    RUN_TEST(reaction_of_a_moving_clamp);
     RUN_TEST(columns_are_named);
     RUN_TEST(an_interval_of_its_own_makes_a_file);
     RUN_TEST(every_quantity_has_its_name);

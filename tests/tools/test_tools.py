@@ -158,6 +158,37 @@ def test_m1(tmp, good, halted):
     assert status == 1 and "example" in out, out
 
 
+def test_probes(tmp):
+    """All columns, those of one unit in one panel, displacements first, axes fitted to the data."""
+    run = write_run(tmp / "panels")
+    t = np.linspace(0.1, END, 101)
+    rows = np.stack([t, 1e3 * t, -t, 50 + t, 3 + 0 * t], axis=1)
+    np.savetxt(run / "probes_load.csv", rows, delimiter=",", comments="",
+               header="time_s,load_fx_N_per_m,load_fy_N_per_m,P_p_Pa,wave_front_m")
+    out = draws(run / "probes.png", "plot_probes", run)
+    assert "lab_y" in out, out
+    draws(tmp / "two.png", "plot_probes", run, good_copy(tmp), "--column", "M1_dx_m", "--out",
+          tmp / "two.png")
+    refuses("no column", "plot_probes", run, "--column", "M2_dx_m")
+    from sphfsi import draw_probes
+    from sphfsi.files import make_runs
+    runs = make_runs([run])
+    tables = [r.curves() for r in runs]
+    columns = draw_probes.all_columns(runs, tables, [])
+    assert draw_probes.panels_of(["load_fx_N_per_m", *columns])[0] == ["M1_dx_m", "M1_dy_m"], columns
+    figure, units = draw_probes.draw_panels(columns, draw_probes.curves_of(runs, tables, columns), [])
+    labels = [axes.get_ylabel() for axes in figure.axes]
+    assert labels == ["displacement (mm)", "P pressure (Pa)", "wave front (m)", "force (N/m)"], labels
+    assert units["M1_dy_m"] == (1e3, "mm") and units["load_fx_N_per_m"] == (1, "N/m"), units
+    low, high = figure.axes[1].get_ylim()
+    assert 50 < low < 50.2 and 50.3 < high < 50.5, (low, high)
+    assert figure.axes[1].get_xlim() == (0.1, END), figure.axes[1].get_xlim()
+
+
+def good_copy(tmp):
+    return write_run(tmp / "other")
+
+
 def test_fields(tmp, good, halted):
     out = draws(good / "fields.png", "plot_fields", good)
     assert out.count("step") == 4, out
@@ -247,6 +278,7 @@ def main():
         test_m1(tmp, good, halted)
         test_fields(tmp, good, halted)
         test_animate(tmp, good, halted)
+        test_probes(tmp)
         test_rates(tmp)
         test_ledger(tmp, good)
     print("the tools draw what they are given and refuse what is broken")

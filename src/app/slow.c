@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+#include "app/slow.h"
+
+#include "case/params.h"
+#include "time/timestep.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { PLACE_TEXT = LOCATION_TEXT + 16 };
+
+/* "FILE:LINE: " of a key; nothing where it is not given. */
+static void place_of(const struct scene *s, enum section_id section, int index, const char *key,
+                     char place[PLACE_TEXT])
+{
+    char at[LOCATION_TEXT];
+    const struct scene_given *const given = scene_given(s, section, index, key);
+    place[0] = '\0';
+    if (!given) return;
+    scene_location(s, given->line, at);
+    snprintf(place, PLACE_TEXT, "%s: ", at);
+}
+
+static void warn_of_interval(const struct simulation *s, enum section_id section, int index,
+                             const char *key, double interval, double step, struct diag *d)
+{
+    char place[PLACE_TEXT];
+    if (!(interval > 0 && interval < 0.5 * step)) return;
+    place_of(s->scene, section, index, key, place);
+    diag_warn(
+        d,
+        "%s%s = %g s is shorter than the time step of %.3g s: every output ends a step, so the "
+        "run takes about %.3g times as many; a longer interval spares them",
+        place, key, interval, step, step / interval);
+}
+
+static void warn_of_damping(const struct simulation *s, struct diag *d)
+{
+    char place[PLACE_TEXT];
+    const double free = solid_step_of(square(s->solid.omega_max), 0);
+    if (s->kind[KIND_SOLID].n == 0 || !(s->solid.stable_step < 0.5 * free)) return;
+    for (int k = 0; k < s->scene->n_solid; k++) {
+        const struct scene_solid *const body = &s->scene->solid[k];
+        if (!(body->damping_time > 0)) continue;
+        place_of(s->scene, SECTION_solid, k, "damping_time", place);
+        diag_warn(
+            d,
+            "%s[solid %s] damping_time = %g s: the solid's damping makes its steps %.3g times "
+            "shorter; a shorter damping_time lengthens them",
+            place, body->common.name, body->damping_time, free / s->solid.stable_step);
+    }
+}
+
+static void warn_of_bound(const struct simulation *s, struct diag *d)
+{
+    static const struct {
+        enum bound bound;
+        enum section_id section;
+        const char *key;
+    } owner[] = {{BOUND_diffusion, SECTION_fluid, "density_diffusion"},
+                 {BOUND_artificial, SECTION_fluid, "artificial_viscosity"},
+                 {BOUND_repulsion, SECTION_fluid, "wall_repulsion"},
+                 {BOUND_viscous, SECTION_fluid, "laminar_viscosity"},
+                 {BOUND_fixed, SECTION_numerics, "fixed_step"}};
+    char place[PLACE_TEXT];
+    const double acoustic = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    for (size_t k = 0; k < COUNT_OF(owner); k++) {
+        const double bound = s->dt_bound[owner[k].bound];
+        if (!(bound > 0 && bound < 0.1 * acoustic)) continue;
+        place_of(s->scene, owner[k].section, 0, owner[k].key, place);
+        diag_warn(
+            d,
+            "%s%s holds the time step at %.3g s, %.3g times below what sound allows, and the run "
+            "takes as many times longer",
+            place, owner[k].key, bound, acoustic / bound);
+    }
+}
+
+void slow_warn(const struct simulation *s, struct diag *d)
+{
+    const struct scene *const c = s->scene;
+    const bool fluid = s->effects & FX_FLUID;
+    const double step = fluid ? timestep_fluid_limit(s) : s->dt_solid;
+    const struct scene_output *const out = &c->output;
+    if (c->n_probe > 0)
+        warn_of_interval(s, SECTION_output, 0, "probe_interval", out->probe_interval, step, d);
+    warn_of_interval(s, SECTION_output, 0, "ledger_interval", out->ledger_interval, step, d);
+    warn_of_interval(s, SECTION_output, 0, "snapshot_interval", out->snapshot_interval, step, d);
+    for (int k = 0; k < c->n_probe; k++)
+        warn_of_interval(s, SECTION_probe, k, "interval", c->probe[k].interval, step, d);
+    warn_of_damping(s, d);
+    if (fluid) warn_of_bound(s, d);
+}
