@@ -244,7 +244,7 @@ static void bench_output(struct bench *b, struct sim *x, int threads)
 {
     char folder[] = "bench-XXXXXX", kept[PATH_BYTES] = "";
     struct snapshots snapshots = {.folder = ""};
-    struct image image = {NULL, 0, 0};
+    struct image image = {0};
     if (!mkdtemp(folder)) {
         perror(folder);
         return;

@@ -95,7 +95,8 @@ struct sphfsi_options {
     const char *case_text;   /**< the case itself, instead of a file */
     const char *const *sets; /**< "key=value" or "section.key=value", replace values of the case */
     int n_sets;
-    int threads;  /**< 0: as many as OpenMP offers to the calling thread */
+    int threads;  /**< 0: OMP_NUM_THREADS, else as many as are useful, idle and offered by OpenMP;
+                       more than are useful, or than 4 a core, are reduced with a warning */
     double until; /**< s; simulated time to end at instead of the case's end_time; 0: that */
 
     /* Of sphfsi_run only. */

@@ -156,7 +156,7 @@ class Case:
 
     def simulation(self, *, threads: int = 0) -> Simulation:
         """A simulation in memory at time zero, to be stepped; no file is written. `threads`: 0 for as many as
-        OpenMP offers."""
+        are useful and idle."""
         return Simulation(self._call(threads=threads))
 
     def folder(self, *, fork: bool = False) -> Path:

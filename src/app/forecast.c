@@ -248,12 +248,11 @@ enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *t
                        struct diag *d)
 {
     struct sphfsi_options one = *o;
-    if (o->threads > 0 && o->threads <= 4096) thread_use(o->threads);
-    *threads = thread_count();
+    const int offered = thread_count();
     if (o->threads >= 0 && o->threads <= 4096) one.threads = 1;
-    const enum err e = session_open(x, &one, d);
-    if (e) thread_use(*threads);
-    return e;
+    TRY(session_open(x, &one, d));
+    *threads = session_threads(&x->scene, o, offered, d);
+    return ERR_OK;
 }
 
 void forecast_close(struct session *x, int threads)

@@ -12,7 +12,7 @@
 static const char usage[] =
     "usage: sphfsi CASE.cfg [options]\n"
     "  --out DIR         folder of the results (runs/<case name>)\n"
-    "  --threads N       threads to use (all)\n"
+    "  --threads N       threads to use (as many as are useful and idle)\n"
     "  --until TIME      simulated time in s to end at (end_time of the case)\n"
     "  --set KEY=VALUE   replace a value of the case: dp=1mm, \"solid gate.young=12MPa\"; "
     "repeatable\n"

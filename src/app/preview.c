@@ -318,11 +318,15 @@ static int describe(const struct scene *s, enum kind kind, int body, char *text,
     for (int64_t i = 0; i < p->n; i++) clamped += p->body[i] == body && p->clamped && p->clamped[i];
     const int written =
         snprintf(rest, left, "; %g kg/m^3, E %.4g Pa, nu %g; ", m->density, m->young, m->poisson);
-    char clamps[48] = "nothing clamped";
+    char clamps[48] = "", bond[sizeof m->joined + 16] = "";
     if (clamped) snprintf(clamps, sizeof clamps, "%lld clamped (hatched)", (long long)clamped);
+    if (m->joined[0]) snprintf(bond, sizeof bond, "bonded to %s", m->joined);
+    const char *const held = clamped || m->joined[0] ? "" : "nothing clamped";
     const double off = (double)n * square(l->dp) / l->area - 1;
-    if (fabs(off) < 5e-5) return snprintf(rest + written, left - (size_t)written, "%s", clamps);
-    return snprintf(rest + written, left - (size_t)written, "%s; area %+.2f %%", clamps, 100 * off);
+    char area[32] = "";
+    if (fabs(off) >= 5e-5) snprintf(area, sizeof area, "; area %+.2f %%", 100 * off);
+    return snprintf(rest + written, left - (size_t)written, "%s%s%s%s%s", held, clamps,
+                    clamped && m->joined[0] ? ", " : "", bond, area);
 }
 
 static void describe_probe(const struct scene_probe *p, char *text, size_t size)

@@ -2,6 +2,7 @@
 #include "app/refine.h"
 
 #include "base/files.h"
+#include "base/threads.h"
 #include "output/json.h"
 #include "app/run.h"
 #include "app/session.h"
@@ -175,7 +176,9 @@ static enum err run_one(struct refinement *x, int k)
                 one.out);
     one.options.restart = has(one.out, "summary.json") || has_checkpoint(one.out);
     if (!one.options.restart) remove_partial_run(one.out);
+    const int offered = thread_count();
     const enum err e = is_done(x, &one) ? ERR_OK : run_case(&one.options, x->diag);
+    thread_use(offered); /* the next run has more particles */
     free(one.sets);
     return e;
 }

@@ -130,6 +130,7 @@ static enum err write_summary(struct run *r, const char *exit_reason, const char
 static enum err capture(struct run *r, struct diag *d)
 {
     const double begin = wall_clock();
+    r->image.snapshots_missed = r->record.snapshots_missed;
     TRY(checkpoint_capture(&r->image, r->s, r->case_text, SPHFSI_VERSION, d));
     r->wall_image = wall_clock();
     r->image_cost = r->wall_image - begin;
@@ -430,11 +431,8 @@ static enum err load_checkpoint(struct run *r)
 {
     const enum err missing = find_checkpoint(r);
     if (missing == ERR_MEMORY) return missing;
-    if (missing) {
-        /* A missing or damaged checkpoint is wrong input: nothing was started. */
-        r->diag->code = ERR_INPUT;
-        return ERR_INPUT;
-    }
+    /* A missing or damaged checkpoint is wrong input: nothing was started. */
+    if (missing) return r->diag->code = ERR_INPUT;
     const struct image_info info = checkpoint_info(&r->image);
     const bool fork = r->options->fork != NULL;
     const char *what = fork ? "fork" : "restart";
@@ -443,6 +441,7 @@ static enum err load_checkpoint(struct run *r)
     if (strcmp(info.version, SPHFSI_VERSION) != 0)
         diag_warn(r->diag, "%s was written by version %s, but this is %s: the bits may differ",
                   r->restarted_from, info.version, SPHFSI_VERSION);
+    if (!fork) TRY(checkpoint_missed(&r->image, &r->record.snapshots_missed, r->diag));
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
              : checkpoint_apply(&r->image, r->s, r->diag));
     if (r->s->state.time > r->session.scene.top.end_time)

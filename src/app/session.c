@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/session.h"
+#include "base/threads.h"
 #include "geometry/load.h"
 
 #include <math.h>
@@ -41,14 +42,40 @@ double session_time(double time)
     return strtod(text, NULL);
 }
 
-static enum err check_interval(const struct scene *scene, const char *key, double interval,
-                               struct diag *d)
+/* No run has more steps, nor a file more rows. */
+static const double most_counts = 1e10;
+
+/* Refuses a time between two of `what` of which there would be too many; 0: none is set. */
+static enum err check_count(const struct scene *scene, const char *key, double between,
+                            const char *what, double until, struct diag *d)
 {
-    const double least = 1e-9 * scene->top.end_time;
-    if (interval == 0 || interval >= least) return ERR_OK;
+    const double end = max2(scene->top.end_time, until), n = end / between;
+    if (between == 0 || n <= most_counts) return ERR_OK;
     return diag_fail(d, ERR_INPUT,
-                     "%s: %s = %g s is less than %g s, 1e-9 of end_time; choose a longer one",
-                     scene->path, key, interval, least);
+                     "%s: %s = %g s means %.3g %s until %g s, and at most %g are possible; choose "
+                     "at least %.3g s",
+                     scene->path, key, between, n, what, end, most_counts, end / most_counts);
+}
+
+static enum err check_counts(const struct scene *scene, double until, struct diag *d)
+{
+    const struct scene_output *const out = &scene->output;
+    const struct {
+        const char *key;
+        double between;
+        const char *what;
+    } item[] = {
+        {"[numerics] fixed_step", scene->numerics.fixed_step, "steps"},
+        {"[output] probe_interval", out->probe_interval, "rows"},
+        {"[output] ledger_interval", out->ledger_interval, "rows"},
+        {"[output] snapshot_interval", out->snapshot_interval, "snapshots"},
+        {"[output] checkpoint_interval", out->checkpoint_interval, "checkpoints"},
+    };
+    for (size_t k = 0; k < COUNT_OF(item); k++)
+        TRY(check_count(scene, item[k].key, item[k].between, item[k].what, until, d));
+    for (int k = 0; k < scene->n_probe; k++)
+        TRY(check_count(scene, "[probe] interval", scene->probe[k].interval, "rows", until, d));
+    return ERR_OK;
 }
 
 /* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes the same
@@ -60,13 +87,8 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
     if (out->probe_interval == 0) out->probe_interval = end / 1000;
     if (out->ledger_interval == 0) out->ledger_interval = end / 1000;
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
+    TRY(check_counts(scene, until, d));
     scene->top.end_time = session_time(until > 0 ? until : end);
-    TRY(check_interval(scene, "[output] probe_interval", out->probe_interval, d));
-    TRY(check_interval(scene, "[output] ledger_interval", out->ledger_interval, d));
-    TRY(check_interval(scene, "[output] snapshot_interval", out->snapshot_interval, d));
-    TRY(check_interval(scene, "[output] checkpoint_interval", out->checkpoint_interval, d));
-    for (int k = 0; k < scene->n_probe; k++)
-        TRY(check_interval(scene, "[probe] interval", scene->probe[k].interval, d));
     return ERR_OK;
 }
 
@@ -76,8 +98,8 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
         return diag_fail(d, ERR_INPUT, "options: set case_path or case_text");
     if (o->threads < 0 || o->threads > 4096)
         return diag_fail(d, ERR_INPUT,
-                         "threads = %d: from 1 to 4096 are possible, or 0 for the number that "
-                         "OpenMP chooses",
+                         "threads = %d: from 1 to 4096 are possible, or 0 for as many as are "
+                         "useful",
                          o->threads);
     if (!(o->until >= 0 && o->until <= 1e9))
         return diag_fail(d, ERR_INPUT, "until = %g: more than 0 and up to 1e9 seconds are possible",
@@ -85,10 +107,49 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
     return ERR_OK;
 }
 
+/* How many threads were asked for, and by what name; 0: none, as many as are useful. */
+static int threads_asked(const struct sphfsi_options *o, int offered, const char **name)
+{
+    const char *const variable = getenv("OMP_NUM_THREADS");
+    *name = o->threads > 0 ? "threads" : "OMP_NUM_THREADS";
+    return o->threads > 0 ? o->threads : variable && *variable ? offered : 0;
+}
+
+static int threads_by_default(int64_t n, int offered, const struct sphfsi_options *o)
+{
+    const int useful = thread_useful(n), most = useful < offered ? useful : offered;
+    if (most == 1) return 1;
+    const int idle = thread_idle_cores();
+    if (idle >= most) return most;
+    session_say(
+        o,
+        "the machine is busy: %d of %d cores idle, so the run takes %d thread%s; to take %d "
+        "all the same: --threads %d",
+        idle, thread_cores(), idle, idle == 1 ? "" : "s", most, most);
+    return idle;
+}
+
+int session_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
+                    struct diag *d)
+{
+    const char *name;
+    const int64_t n = scene->points[KIND_FLUID].n + scene->points[KIND_SOLID].n;
+    const int asked = threads_asked(o, offered, &name), limit = thread_limit(n);
+    if (asked == 0) return threads_by_default(n, offered < limit ? offered : limit, o);
+    if (asked <= limit) return asked;
+    diag_warn(d,
+              "%s = %d is more than %lld particles on %d cores can use: there are %d threads; give "
+              "that number or fewer",
+              name, asked, (long long)n, thread_cores(), limit);
+    return limit;
+}
+
 enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
     TRY(check_options(o, d));
-    if (o->threads > 0) thread_use(o->threads);
+    const int most = THREADS_PER_CORE * thread_cores();
+    const int asked = o->threads > 0 ? o->threads : thread_count();
+    thread_use(asked < most ? asked : most);
     if (o->case_text)
         TRY(scene_load_text(&x->scene, o->case_text, o->case_path ? o->case_path : "case",
                             o->n_sets, o->sets, d));
@@ -101,7 +162,9 @@ enum err session_read(struct session *x, const struct sphfsi_options *o, struct 
 
 enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
+    const int offered = thread_count();
     TRY(session_read(x, o, d));
+    thread_use(session_threads(&x->scene, o, offered, d));
     const enum err e = simulation_create(&x->simulation, &x->scene, d);
     if (e) scene_free(&x->scene);
     return e;

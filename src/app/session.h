@@ -12,12 +12,18 @@ struct session {
     struct simulation simulation;
 };
 
-/* Reads the case, sets default intervals of [output], applies --until and the number of threads. On failure
+/* Reads the case, sets default intervals of [output], applies --until. On failure
  * nothing remains to be freed. */
 enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
-/* session_read, and the simulation at time zero. */
+/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it can use;
+ * else `offered` or fewer, as its particles and the idle cores are. A lower number than asked for is warned
+ * of, a busy machine said. */
+int session_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
+                    struct diag *d);
+
+/* session_read, the number of threads, and the simulation at time zero. */
 enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 void session_close(struct session *x);

@@ -141,12 +141,14 @@ static void drop_rivals(struct reader *r, int section)
     }
 }
 
-/* `like` copies no regions: a copy of a clamped body that has no clamp of its own moves freely. */
+/* `like` copies no regions: a copy of a clamped body that has neither a clamp of its own nor a bond moves
+ * freely. */
 static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
 {
     const struct case_section *cs = &r->sections[section];
     if (cs->id != SECTION_solid || !like) return;
     const struct scene_solid *const copy = &r->scene->solid[cs->index];
+    if (copy->joined[0]) return;
     char place[LOCATION_TEXT];
     scene_location(r->scene, cs->line, place);
     for (int k = 0; k < cs->index; k++) {

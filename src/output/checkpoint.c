@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/checkpoint.h"
 #include "output/checkpoint_files.h"
+#include "output/ranges.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -91,11 +92,12 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
 {
     size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer);
     bytes += sizeof(struct block_header) + padded(case_length);
-#define STATE(type, name, unit, meaning) bytes += sizeof(struct block_header) + sizeof(type);
+#define STATE(type, name, low, high, unit, meaning) \
+    bytes += sizeof(struct block_header) + sizeof(type);
 #include "time/state.def"
 #undef STATE
-    bytes +=
-        2 * sizeof(struct block_header) + sizeof s->state.bound_steps + sizeof s->state.account;
+    bytes += 3 * sizeof(struct block_header) + sizeof s->state.bound_steps +
+             sizeof s->state.account + sizeof(int64_t);
     bytes += 3 * sizeof(struct block_header) + sizeof s->open.next_id +
              (size_t)s->open.n * (sizeof *s->open.sum + sizeof *s->open.count);
     bytes += sizeof(struct block_header) + (size_t)s->carried.n * sizeof *s->carried.value;
@@ -109,7 +111,7 @@ static size_t image_bytes(const struct simulation *s, size_t case_length)
 static uint32_t put_state(struct image *m, const struct state *st)
 {
     uint32_t blocks = 2;
-#define STATE(type, name, unit, meaning)                            \
+#define STATE(type, name, low, high, unit, meaning)                 \
     put_block(m, #name, OWNER_STATE, item_of(#type), &st->name, 1); \
     blocks++;
 #include "time/state.def"
@@ -170,7 +172,8 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
     for (int k = 0; k < KIND_COUNT; k++) head.count[k] = s->kind[k].n;
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
-    head.blocks = 1 + put_state(m, &s->state) + put_open(m, &s->open) + put_carried(m, s) +
+    put_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, &m->snapshots_missed, 1);
+    head.blocks = 2 + put_state(m, &s->state) + put_open(m, &s->open) + put_carried(m, s) +
                   put_particles(m, s);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
@@ -419,6 +422,12 @@ static enum err load_block(const struct image *m, const char *name, unsigned own
     return ERR_OK;
 }
 
+enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct diag *d)
+{
+    TRY(load_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, 1, snapshots, d));
+    return range_check("snapshots_missed", (double)*snapshots, 0, COUNTS, d);
+}
+
 /* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the present
  * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces. */
 static void set_missing_field(struct particles *p, const struct field_info *info)
@@ -450,20 +459,6 @@ static enum err load_particles(const struct image *m, struct particles *p, enum 
         else
             TRY(load_block(m, info->name, kind, item_of(info->type), (size_t)n, data, d));
     }
-    return ERR_OK;
-}
-
-/* Numbers that serve as an index. Checksums do not protect from a file that was made wrong. */
-static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
-{
-    const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
-    const struct particles *p = &s->kind[kind];
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->body[i] < 0 || p->body[i] >= bodies[kind])
-            return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64 " belongs to section %d, but the "
-                             "case has 0 to %d",
-                             kind_names[kind], i, p->body[i], bodies[kind] - 1);
     return ERR_OK;
 }
 
@@ -501,18 +496,17 @@ static enum err load_open(const struct image *m, struct simulation *s, struct di
 enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
 {
     const struct image_info info = checkpoint_info(m);
-    for (int k = 0; k < KIND_COUNT; k++) {
+    for (int k = 0; k < KIND_COUNT; k++)
         TRY(load_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
-        TRY(check_bodies(s, (enum kind)k, d));
-    }
     struct state *const st = &s->state;
-#define STATE(type, name, unit, meaning) \
+#define STATE(type, name, low, high, unit, meaning) \
     TRY(load_block(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
 #include "time/state.def"
 #undef STATE
     TRY(load_block(m, "account", OWNER_STATE, ITEM_DOUBLE, ACCOUNT_NUMBERS, &st->account, d));
     TRY(load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d));
     TRY(load_open(m, s, d));
+    TRY(ranges_check(s, d));
     /* The probes of a fork may be others: they begin anew. */
     if (fork || s->carried.n == 0) return ERR_OK;
     return load_block(m, carried_name, OWNER_STATE, ITEM_DOUBLE, (size_t)s->carried.n,

@@ -11,6 +11,7 @@
 struct image {
     unsigned char *bytes;
     size_t size, capacity;
+    int64_t snapshots_missed; /* so far; captured beside the state */
 };
 
 enum { CHECKPOINT_VERSION_TEXT = 48 };
@@ -58,6 +59,10 @@ struct block_info {
 /* Iterates over blocks: describes the block at offset *at (0: the first one) and advances *at. Returns false
  * after the last block. */
 bool checkpoint_block(const struct image *m, size_t *at, struct block_info *info);
+
+/* How many snapshots had been missed when it was captured. */
+enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Loads the state of a valid image, without derived fields. With `fork`, a wall that moves only in the new
  * case is loaded as at rest. Used by the two functions below. */

@@ -42,7 +42,7 @@ extern const char *const bound_sources[BOUND_COUNT];
 
 /* Scalars carried from step to step, from time/state.def. */
 struct state {
-#define STATE(type, name, unit, meaning) type name;
+#define STATE(type, name, low, high, unit, meaning) type name;
 #include "time/state.def"
 #undef STATE
     int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */

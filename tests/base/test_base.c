@@ -186,6 +186,23 @@ static void test_the_clock_goes_forward(void)
     TEST_ASSERT_EQUAL_INT(0, thread_index());
 }
 
+static void test_threads_follow_particles_and_idle_cores(void)
+{
+    TEST_ASSERT_EQUAL_INT(1, thread_useful(0));
+    TEST_ASSERT_EQUAL_INT(1, thread_useful(1999));
+    TEST_ASSERT_EQUAL_INT(2, thread_useful(2000));
+    TEST_ASSERT_EQUAL_INT(50, thread_useful(50999));
+    TEST_ASSERT_EQUAL_INT(INT16_MAX, thread_useful(INT64_MAX));
+    TEST_ASSERT_EQUAL_INT(1, thread_limit(0));
+    TEST_ASSERT_EQUAL_INT(THREADS_PER_CORE * thread_cores(), thread_limit(INT64_MAX));
+    TEST_ASSERT_EQUAL_INT(8, thread_idle_of(8, 8, 1)); /* only this one runs */
+    TEST_ASSERT_EQUAL_INT(8, thread_idle_of(8, 8, 0)); /* unknown */
+    TEST_ASSERT_EQUAL_INT(5, thread_idle_of(8, 8, 4));
+    TEST_ASSERT_EQUAL_INT(1, thread_idle_of(8, 8, 30));
+    TEST_ASSERT_EQUAL_INT(2, thread_idle_of(2, 64, 31)); /* may use two of many */
+    TEST_ASSERT_TRUE(thread_idle_cores() >= 1 && thread_idle_cores() <= thread_cores());
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -201,5 +218,6 @@ int main(void)
     RUN_TEST(test_large_memory_is_first_touched_by_shares);
     RUN_TEST(test_freed_arenas_can_be_used_again);
     RUN_TEST(test_the_clock_goes_forward);
+    RUN_TEST(test_threads_follow_particles_and_idle_cores);
     return UNITY_END();
 }

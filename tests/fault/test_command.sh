@@ -18,6 +18,30 @@ for name in $names; do
     "$sphfsi" --new "$name" >"$name.cfg" || fail "--new $name"
     "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] || fail "--preview $name"
 done
+# A bonded body does not move freely.
+cat >bonded.cfg <<'END'
+dp = 5 mm
+end_time = 1
+gravity = 0, 0
+[solid base]
+shape = box 0, 0, 0.1, 0.02
+clamp = box 0, 0, 0.01, 0.02
+density = 1000
+young = 1e6
+poisson = 0.3
+[solid cap]
+like = base
+shape = box 0, 0.02, 0.1, 0.04
+joined = base
+[solid lump]
+like = base
+shape = box 0, 0.2, 0.1, 0.22
+END
+"$sphfsi" --preview bonded.cfg >/dev/null 2>err || fail "--preview of a bond"
+grep -q 'solid cap: .*; bonded to base' preview-bonded.svg || fail "a bond is not drawn"
+grep -q 'solid lump: .*; nothing clamped' preview-bonded.svg || fail "a free body is not drawn"
+grep -q 'cap. is like .*moves freely' err && fail "a bonded copy moves freely: $(cat err)"
+grep -q 'lump. is like .*moves freely' err || fail "a free copy is not said: $(cat err)"
 refuses 1 "nearest name is dam_break" --new dambreak
 refuses 1 "did you mean \`gravity\`" --preview gate.cfg --set gravty=1,2
 # All that is wrong with a case is said in one run.

@@ -20,6 +20,12 @@ expect 1 'one case at a time' "$case" "$case"
 expect 1 'nowhere.cfg' "$dir/nowhere.cfg" --out "$dir/none"
 expect 1 'dp' "$case" --set dp=-1 --out "$dir/none"
 expect 1 'dpp' "$case" --set dpp=1 --out "$dir/none"
+expect 1 'fixed_step = 1e-300 s means 2e+298 steps until 0.02 s' "$case" --out "$dir/none" \
+    --set numerics.fixed_step=1e-300
+expect 1 'ledger_interval = 1e-12 s means 2e+10 rows' "$case" --out "$dir/none" \
+    --set output.ledger_interval=1e-12
+expect 1 'ledger_interval = 1e-11 s means 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
+    --set output.ledger_interval=1e-11 --until 1000
 [ ! -e "$dir/none" ] || fail "wrong input made a folder"
 
 # --- explaining writes nothing ---
@@ -78,6 +84,17 @@ for blocks in 1 100 400 480 600; do
 done
 [ "$(ls "$dir"/full-1/*.ckpt 2>/dev/null)" = "" ] || fail "a checkpoint in half a kilobyte"
 
+# --- snapshots that were missed are counted across a restart ---
+missed() { sed -n 's/.*"snapshots_missed": \([0-9]*\).*/\1/p' "$1/summary.json"; }
+(ulimit -f 120; exec "$sphfsi" "$case" --quiet --out "$dir/missed" --until 0.015 \
+    --set output.snapshot_interval=1ms --set output.snapshot_failure=go_on) >"$dir/output" 2>&1 ||
+    fail "snapshot_failure = go_on: exit status $?"
+before=$(missed "$dir/missed")
+[ "$before" -gt 0 ] || fail "no snapshot was missed"
+expect 0 'restart from' "$case" --out "$dir/missed" --restart --set output.snapshot_interval=1ms \
+    --set output.snapshot_failure=go_on
+[ "$(missed "$dir/missed")" = "$before" ] || fail "missed: $before, restarted $(missed "$dir/missed")"
+
 # --- signals ---
 still=tests/fault/still.cfg
 wait_for() {
@@ -134,6 +151,10 @@ shape = box -0.03, 0, 0, 0.1
 shape = box -0.03, -0.03, 0.05, 0
 END
 expect 0 'of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/leak"
+# All of it: nothing is left that could have gained energy.
+sed -i '/-0.03, -0.03/d' "$dir/leak.cfg"
+expect 0 '50 of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/dry"
+grep -q 'gained' "$dir/output" && fail "a run without its fluid gained energy"
 
 # --- a guard: the last sound state and the state at the stop are left ---
 expect 2 'last sound state is in' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
 #include "output/checkpoint.h"
+#include "output/ranges.h"
 #include "geometry/load.h"
 #include "fuzz.h"
 #include "tiny.h"
 #include "unity.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -111,6 +113,60 @@ static void cells_of_another_grid_are_refused(void)
     }
 }
 
+/* Captures `first`, which holds a wrong number, and has it refused. */
+static void refuses(const char *why)
+{
+    diag = (struct diag){.code = ERR_OK};
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, checkpoint_apply(&image, &second, &diag), why);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, why), diag.text);
+}
+
+#define REFUSES(member, value, why)                                     \
+    do {                                                                \
+        const __typeof__(first.state.member) kept = first.state.member; \
+        first.state.member = (value);                                   \
+        refuses(why);                                                   \
+        first.state.member = kept;                                      \
+    } while (0)
+
+/* Checksums do not protect from a file that was made wrong. */
+static void numbers_that_no_run_has_are_refused(void)
+{
+    open_with(0, NULL);
+    step(&first, 3);
+#define STATE(type, name, low, high, unit, meaning) \
+    REFUSES(name, (type)((low) > -2 ? -3.0 : -2 * FINITE), "block " #name " holds ");
+#include "time/state.def"
+#undef STATE
+    REFUSES(solid_slowing, 0, "block solid_slowing holds 0, and from 1e-09 to 1e+09");
+    REFUSES(solid_stiffening, 0, "block solid_stiffening holds 0");
+    REFUSES(wall_work, (double)INFINITY, "block wall_work holds inf");
+    REFUSES(energy_start, (double)NAN, "block energy_start holds nan");
+    REFUSES(steps, INT64_MAX, "block steps holds 9.22337e+18");
+    REFUSES(bound_steps[2], INT64_MAX - 1, "block bound_steps holds");
+    REFUSES(account.put[1], (double)NAN, "block account holds nan");
+    first.kind[KIND_FLUID].ax[7] = (double)NAN;
+    refuses("block ax holds nan for fluid particle 7");
+    first.kind[KIND_FLUID].ax[7] = 0;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &second, &diag), diag.text);
+}
+
+static void missed_snapshots_are_counted_on(void)
+{
+    int64_t missed = -1;
+    open_with(0, NULL);
+    image.snapshots_missed = 7;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_missed(&image, &missed, &diag));
+    TEST_ASSERT_EQUAL_INT64(7, missed);
+    image.snapshots_missed = -2;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_missed(&image, &missed, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed holds -2"), diag.text);
+}
+
 /* --- damage: two checkpoints of a small run, of which the newer one is damaged --- */
 
 static int warnings;
@@ -191,7 +247,9 @@ static void bytes_behind_the_end_are_found(void)
 {
     open_with(0, NULL);
     store(tiny_path("long"), &first);
-    struct image longer = {calloc(1, image.size + 8), image.size + 8, image.size + 8};
+    struct image longer = {.bytes = calloc(1, image.size + 8),
+                           .size = image.size + 8,
+                           .capacity = image.size + 8};
     memcpy(longer.bytes, image.bytes, image.size);
     TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&longer, "x.ckpt", &diag));
     checkpoint_free(&longer);
@@ -251,6 +309,8 @@ int main(void)
     RUN_TEST(same_bits_double_single_rate);
     RUN_TEST(says_what_it_is);
     RUN_TEST(cells_of_another_grid_are_refused);
+    RUN_TEST(numbers_that_no_run_has_are_refused);
+    RUN_TEST(missed_snapshots_are_counted_on);
     RUN_TEST(every_flipped_byte_is_found);
     RUN_TEST(every_changed_byte_is_found);
     RUN_TEST(every_cut_is_found);

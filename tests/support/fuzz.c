@@ -157,7 +157,7 @@ int fuzz_write_checkpoint(const char *path, int steps)
  * reader must not fall over what the blocks say. A state that is taken must bear a step. */
 int fuzz_checkpoint(const uint8_t *data, size_t size)
 {
-    struct image m = {malloc(size + 1), size, size};
+    struct image m = {.bytes = malloc(size + 1), .size = size, .capacity = size};
     struct diag d = {.code = ERR_OK};
     if (!m.bytes) abort();
     if (size) memcpy(m.bytes, data, size);

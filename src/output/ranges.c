@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#include "output/ranges.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum err range_check(const char *name, double value, double low, double high, struct diag *d)
+{
+    if (value >= low && value <= high) return ERR_OK;
+    return diag_fail(d, ERR_INPUT, "checkpoint: block %s holds %g, and from %g to %g are possible",
+                     name, value, low, high);
+}
+
+static enum err check_state(const struct simulation *s, struct diag *d)
+{
+    const struct state *const st = &s->state;
+#define STATE(type, name, low, high, unit, meaning) \
+    TRY(range_check(#name, (double)st->name, low, high, d));
+#include "time/state.def"
+#undef STATE
+    for (int k = 0; k < BOUND_COUNT; k++)
+        TRY(range_check("bound_steps", (double)st->bound_steps[k], 0, COUNTS, d));
+    if (!(s->effects & FX_SOLID)) return ERR_OK;
+    /* The solid's step is divided and multiplied by them. */
+    TRY(range_check("solid_stiffening", st->solid_stiffening, 1e-9, 1e9, d));
+    return range_check("solid_slowing", st->solid_slowing, 1e-9, 1e9, d);
+}
+
+static enum err check_account(const struct account *a, struct diag *d)
+{
+    const struct {
+        const double *of;
+        double low;
+    } part[] = {{a->put, -FINITE},
+                {a->step_work, 0},
+                {a->high, -FINITE},
+                {a->play, -FINITE},
+                {a->region, 0}};
+    for (size_t p = 0; p < COUNT_OF(part); p++)
+        for (int k = 0; k < ACCOUNT_ENTRIES; k++)
+            TRY(range_check("account", part[p].of[k], part[p].low, FINITE, d));
+    return ERR_OK;
+}
+
+static enum err check_fields(const struct particles *p, enum kind kind, struct diag *d)
+{
+    for (int f = 0; f < field_count; f++) {
+        const struct field_info *const info = &field_table[f];
+        const double *const data = field_array(p, info);
+        if (!data || info->keep != KEEP_STATE || strcmp(info->type, "double") != 0) continue;
+        for (int64_t i = 0; i < p->n; i++)
+            if (!(fabs(data[i]) <= FINITE))
+                return diag_fail(d, ERR_INPUT,
+                                 "checkpoint: block %s holds %g for %s particle %" PRId64
+                                 ", which is not a finite number",
+                                 info->name, data[i], kind_names[kind], i);
+    }
+    return ERR_OK;
+}
+
+/* Numbers that serve as an index. */
+static enum err check_bodies(const struct simulation *s, enum kind kind, struct diag *d)
+{
+    const int bodies[KIND_COUNT] = {s->scene->n_fluid, s->scene->n_wall, s->scene->n_solid};
+    const struct particles *p = &s->kind[kind];
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i] < 0 || p->body[i] >= bodies[kind])
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: %s particle %" PRId64 " belongs to section %d, but the "
+                             "case has 0 to %d",
+                             kind_names[kind], i, p->body[i], bodies[kind] - 1);
+    return ERR_OK;
+}
+
+static enum err check_open(const struct open *o, struct diag *d)
+{
+    if (o->n == 0) return ERR_OK;
+    for (int k = 0; k < o->n; k++) {
+        for (int c = 0; c < OPEN_SUMS; c++)
+            if (c != OPEN_MEAN_FLOW || !isnan(o->sum[k][c]))
+                TRY(range_check("open_sum", o->sum[k][c], -FINITE, FINITE, d));
+        for (int c = 0; c < OPEN_COUNTS; c++)
+            TRY(range_check("open_count", (double)o->count[k][c], 0, COUNTS, d));
+    }
+    return range_check("open_next_id", (double)o->next_id, 0, COUNTS, d);
+}
+
+enum err ranges_check(const struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < KIND_COUNT; k++) {
+        TRY(check_bodies(s, (enum kind)k, d));
+        TRY(check_fields(&s->kind[k], (enum kind)k, d));
+    }
+    TRY(check_open(&s->open, d));
+    TRY(check_state(s, d));
+    return check_account(&s->state.account, d);
+}
