@@ -362,7 +362,7 @@ static void put_list(const struct drawing *g, double y)
     }
 }
 
-/* --- all of it --- */
+/* --- all layers --- */
 
 static void widen(struct box *v, double x, double y)
 {

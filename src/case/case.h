@@ -30,7 +30,7 @@ enum {
     CASE_MAX_LINES = 20000,
     CASE_MAX_CONSTANTS = 512,
     CASE_MAX_POINTS = 4096, /* of a polygon; numbers of a list */
-    CASE_MAX_PROBLEMS = 20, /* reported of one case */
+    CASE_MAX_PROBLEMS = 20, /* reported once per case */
     PROBLEM_TEXT = 1024,
 };
 
@@ -47,8 +47,8 @@ struct case_section {
     int id; /* enum section_id or SECTION_constants */
     const char *name;
     int line;
-    int index;       /* among those of its kind */
-    bool incomplete; /* a line of it could not be understood, or what it is like is not known */
+    int index;       /* its number among the sections of its kind */
+    bool incomplete; /* a line of it is invalid, or the section of its `like` is unknown */
 };
 
 struct constant {
@@ -58,59 +58,63 @@ struct constant {
 };
 
 struct problem {
-    int line; /* 0: of --set */
+    int line; /* 0: from --set */
     char text[PROBLEM_TEXT];
 };
 
 struct reader {
     struct scene *scene;
     struct diag *diag;
-    struct arena temp; /* lives until the scene is read */
-    const char *path;  /* as messages show it */
+    struct arena temp; /* valid until the scene is read */
+    const char *path;  /* as in messages */
     int n_entries, n_sections, n_constants;
     struct entry *entries;
     struct case_section *sections; /* the first one is the top of the file */
-    struct constant *constants;    /* constants, and the numbers at the top, which are names too */
-    int depth;                     /* of constants that wait for constants */
-    bool cause_named;              /* the message names the constant that is wrong */
-    bool in_lost_section;          /* behind a header that could not be understood */
-    bool lost;                     /* lines or sections that could not be understood are left out */
-    int n_problems;                /* those beyond the array are counted only */
+    struct constant
+        *constants;       /* constants, and the numbers at the top, which can be used as names */
+    int depth;            /* of constants that depend on constants */
+    bool cause_named;     /* the message names the invalid constant */
+    bool in_lost_section; /* after a section header that is invalid */
+    bool lost;            /* invalid lines or sections are skipped */
+    int n_problems;       /* those beyond the array are only counted */
     struct problem problems[CASE_MAX_PROBLEMS];
 };
 
-/* --- case/messages.c: problems are noted, so that the reader can go on and report all of them --- */
+/* --- case/messages.c: problems are stored, so that the reader can continue and report all of them
+ * --- */
 
-/* Notes "FILE:LINE: ..." or "--set ...: ..."; returns ERR_INPUT. */
+/* Stores "FILE:LINE: ..." or "--set ...: ..."; returns ERR_INPUT. */
 enum err bad_line(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
 enum err bad_entry(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
-/* Notes "FILE:LINE: key = value: ...". */
+/* Stores "FILE:LINE: key = value: ...". */
 enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
 
-/* ERR_OK in the place of bad input that has been noted, as long as more may be noted. */
+/* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
-/* The problems noted so far, sorted by line, as the failure in the diag; ERR_OK: there are none. */
+/* The problems stored so far, sorted by line, as the failure in the diag; ERR_OK: there are
+ * none. */
 enum err case_report(struct reader *r) SPHFSI_CHECKED;
 
-/* case/lines.c: text to sections and entries; --set arguments on top of them. */
+/* case/lines.c: text to sections and entries, then --set arguments. */
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;
 enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets) SPHFSI_CHECKED;
 
 /* case/numbers.c: pieces of a value, constants, numbers. */
 struct slice slice_of(const char *text);
-/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none is left. */
+/* Cuts a piece off the front of `rest` at a separator outside parentheses, trimmed; false: none
+ * remains. */
 bool slice_next(struct slice *rest, char separator, struct slice *piece);
 int slice_count(struct slice text, char separator);
-/* What to add to a message on the number of numbers where a comma stands between digits; "" else. */
+/* Hint for a message on the count of numbers if a comma stands between digits; otherwise "". */
 const char *case_comma_hint(const char *value);
-/* Finds all constants, and the numbers at the top, by their names; then evaluates every one. */
+/* Finds the names of all constants and of the numbers at the top; then evaluates all of them. */
 enum err case_collect_constants(struct reader *r) SPHFSI_CHECKED;
 enum err case_all_constants(struct reader *r) SPHFSI_CHECKED;
 /* The constant of a name: `find` of struct expr_names; `context` is the reader. */
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
-/* Notes why an expression has no value, unless that follows from what is noted already. */
+/* Stores why an expression has no value, unless that follows from a problem already stored. */
 enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why);
 /* A number of the dimension `unit` from a piece of an entry's value. */
 enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,
@@ -118,7 +122,7 @@ enum err case_number(struct reader *r, const struct entry *e, struct slice text,
 enum err case_check_dim(struct reader *r, const struct entry *e, const struct dim *dim,
                         const char *unit) SPHFSI_CHECKED;
 
-/* case/shapes.c: one shape more for a list. */
+/* case/shapes.c: adds a shape to a list. */
 enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *list)
     SPHFSI_CHECKED;
 
@@ -131,7 +135,7 @@ void case_apply_presets(struct reader *r);
 
 /* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
-/* case/check.c: what concerns several values at once. */
+/* case/check.c: checks that involve several values. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
 /* case/open.c */
 enum err case_check_open(struct reader *r) SPHFSI_CHECKED;
@@ -140,15 +144,15 @@ enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case/check_probes.c */
 enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
-/* case/table.c: what a table is of, its columns, and whether it begins with zeros. */
+/* case/table.c: the content of a table, its columns, and whether it begins with zeros. */
 struct table_kind {
     const char *what, *columns;
     bool from_rest;
 };
-/* Reads the file `name` that a key in a line names, as messages spell it. */
+/* Reads the file `name` given by a key of a line, with its path as in messages. */
 enum err table_load(struct scene *s, struct scene_table *table, const struct table_kind *kind,
                     const char *name, int line, const char *key, struct diag *d) SPHFSI_CHECKED;
-/* The row at or before a time, but neither before the first one nor the last one. */
+/* The row at or before a time, but not before the first nor the last one. */
 int table_row(const struct scene_table *table, double t);
 
 /* case/motion.c, case/gravity.c: their tables. */

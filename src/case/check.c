@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What a scene must satisfy beyond the range of each value: names that refer to something, values
- * that go together. */
+ * Conditions on a scene beyond the range of each value: names that must exist, values that must
+ * agree. */
 #include "case/case.h"
 
 #include "case/effects.h"
@@ -25,7 +25,7 @@ static void warn(struct reader *r, int line, const char *format, ...)
 
 /* --- fluid --- */
 
-/* c0 as given, or from Eq. 3. */
+/* c0 as given, or by Eq. 3. */
 static enum err sound_speed(struct reader *r, const struct scene_fluid *f, double *c0)
 {
     const double least = 10 * max2(f->max_speed, sqrt(f->max_pressure / f->density));
@@ -73,7 +73,7 @@ static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
              f->common.name, f->shifting, cfl);
 }
 
-/* All fluid is of one kind. */
+/* All fluid has the same properties. */
 static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
                        double its)
 {
@@ -91,7 +91,7 @@ static enum err differ(struct reader *r, const struct scene_fluid *f, const char
                     f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
 }
 
-/* Of one fluid against the first one. */
+/* Compares a fluid with the first one. */
 static enum err check_fluid(struct reader *r, const struct scene_fluid *f, double c0)
 {
     const struct scene *s = r->scene;
@@ -150,7 +150,7 @@ static enum err no_such(struct reader *r, int line, const char *what, const char
     return bad_line(r, line, "%s = %.60s: there is no [%s] of that name", what, given, word);
 }
 
-/* A key that says something to some kinds of motion only. */
+/* A key that applies to some kinds of motion only. */
 static enum err check_motion_keys(struct reader *r, const struct scene_motion *m)
 {
 #define KIND(kind) (1u << MOTION_##kind)
@@ -214,7 +214,8 @@ static enum err check_motion_jumps(struct reader *r, const struct scene_motion *
     return ERR_OK;
 }
 
-/* Finite with its derivatives at the start and at a thousand times until the end, without jumps between. */
+/* Finite with its derivatives at the start and at a thousand times until the end; no jumps in
+ * between. */
 static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
 {
     const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
@@ -300,7 +301,7 @@ static enum err check_motion(struct reader *r, const struct scene_motion *m)
     return ERR_OK;
 }
 
-/* Keys of which a pair across a bond needs one value. */
+/* Keys with one common value for a pair across a bond. */
 static enum err check_joint(struct reader *r, const struct scene_solid *a,
                             const struct scene_solid *b)
 {
@@ -351,7 +352,7 @@ static enum err check_joined(struct reader *r, int solid)
     return check_joint(r, a, &s->solid[other]);
 }
 
-/* Within a gap of more a layer of fluid has particles of its own. */
+/* A larger gap contains fluid particles of its own. */
 static enum err check_gap(struct reader *r, const struct scene_contact *c)
 {
     const double most = 4;
@@ -405,7 +406,7 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
     return ERR_OK;
 }
 
-/* A reference names a column: <probe>_<quantity>_<unit>. */
+/* A reference is for a column: <probe>_<quantity>_<unit>. */
 static enum err check_reference(struct reader *r, const struct scene_reference *ref)
 {
     const struct scene *s = r->scene;
@@ -450,7 +451,7 @@ static enum err check_gravity(struct reader *r)
     return ERR_OK;
 }
 
-/* The largest steps that keep the accuracy of each integrator. */
+/* The largest steps at which each integrator is accurate. */
 static void choose_cfl(struct scene *s)
 {
     if (s->numerics.cfl != 0) return;

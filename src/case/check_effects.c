@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Which effects go together, from case/rules.def. */
+ * Which effects require or exclude each other, from case/rules.def. */
 #include "case/case.h"
 #include "case/effects.h"
 
@@ -31,7 +31,7 @@ static const struct owned owned[] = {
 #include "case/rules.def"
 };
 
-/* The line of a caller; that of the head of the file where it is a default. */
+/* The line of the key that activates an effect; for a default, that of the start of the file. */
 static int line_of(const struct scene *s, const struct effect_caller *by)
 {
     const struct scene_section_common *const section = section_at(s, by->section, by->index);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the snapshots of a case hold. */
+ * The fields in the snapshots of a case. */
 #include "case/case.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What a probe must satisfy: the section it looks at, and the keys that go with its quantity. */
+ * Conditions on a probe: its section exists, and its keys fit its quantity. */
 #include "case/case.h"
 
 #include <math.h>

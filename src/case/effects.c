@@ -12,9 +12,9 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 #undef EFFECT
 };
 
-/* --- what calls for an effect: the words of case/effects.def --- */
+/* --- conditions of effects: the words of case/effects.def --- */
 
-/* Notes the place where `at` is one, and says whether it is. */
+/* Stores the place of the condition if `at` is one, and returns whether it is. */
 static bool called_by(struct effect_caller *by, enum section_id section, const char *key, int at)
 {
     if (at < 0) return false;
@@ -39,7 +39,7 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
               has_gravity(s) ? 0 : -1)
 #define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
 
-/* The first bodies that meet, the second of them from `first` on, walls behind solids. */
+/* The first two bodies in contact, the second from `first` on, walls after solids. */
 static bool meets(const struct scene *s, struct effect_caller *by, int first)
 {
     for (int a = 0; a < s->n_solid; a++)

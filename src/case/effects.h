@@ -18,8 +18,8 @@ typedef uint64_t effect_set;
 _Static_assert(EFFECT_COUNT <= 64, "a set of effects has 64 bits");
 #define EFFECT_BIT(effect) ((effect_set)1 << (effect))
 
-/* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP leaves effects out of the program: their bits are no bits, and
- * the compiler takes out what asks for them. For the proof that an effect costs nothing where it is off
+/* -DSPHFSI_WITHOUT=OUT_LAMINAR+OUT_NO_SLIP excludes effects from the program: their bits become 0,
+ * and the compiler removes their code. Used to prove that an effect costs nothing while it is off
  * (tests/agree/test_absence.py). */
 enum {
 #define EFFECT(name, when, key, equation, groups, kind, meaning) \
@@ -49,14 +49,14 @@ struct effect_info {
 };
 extern const struct effect_info effect_table[EFFECT_COUNT];
 
-/* Where in the scene an effect is called for. */
+/* Where the scene activates an effect. */
 struct effect_caller {
     enum section_id section;
     int index;
     const char *key; /* "": the section itself */
 };
 
-/* Whether the scene calls for an effect, and where first. */
+/* Whether the scene activates an effect, and where it does first. */
 bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by);
 
 /* "line 12: [wall bed] slip", or "--set: ...". */
@@ -64,10 +64,10 @@ enum { EFFECT_CALLER_TEXT = 300 };
 void effect_caller_text(const struct scene *s, const struct effect_caller *by,
                         char text[EFFECT_CALLER_TEXT]);
 
-/* The name of an effect that a scene calls for and that is left out of this build, or NULL. */
+/* The name of an effect that a scene needs and this build excludes, or NULL. */
 const char *effect_left_out(const struct scene *s);
 
-/* The set that a scene calls for. MULTIRATE is decided by the simulation, which knows the bounds. */
+/* The effects of a scene. The simulation, which has the bounds, decides on MULTIRATE. */
 effect_set effects_of_scene(const struct scene *s);
 
 #define FX_ALWAYS (~(effect_set)0)
@@ -81,7 +81,7 @@ enum phase {
 };
 struct phase_info {
     const char *name, *meaning;
-    effect_set when; /* runs where any of these effects is on */
+    effect_set when; /* runs if any of these effects is on */
 };
 extern const struct phase_info phase_table[PHASE_COUNT];
 SPHFSI_INLINE bool phase_runs(enum phase phase, effect_set effects)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Recursive descent to a small stack program; constant parts are folded while they are read, so a
+ * Recursive descent to a small stack program; constant parts are evaluated during parsing. So a
  * value without x and y is a program of one number. */
 #include "case/expr.h"
 #include "case/expr_ops.h"
@@ -28,7 +28,7 @@ struct compiler {
     const char *start; /* of the text */
     const struct expr_names *names;
     int nesting;
-    int stack; /* operands waiting while the program runs */
+    int stack; /* operands on the stack at run time */
     int n;
     struct op op[MAX_OPS];
     char *why;
@@ -102,7 +102,7 @@ static bool push(struct compiler *c, enum op_code code, double value)
     return true;
 }
 
-/* Appends an operation, or carries it out if its operands are numbers. */
+/* Appends an operation, or evaluates it if its operands are numbers. */
 static bool operate(struct compiler *c, enum op_code code)
 {
     const int operands = is_binary(code) ? 2 : 1;
@@ -134,7 +134,7 @@ static bool is_pure(const struct dim *d)
     return fabs(d->m) < 1e-9 && fabs(d->kg) < 1e-9 && fabs(d->s) < 1e-9;
 }
 
-/* Of a sum, a minimum: both the same; a plain number takes the other's. */
+/* Of a sum, a minimum: both must agree; a plain number adopts the other's. */
 static bool join_dims(struct compiler *c, struct dim *a, const struct dim *b)
 {
     if (a->kind == DIM_ANY || b->kind == DIM_PLAIN) return true;
@@ -322,14 +322,14 @@ static bool parse_name(struct compiler *c, struct dim *dim)
     return parse_constant(c, name, dim);
 }
 
-/* Whether the text goes on, behind a digit, with a comma and a digit: 0,005. */
+/* Whether a digit is followed by a comma and a digit: 0,005. */
 static bool is_decimal_comma(const struct compiler *c)
 {
     return c->rest.length > 1 && c->rest.at[0] == ',' && isdigit((unsigned char)c->rest.at[1]) &&
            c->rest.at > c->start && isdigit((unsigned char)c->rest.at[-1]);
 }
 
-/* A character that cannot stand where it does, and what was probably meant. */
+/* An invalid character, and what was probably meant. */
 static bool unexpected(struct compiler *c, int ch, const char *expected)
 {
     char rest[16] = "";
@@ -462,7 +462,7 @@ double scene_expr_at(const struct expr *e, double x, double y)
 
 double scene_expr_at_time(const struct expr *e, double x, double y, double t)
 {
-    /* The compiler has counted: no operand is missing, MAX_STACK suffices, one value is left. */
+    /* The compiler has counted: all operands exist, MAX_STACK suffices, one value remains. */
     double stack[MAX_STACK] = {0};
     int top = -1;
     for (int k = 0; k < e->n; k++) {

@@ -20,9 +20,9 @@
 #include "base/base.h"
 
 enum dim_kind {
-    DIM_PLAIN, /* no unit given: fits everywhere */
+    DIM_PLAIN, /* no unit given: compatible with all */
     DIM_KNOWN, /* powers of metre, kilogram, second */
-    DIM_ANY    /* depends on x, y or t: not tracked, fits everywhere */
+    DIM_ANY    /* depends on x, y or t: not tracked, compatible with all */
 };
 
 struct dim {
@@ -35,7 +35,7 @@ struct quantity {
     struct dim dim;
 };
 
-/* A piece of the case file's text. */
+/* A part of the case file's text. */
 struct slice {
     const char *at;
     size_t length;
@@ -46,48 +46,48 @@ enum { EXPR_WHY = 320, EXPR_NAME = 64 };
 /* None; x and y; t; x, y and t. */
 enum expr_scope { EXPR_FIXED, EXPR_IN_SPACE, EXPR_IN_TIME, EXPR_IN_BOTH };
 
-/* What names mean: `find` returns true and the quantity, or false; then it has written why, or
- * nothing if the name is simply unknown. */
+/* Resolves names: `find` returns true and the quantity, or false. Then it has written the reason,
+ * or nothing if the name is unknown. */
 struct expr_names {
     void *context;
     bool (*find)(void *context, const char *name, struct quantity *q, char why[EXPR_WHY]);
-    enum expr_scope scope; /* which coordinates are known besides */
+    enum expr_scope scope; /* coordinates that can be used */
 };
 
 /* Compiled: evaluated at many points. */
 struct expr;
 
-/* The value of an expression without x and y; false: `why` says what is wrong with it. */
+/* The value of an expression without x and y; false: `why` has the error. */
 bool expr_value(struct slice text, const struct expr_names *names, struct quantity *result,
                 char why[EXPR_WHY]);
 
-/* Compiles for scene_expr_at. ERR_INPUT: `why` says what is wrong; ERR_MEMORY: in d. */
+/* Compiles for scene_expr_at. ERR_INPUT: `why` has the error; ERR_MEMORY: in d. */
 enum err expr_compile(struct expr **result, struct slice text, const struct expr_names *names,
                       struct dim *dim, struct arena *a, char why[EXPR_WHY], struct diag *d)
     SPHFSI_CHECKED;
 
-/* The value of an expression in t with its first two derivatives, which are exact; where min, max, abs and
- * round have a kink or a step, those of one side. */
+/* The value of an expression in t with its exact first two derivatives. At a kink or step of min,
+ * max, abs and round they are one-sided. */
 struct expr_jet {
     double value, d1, d2;
 };
 struct expr_jet expr_jet_at(const struct expr *e, double t);
 
-/* Whether it rounds what depends on t. */
+/* Whether it rounds an expression in t. */
 bool expr_steps(const struct expr *e);
 
-/* Whether its value changes by more than `size` in no time between two times, `at` being where, or has no
- * value there. The interval is halved as long as the slopes do not explain the change: what is smooth is
- * never taken for a jump, however steep; where much else goes on in the interval, it may be missed. */
+/* Whether its value jumps by more than `size` between two times, or has no value, at time `at`. The
+ * interval is halved as long as the slopes do not explain the change. So a smooth function, however
+ * steep, is never reported; a jump may be missed in an interval with many other changes. */
 bool expr_jumps(const struct expr *e, double from, double to, double size, double *at);
 
-/* Whether it is one number, the same everywhere. */
+/* Whether it is a constant number. */
 bool expr_is_number(const struct expr *e);
 
 /* The text it was compiled from. */
 const char *expr_source(const struct expr *e);
 
-/* Whether a dimension may stand where a unit of case/params.def is expected ("SI": any). */
+/* Whether a dimension fits a unit of case/params.def ("SI": any). */
 bool dim_fits(const struct dim *dim, const char *unit);
 
 /* Names a dimension: "a pressure (Pa)". */
@@ -95,11 +95,11 @@ enum { DIM_TEXT = 96 };
 void dim_text(const struct dim *dim, char text[DIM_TEXT]);
 void unit_dim_text(const char *unit, char text[DIM_TEXT]);
 
-/* The first character of a text that looks like one that is meant, and what to write instead:
- * "a no-break space; write a blank". NULL: there is none. */
+/* The first character of a text that resembles an ASCII one, with its replacement: "a no-break
+ * space; write a blank". NULL: there is none. */
 const char *strange_character(const char *text);
 
-/* What a name must not be, because it means something else already: NULL or the meaning. */
+/* The existing meaning of a name that cannot be redefined, or NULL. */
 const char *expr_reserved(const char *name);
 
 /* --- case/units.c --- */
@@ -107,7 +107,7 @@ const char *expr_reserved(const char *name);
  * a wrong one, then `why` is written. */
 bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY]);
 bool unit_known(const char *name);
-/* The unit that has the same letters but for capitals, or NULL. */
+/* The unit with the same letters but different capitals, or NULL. */
 const char *unit_nearest(const char *name, size_t length);
 
 /* The identifier at the front of the text: its length; 0: none. */

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * The derivatives of an expression in t, exact: the stack program is run on numbers that carry their first
- * two derivatives along. */
+ * Exact derivatives of an expression in t: the stack program runs on numbers with their first two
+ * derivatives. */
 #include <math.h>
 
 #include "case/expr.h"
 #include "case/expr_ops.h"
 #include "case/scene.h"
 
-/* f(a) from f and its derivatives at a. Where a rests, as in (t^2)^1.5 at 0, an infinite second derivative
- * does not count: with a finite first one its product with a'^2 goes to zero there. An infinite first one
- * does. */
+/* f(a) from f and its derivatives at a. At a stationary a, as in (t^2)^1.5 at 0, an infinite second
+ * derivative is ignored if the first one is finite: its product with a'^2 goes to zero there. An
+ * infinite first one is not ignored. */
 static struct expr_jet chain(const struct expr_jet *a, double f, double first, double second)
 {
     const double bend = a->d1 != 0 ? second * a->d1 * a->d1 : 0;
@@ -36,7 +36,7 @@ static struct expr_jet unary(enum op_code code, struct expr_jet a)
     }
 }
 
-/* Powers of t itself, such as t^2 at t = 0, must not become 0 times infinity. */
+/* For powers of t itself, such as t^2 at t = 0: avoids 0 times infinity. */
 static struct expr_jet power(struct expr_jet a, struct expr_jet b)
 {
     const double p = b.value, x = a.value;
@@ -92,7 +92,7 @@ struct expr_jet expr_jet_at(const struct expr *e, double t)
 
 bool expr_steps(const struct expr *e)
 {
-    bool varies[MAX_STACK] = {false}; /* with t, of each operand */
+    bool varies[MAX_STACK] = {false}; /* depends on t, for each operand */
     int top = -1;
     for (int k = 0; k < e->n; k++) {
         const enum op_code code = e->op[k].code;
@@ -108,7 +108,7 @@ bool expr_steps(const struct expr *e)
     return false;
 }
 
-/* By how much a change differs from what the slopes at both ends make of the time between. */
+/* Difference of a change from the one predicted by the slopes at both ends. */
 static double unexplained(double from, double to, double slope_from, double slope_to, double dt)
 {
     return fabs(to - from - 0.5 * (slope_from + slope_to) * dt);
@@ -126,8 +126,8 @@ static bool smooth(const struct expr_jet *a, const struct expr_jet *b, double dt
     return follows(a->value, b->value, a->d1, b->d1, dt) && follows(a->d1, b->d1, a->d2, b->d2, dt);
 }
 
-/* Of the value, with that of the velocity: a pole of even order has the same value and no net velocity on its
- * two sides. */
+/* Jump of the value and of the velocity: a pole of even order has the same value and no net
+ * velocity on its two sides. */
 static double mismatch(const struct expr_jet *a, const struct expr_jet *b, double dt)
 {
     return unexplained(a->value, b->value, a->d1, b->d1, dt) +

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The stack program that an expression is compiled to (case/expr.c), for those who run it. */
+ * The stack program of a compiled expression (case/expr.c), for the code that runs it. */
 #ifndef SPHFSI_CASE_EXPR_OPS_H
 #define SPHFSI_CASE_EXPR_OPS_H
 
@@ -16,7 +16,7 @@ enum op_code {
     OP_DIV,
     OP_POW,
     OP_MIN,
-    OP_MAX, /* two operands, from OP_ADD on */
+    OP_MAX, /* with two operands: from OP_ADD on */
     OP_NEG,
     OP_SQRT,
     OP_SIN,
@@ -42,7 +42,7 @@ struct expr {
     char *source;
 };
 
-/* Operands that may wait for each other; the compiler has counted. */
+/* Largest number of operands on the stack; the compiler has counted. */
 enum { MAX_STACK = 64 };
 
 SPHFSI_INLINE bool is_binary(enum op_code code) { return code >= OP_ADD && code <= OP_MAX; }

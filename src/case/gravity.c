@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Gravity as it follows from time (T-70): numbers, expressions in t, and a table that is added to them. */
+ * Gravity as a function of time (T-70): numbers, expressions in t, and a table that is added to
+ * them. */
 #include "case/case.h"
 
 bool scene_gravity_varies(const struct scene *s)
@@ -18,7 +19,8 @@ void scene_gravity_at(const struct scene *s, double t, double g[2])
     if (table->n == 0) return;
     const int k = table_row(table, t);
     const double share = (t - table->t[k]) / (table->t[k + 1] - table->t[k]);
-    const double u = min2(max2(share, 0), 1); /* beyond its ends the table stays as it is there */
+    const double u =
+        min2(max2(share, 0), 1); /* before its first and after its last row the table is constant */
     g[0] += table->x[k] + u * (table->x[k + 1] - table->x[k]);
     g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
 }

@@ -30,7 +30,7 @@ static bool is_identifier(const char *text)
     return slice.length && identifier_length(slice) == slice.length;
 }
 
-/* Cuts the comment off a value; text between quotes is kept as it is, without its quotes. */
+/* Removes the comment from a value; text between quotes is unchanged, without its quotes. */
 static const char *cut_value(char *value, const char **why)
 {
     *why = NULL;
@@ -187,7 +187,7 @@ enum err case_split(struct reader *r, const char *text)
 
 /* --- --set --- */
 
-/* Whether a section takes a key: of case/params.def, or a constant that the file has. */
+/* Whether a section has a key: one of case/params.def, or a constant of the file. */
 static bool takes_key(const struct reader *r, int section, const char *key, struct nearest *near)
 {
     const int id = r->sections[section].id;
@@ -207,7 +207,7 @@ static bool takes_key(const struct reader *r, int section, const char *key, stru
     return param_retired((enum section_id)id, key) != NULL;
 }
 
-/* Whether "solid gate", "gate", "numerics" or "" (top and constants) means a section. */
+/* Whether "solid gate", "gate", "numerics" or "" (top and constants) names a section. */
 static bool means_section(const struct case_section *s, const char *prefix)
 {
     if (!*prefix) return s->id == SECTION_top || s->id == SECTION_constants;
@@ -220,7 +220,7 @@ static bool means_section(const struct case_section *s, const char *prefix)
     return strcmp(prefix + length, s->name) == 0;
 }
 
-/* The section of an unnamed kind that the file leaves out may be set all the same. */
+/* --set can also set keys of an unnamed section that the file does not contain. */
 static enum err add_missing(struct reader *r, const char *prefix)
 {
     const int id = *prefix ? find_section_id(prefix) : -1;
@@ -261,7 +261,7 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
     return bad_entry(r, e, "unknown %s `%.60s`", *prefix ? "key" : "key or constant", e->key);
 }
 
-/* Takes the place of what the file says for the key (all of a list of shapes). */
+/* Replaces the file's entry for the key (all entries of a list of shapes). */
 static void put_entry(struct reader *r, const struct entry *e)
 {
     int kept = 0;

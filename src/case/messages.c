@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * What is wrong with a case file: one sentence each, which begins with the place, sorted by line. */
+ * Problems of a case file: one sentence each, which begins with the place, sorted by line. */
 #include "case/case.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Notes a problem, whose text begins with the place, once: numbers at the top are read as constants, too. */
+/* Stores a problem, whose text begins with the place, once: numbers at the top are also read as
+ * constants. */
 static enum err note(struct reader *r, int line, const char *text)
 {
     for (int k = 0; k < r->n_problems && k < CASE_MAX_PROBLEMS; k++)
@@ -60,7 +61,7 @@ enum err case_go_on(const struct reader *r, enum err e)
     return e == ERR_INPUT && r->n_problems > 0 && r->n_problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
 }
 
-/* By line; problems of one line stay in the order in which they were found. */
+/* By line; problems of the same line stay in the order in which they were found. */
 static void sort_problems(struct reader *r, int n)
 {
     for (int k = 1; k < n; k++) {

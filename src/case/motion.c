@@ -109,7 +109,7 @@ static void turning_at(const struct scene_motion *motion, const struct scene_tab
     memcpy(m->centre, motion->centre, sizeof m->centre);
 }
 
-/* So that a body starts where it was sampled, and the derivatives are exact. */
+/* Subtracted so that a body starts where it was sampled, and the derivatives are exact. */
 static void expression_at(const struct scene_expr *of, double t, double *d, double *v, double *a)
 {
     if (!of->e[0]) return;
@@ -162,7 +162,7 @@ struct motion_point motion_of_point(const struct motion_state *m, double X, doub
     const double arm[2] = {c * from[0] - s * from[1], s * from[0] + c * from[1]};
     for (int k = 0; k < 2; k++) {
         const double across = k == 0 ? -arm[1] : arm[0];
-        /* So that what does not turn keeps its bits. */
+        /* Without rotation the bits do not change. */
         p.x[k] = m->angle == 0 ? place[k] + m->d[k] : m->centre[k] + arm[k] + m->d[k];
         p.v[k] = m->v[k] + m->rate * across;
         p.a[k] = m->a[k] + m->angular_acceleration * across - m->rate * m->rate * arm[k];

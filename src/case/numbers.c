@@ -122,7 +122,7 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
     if (good) {
         const struct param *p = param_find(SECTION_top, name);
         if (p && c->q.dim.kind == DIM_PLAIN && dim_fits(&c->q.dim, p->unit)) {
-            /* `dp = 0.001` is a length wherever dp is used. */
+            /* `dp = 0.001` is a length in all uses of dp. */
             struct slice unit = slice_of(p->unit);
             struct quantity one = {1, {DIM_KNOWN, 0, 0, 0}};
             if (unit_read(&unit, &one, inner)) c->q.dim = one.dim;
@@ -149,7 +149,7 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
         *q = c->q;
         return true;
     }
-    /* It may have been in what could not be understood. */
+    /* It may be defined in an invalid line. */
     r->cause_named |= r->lost;
     if (near.name)
         snprintf(why, EXPR_WHY, "unknown name `%s`; did you mean `%s`?", name, near.name);
@@ -158,7 +158,7 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     return false;
 }
 
-/* What follows from a problem that is reported already is not reported again. */
+/* A consequence of a problem already reported is not reported again. */
 enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why)
 {
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
@@ -176,7 +176,7 @@ enum err case_all_constants(struct reader *r)
         const struct expr_names names = {r, case_name, EXPR_FIXED};
         struct quantity q = {0};
         char why[EXPR_WHY];
-        /* Once more from its text, so that the message names what is wrong right here. */
+        /* Evaluates it again from its text, so that the message names the error. */
         r->cause_named = false;
         if (!expr_value(slice_of(e->value), &names, &q, why)) {
             TRY(case_go_on(r, case_bad_expression(r, e, why)));

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * [inflow] and [outflow] sections: what they say together, and what is wrong with it. */
+ * [inflow] and [outflow] sections: derived data and checks. */
 #include "case/case.h"
 
 #include <math.h>
 
 int scene_open_count(const struct scene *s) { return s->n_inflow + s->n_outflow; }
 
-/* Whole spacings that hold the kernel's reach, a particle that has left and is no part of the buffer yet, and
- * one of the buffer that has entered and is not relabelled yet. */
+/* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
+ * buffer, and one of the buffer that has entered and is not yet relabelled. */
 static double depth_of(const struct scene *s)
 {
     return ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
@@ -90,7 +90,7 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
 
 enum { LINE_POINTS = 33, LINE_TIMES = 65 };
 
-/* Finite on the whole line at all times; and what is called an inflow brings fluid in at some time. */
+/* Finite on the whole line at all times; an inflow must bring fluid in at some time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
     const char *const word = word_of(o), *const name = o->common->name;

@@ -15,7 +15,7 @@ const struct section_info section_table[SECTION_COUNT] = {
 #include "case/params.def"
 };
 
-/* Fill a struct param_default, a struct param_bound. */
+/* Initializers of a struct param_default and a struct param_bound. */
 #define NEEDED (double)NAN, true
 #define ABSENT (double)NAN
 #define OVER(v) v, true
@@ -84,7 +84,7 @@ const struct param *param_find(enum section_id section, const char *key)
     return NULL;
 }
 
-/* Whether `word` is one of the words of a key, which _ parts. */
+/* Whether `word` is one of the words of a key, which are separated by _. */
 static bool has_word(const char *key, const char *word)
 {
     const size_t length = strlen(word);
@@ -95,7 +95,7 @@ static bool has_word(const char *key, const char *word)
     return false;
 }
 
-/* Whether a key is what the field calls `word`. */
+/* Whether `word` is the usual textbook name of a key. */
 static bool is_called(const char *key, const char *word)
 {
     static const char *const names[][2] = {

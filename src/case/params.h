@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * case/params.def as data: one row for each section and each key, for everything that reads, checks,
- * writes or lists the values of a scene. */
+ * case/params.def as data: one row for each section and each key, used to read, check, write or
+ * list the values of a scene. */
 #ifndef SPHFSI_CASE_PARAMS_H
 #define SPHFSI_CASE_PARAMS_H
 
@@ -21,7 +21,7 @@ struct section_info {
 };
 extern const struct section_info section_table[SECTION_COUNT];
 
-/* Where a key is given in a section, or NULL. */
+/* Line of a key given in a section, or NULL. */
 const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
                                       const char *key);
 
@@ -41,7 +41,7 @@ enum param_type {
 
 struct param_default {
     double value;
-    bool needed; /* none: the case must give the key */
+    bool needed; /* none: the key is required */
 };
 
 struct param_bound {
@@ -60,10 +60,10 @@ struct param {
     double vector_default[2];
     struct param_bound low, high; /* of a REAL, INTEGER */
     int count;                    /* expressions of an expression or a TIME_VECTOR */
-    size_t offset;                /* in the section's struct */
+    size_t offset;                /* offset in the section's struct */
     size_t expr_offset;           /* of the expressions of a TIME_VECTOR */
 };
-/* The number of keys in all. */
+/* The number of all keys. */
 enum {
 #define ONE(section, key) PARAM_NUMBER_##section##_##key,
 #define REAL(section, key, def, lo, hi, unit, meaning) ONE(section, key)
@@ -83,36 +83,36 @@ enum {
 };
 extern const struct param param_table[PARAM_COUNT];
 
-/* How many sections of a kind the scene has; the index-th struct of them. */
+/* Number of sections of a kind in the scene; the index-th struct of them. */
 int section_count(const struct scene *s, enum section_id id);
 void *section_at(const struct scene *s, enum section_id id, int index);
 
 /* The row of a key, or NULL. */
 const struct param *param_find(enum section_id section, const char *key);
 
-/* The keys of a section that a word may mean, as "`a` or `b`": those that have it among their words, as
- * viscosity in artificial_viscosity, or that textbooks call so; false: none. */
+/* The keys of a section that a word may mean, as "`a` or `b`": keys with it among their words, as
+ * viscosity in artificial_viscosity, or with that textbook name; false: none. */
 enum { PARAM_MEANT = 200 };
 bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT]);
 
-/* Why a key of an older release no longer does anything; NULL: it is none of those. */
+/* Why a key of an older release has no effect any more; NULL: it is not such a key. */
 const char *param_retired(enum section_id section, const char *key);
 
 /* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
 const struct expr *param_in_time(const struct param *p, const void *section, int component);
 
-/* Whether a section has the value that the key has when it is left out. */
+/* Whether a section has the default value of a key. */
 bool param_is_default(const struct param *p, const void *section);
 
-/* Whether the scene's `scheme` sets a key, and to what (case/presets.def). */
+/* Whether the scene's `scheme` sets a key, and its value (case/presets.def). */
 bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
                        double *value);
 
 /* The name of a CHOICE's value, copied into `name`. */
 void param_choice_name(const struct param *p, int value, char name[SCENE_NAME]);
 
-/* The candidate nearest to a misspelt word, or NULL if none is near. Call for each candidate with
- * the same `best`, which starts as {0}. */
+/* The candidate nearest to a misspelt word, or NULL if none is near. To be called for each
+ * candidate with the same `best`, which starts as {0}. */
 struct nearest {
     const char *name;
     int distance;

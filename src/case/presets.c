@@ -11,7 +11,7 @@ static enum scene_kind kind_of_scene(const struct scene *s)
     return s->n_fluid && s->n_solid ? SCENE_COUPLED : s->n_fluid ? SCENE_FLUID : SCENE_SOLID;
 }
 
-/* A row of case/presets.def: a value that stands in for a default. */
+/* A row of case/presets.def: a value that replaces a default. */
 static const struct preset {
     bool of_scheme; /* chosen by `scheme`, not by `accuracy` */
     int kind;       /* enum scene_kind; SCENE_EITHER: with fluid */
@@ -46,7 +46,8 @@ bool scene_scheme_sets(const struct scene *s, enum section_id section, const cha
     return false;
 }
 
-/* The value of a choice at the top of the file, before it is read; a wrong word is found there. */
+/* The value of a choice at the top of the file, before it is read; the reader reports an invalid
+ * word. */
 static int top_choice(const struct reader *r, const char *key)
 {
     const struct param *const p = param_find(SECTION_top, key);

@@ -62,8 +62,8 @@ static enum err allocate_sections(struct reader *r)
     return ERR_OK;
 }
 
-/* `like = NAME`: the values of an earlier section of the kind become the defaults; its regions do
- * not, since two bodies are not in one place. */
+/* `like = NAME`: the values of an earlier section of the kind become the defaults. Its regions do
+ * not, since two bodies cannot be in the same place. */
 static enum err inherit(struct reader *r, int section)
 {
     const struct case_section *to = &r->sections[section];
@@ -89,7 +89,7 @@ static enum err inherit(struct reader *r, int section)
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
         return ERR_OK;
     }
-    if (r->lost) return ERR_INPUT; /* it may have been in what could not be understood */
+    if (r->lost) return ERR_INPUT; /* it may be defined in an invalid line */
     if (near.name)
         return bad_value(r, e, "there is no earlier [%s] of that name; did you mean `%s`?",
                          section_table[to->id].word, near.name);
@@ -116,7 +116,7 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 
-/* A key of an older release is passed over with a note. */
+/* A key of an older release is ignored, with a note. */
 static bool note_retired(struct reader *r, const struct entry *e, int id)
 {
     const char *const why = param_retired((enum section_id)id, e->key);
@@ -128,7 +128,7 @@ static bool note_retired(struct reader *r, const struct entry *e, int id)
     return true;
 }
 
-/* An inherited pressure gives way to a surface that is given, and the other way round. */
+/* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
 static void drop_rivals(struct reader *r, int section)
 {
     const struct case_section *cs = &r->sections[section];
@@ -215,7 +215,7 @@ static enum err lacks(struct reader *r, const struct case_section *cs, const str
                     p->key, p->meaning, unit);
 }
 
-/* Values that must be given, and were not, are still NaN. */
+/* Required values that were not given are still NaN. */
 static enum err check_needed(struct reader *r)
 {
     for (int k = 0; k < r->n_sections; k++) {
@@ -227,7 +227,7 @@ static enum err check_needed(struct reader *r)
             if ((int)p->section != cs->id || !p->number.needed) continue;
             double value;
             memcpy(&value, section + p->offset, sizeof value);
-            /* What has a wrong value, or an unknown name that may be it, is not missing. */
+            /* A key with an invalid value, or an unknown name that may mean it, is not missing. */
             if (!isnan(value) || cs->incomplete ||
                 scene_given(r->scene, (enum section_id)cs->id, cs->index, p->key))
                 continue;
@@ -250,7 +250,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     if (!r->scene->given) return ERR_MEMORY;
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
     TRY(check_needed(r));
-    /* What concerns several values is looked at only where each of them is sound. */
+    /* Checks of several values are done only if each of them is valid. */
     if (r->n_problems > 0) return ERR_INPUT;
     TRY(case_check(r));
     if (r->n_problems > 0) return ERR_INPUT;
@@ -258,7 +258,7 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     return motion_load(r->scene, r->diag);
 }
 
-/* --- of a text, of a file --- */
+/* --- from text, from a file --- */
 
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d)
@@ -308,7 +308,7 @@ static enum err read_file(FILE *file, const char *path, char **text, struct diag
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d)
 {
-    /* Opening a pipe would wait for whoever writes to it, a terminal for whoever types. */
+    /* Opening a pipe would wait for its writer, a terminal for input. */
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return diag_fail(d, ERR_INPUT, "%s: is %s; a case is a regular file", path,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What is looked up in a scene: sections by their names, places for messages, files beside the case. */
+ * Queries on a scene: sections by name, places for messages, files relative to the case. */
 #include "case/scene.h"
 
 #include <stdio.h>
@@ -53,7 +53,7 @@ int scene_find_wall(const struct scene *s, const char *name)
     return -1;
 }
 
-/* Whether a section is about two bodies, walls behind solids; one that names nobody is about all. */
+/* Whether a section applies to two bodies, walls after solids; one without names applies to all. */
 static bool is_between(const struct scene *s, const struct scene_contact *c, int a, int b)
 {
     char name[2][SCENE_TEXT];
@@ -66,7 +66,7 @@ static bool is_between(const struct scene *s, const struct scene_contact *c, int
     return (number[0] == a && number[1] == b) || (number[0] == b && number[1] == a);
 }
 
-/* Sections that name nobody first: those that do may differ from them. */
+/* Sections without names come first: named ones override them. */
 const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b)
 {
     if (s->n_contact == 0 && s->domain.periodic != PERIODIC_NONE) return NULL;

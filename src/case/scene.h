@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What the user asked for: the case file as a struct (from case/params.def) and the points sampled from
- * its shapes. All memory belongs to the scene's arena. Units: SI. */
+ * The content of a case file as a struct (from case/params.def) and the points sampled from its
+ * shapes. All memory belongs to the scene's arena. Units: SI. */
 #ifndef SPHFSI_CASE_SCENE_H
 #define SPHFSI_CASE_SCENE_H
 
@@ -35,7 +35,7 @@ struct scene_expr {
     struct expr *e[2];
 };
 
-/* The name behind the section's word and the line it starts at. */
+/* The name after the section's word, and the line of its header. */
 struct scene_section_common {
     char name[SCENE_NAME];
     int line;
@@ -55,7 +55,7 @@ struct scene_section_common {
 #define FLOW_EXPR(section, key, count, unit, meaning) struct scene_expr key;
 #define SHAPES(section, key, meaning) struct shape_list key;
 #define NUMBERS(section, key, unit, meaning) struct number_list key;
-#define PARAMS_OF(section) ONLY_##section /* 0 where it is not defined */
+#define PARAMS_OF(section) ONLY_##section /* 0 if it is not defined */
 #define PARAMS_KEEP
 
 #define ONLY_top 1
@@ -179,7 +179,7 @@ enum scene_kind {
     SCENE_FLUID,
     SCENE_COUPLED,
     SCENE_EITHER
-}; /* what presets are told apart by */
+}; /* the scenes that presets distinguish */
 enum scheme { SCHEME_PAPER, SCHEME_STANDARD };
 enum accuracy { ACCURACY_DRAFT, ACCURACY_STANDARD, ACCURACY_FINE };
 enum solid_precision { SOLID_PRECISION_SINGLE, SOLID_PRECISION_DOUBLE, SOLID_PRECISION_AUTO };
@@ -212,8 +212,8 @@ enum probe_quantity {
 #undef QUANTITY
     PROBE_QUANTITIES
 };
-/* What a quantity looks at: a material point of a solid, a point in the fluid, either (by whether a
- * body is named), a solid, a solid or wall, all fluid, a line in the fluid. */
+/* Target of a quantity: a material point of a solid, a point in the fluid, either (depending on
+ * `body`), a solid, a solid or wall, all fluid, a line in the fluid. */
 enum probe_target {
     TARGET_SOLID_POINT,
     TARGET_FLUID_POINT,
@@ -226,28 +226,29 @@ enum probe_target {
 enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
 
 /* Points sampled from the shapes of one kind. Solids: body after body, each in rows along its
- * longer side, so that neighbours in the lattice are mostly neighbours in memory. */
+ * longer side, so that lattice neighbours are mostly adjacent in memory. */
 struct scene_points {
     int64_t n;
     double *x, *y;
     int32_t *body;    /* index of the section among those of its kind */
-    uint8_t *clamped; /* solids: 1 where a clamp holds the particle; else NULL */
-    int32_t *open;    /* fluid: open boundary whose buffer it belongs to, from 1, or 0; or NULL */
+    uint8_t *clamped; /* solids: 1 if a clamp holds the particle; otherwise NULL */
+    int32_t *
+        open; /* fluid: number of the open boundary whose buffer it belongs to, from 1, or 0; or NULL */
 };
 
-/* The lattice that a region is sampled on. Cell (i, j) has its centre at origin + ((i, j) + 1/2) spacing in
- * axes that are turned by `angle`. */
+/* The lattice that a region is sampled on. Cell (i, j) has its centre at origin + ((i, j) + 1/2)
+ * spacing in axes rotated by `angle`. */
 struct scene_lattice {
     double angle;      /* rad */
     double turn[2];    /* its cosine and sine */
-    double origin[2];  /* m, in the turned axes */
+    double origin[2];  /* m, in the rotated axes */
     double spacing[2]; /* m */
-    double dp;         /* m: the root of a cell's area, which a particle stands for */
-    bool fitted;       /* to edges that are no whole number of dp apart */
+    double dp;         /* m: the root of a cell's area, which is the volume of a particle */
+    bool fitted;       /* to edges that are not a whole number of dp apart */
     double area;       /* of the shapes, m^2; solids */
 };
 
-/* A place in the axes of a lattice; and the other way round. */
+/* A position in the axes of a lattice; and the inverse. */
 SPHFSI_INLINE void lattice_place(const struct scene_lattice *l, double x, double y, double at[2])
 {
     const bool turned = l->angle != 0;
@@ -276,20 +277,21 @@ struct scene_constant {
     double m, kg, s; /* powers of its unit */
 };
 
-/* A key that the case gives, as opposed to a default. */
+/* A key given by the case, not a default. */
 struct scene_given {
-    int section, index; /* enum section_id of case/params.h, and which of them */
+    int section, index; /* enum section_id of case/params.h, and the section's index */
     const char *key;
     int line; /* 0: by --set */
 };
 
-/* Set by tests, between reading a case and creating its simulation; neither changes a bit. */
+/* Set by tests after reading a case and before creating its simulation; neither changes a bit. */
 struct test_switches {
-    bool generic_kernel; /* the fluid's kernel that decides at run time, where a stamped one fits */
-    bool work_on_idle;   /* visit dry walls, place and sort resting ones */
+    bool generic_kernel; /* the generic kernel of the fluid also if there is a specialised one */
+    bool work_on_idle;   /* visit dry walls, place and sort walls at rest */
 };
 
-/* A scene: every section, every value in effect. Unnamed sections are single, named ones arrays. */
+/* A scene: every section, every value in effect. Unnamed sections are single structs, named ones
+ * arrays. */
 struct scene {
     char path[4096];    /* of the case file */
     struct arena arena; /* owns everything below */
@@ -299,7 +301,7 @@ struct scene {
     int n_##section;
 #define SECTION(section, named) SCENE_MEMBER_##named(section)
 #include "case/params.def"
-    struct scene_contact contact_default; /* of bodies that no section is about */
+    struct scene_contact contact_default; /* for bodies without a section of their own */
     int n_constants;
     struct scene_constant *constant;
     int n_given;
@@ -313,15 +315,16 @@ struct scene {
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
     double domain_lower[2], domain_upper[2]; /* in effect */
-    bool off_lattice; /* a shape does not fit the lattice: its size depends on dp */
+    bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */
 };
 
-/* Reads and checks a case file; geometry/load.h samples its points as well. `sets` are the --set arguments
- * ("key=value" or "section.key=value"; a named section is section NAME: "solid gate.young=1e6" or
- * "gate.young=1e6"). On success the caller frees with scene_free; on failure nothing remains to be freed. */
+/* Reads and checks a case file; geometry/load.h also samples its points. `sets` are the --set
+ * arguments ("key=value" or "section.key=value"; a named section is section NAME: "solid
+ * gate.young=1e6" or "gate.young=1e6"). After success the caller frees with scene_free; after a
+ * failure there is nothing to free. */
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d) SPHFSI_CHECKED;
-/* The same from text in memory; `path` names it in messages and anchors relative file names. */
+/* The same from text in memory; messages use `path`, and file names are relative to it. */
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
                      const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *s);
@@ -348,7 +351,8 @@ struct scene_open {
 /* The section number k, those of [inflow] first. */
 struct scene_open scene_open_at(const struct scene *s, int k);
 int scene_open_count(const struct scene *s);
-/* How far a point lies from the line on the side of the fluid, and how far along it, m. */
+/* Distance of a point from the line on the side of the fluid, and its coordinate along the line,
+ * m. */
 SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2], double *in,
                                     double *along)
 {
@@ -356,79 +360,79 @@ SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2
     *in = d[0] * o->inward[0] + d[1] * o->inward[1];
     *along = d[0] * o->along[0] + d[1] * o->along[1];
 }
-/* The velocity that is given at a point of the line and a time, m/s. */
+/* The given velocity at a point of the line and a time, m/s. */
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2]);
 
-/* Value of an expression at a point; of one in t at x = t (case/expr.h has the grammar). */
+/* Value of an expression at a point; of one in t at x = t (grammar: case/expr.h). */
 double scene_expr_at(const struct expr *e, double x, double y);
 /* Value of an expression in x, y and t. */
 double scene_expr_at_time(const struct expr *e, double x, double y, double t);
 
-/* Writes the effective case, every value and default spelled out in SI units; parsing it again gives
- * an equal scene. */
+/* Writes the effective case, with all values and defaults in SI units; parsing it again gives an
+ * equal scene. */
 enum err scene_write(const struct scene *s, const char *path, struct diag *d) SPHFSI_CHECKED;
 
-/* Prescribed motion: displacement from the initial place, velocity and acceleration at a time; and the
- * angle about a centre with its first two derivatives. */
+/* Prescribed motion: displacement from the initial position, velocity and acceleration at a time;
+ * and the angle about a centre with its first two derivatives. */
 struct motion_state {
     double d[2], v[2], a[2];
     double centre[2], angle, rate, angular_acceleration;
     double turn[2]; /* cosine and sine of the angle */
 };
-struct motion_hook { /* a motion that a program with the library prescribes instead */
+struct motion_hook { /* a function of a program with the library, used instead */
     void (*at)(void *context, double time, double d[2], double v[2], double a[2]);
     void *context;
 };
-/* Gravity at a time, m/s^2: top.gravity, or what stands in its place where it is given as expressions in t,
- * and the table of top.gravity_file. top.gravity itself is that at t = 0 without the table. */
+/* Gravity at a time, m/s^2: top.gravity, or its expressions in t if given, plus the table of
+ * top.gravity_file. top.gravity itself is the value at t = 0 without the table. */
 void scene_gravity_at(const struct scene *s, double t, double g[2]);
 bool scene_gravity_varies(const struct scene *s);
 
 struct motion_state motion_at(const struct scene *s, int motion_index, double time);
 
-/* Where a motion puts a point that began at (X, Y): x, v and a. Whatever is driven, a wall for the fluid or
- * for contact, a clamp, is there. */
+/* Position, velocity and acceleration (x, v and a) of a point with a motion, initially at (X, Y).
+ * Used for all prescribed motion: walls for the fluid and for contact, and clamps. */
 struct motion_point {
     double x[2], v[2], a[2];
 };
 struct motion_point motion_of_point(const struct motion_state *m, double X, double Y);
 
-/* C_CFL of Eq. 28 where none is given: that of the paper, and that of leapfrog, whose step may be twice as
- * long (docs/performance.md). */
+/* Default C_CFL of Eq. 28: that of the paper, and that of leapfrog, which is stable at twice the
+ * step (docs/performance.md). */
 #define CFL_PAPER 0.2
 #define CFL_LEAPFROG 0.4
 
 /* Index of a named section, or -1. */
 int scene_find_motion(const struct scene *s, const char *name);
 int scene_find_solid(const struct scene *s, const char *name);
-/* Spacing of a solid's particles, m: that of its lattice, once it is sampled. */
+/* Spacing of a solid's particles, m: that of its lattice after sampling. */
 double scene_solid_dp(const struct scene *s, int solid);
 /* Its smoothing length, m. */
 double scene_solid_h(const struct scene *s, int solid);
-/* Whether a solid is bonded to another: its thickness is not its own. */
+/* Whether a solid is bonded to another: then the whole is thicker than it. */
 bool scene_is_bonded(const struct scene *s, int solid);
 int scene_find_wall(const struct scene *s, const char *name);
 
 /* Whether the snapshots of a scene have a field of case/pointdata.def. */
 bool scene_snapshot_has(const struct scene *s, const char *field);
 
-/* What a probe looks at; TARGET_ANY_POINT is resolved. */
+/* Target of a probe; TARGET_ANY_POINT is resolved. */
 enum probe_target scene_probe_target(const struct scene_probe *probe);
 
-/* The section that says how two bodies meet, walls behind solids, a body and itself the same; NULL: they do
- * not. */
+/* The contact section for two bodies, walls after solids, or for a body with itself; NULL: they do
+ * not touch. */
 const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b);
 
 /* The k-th name of a list with commas between them, without blanks around it; false: there are fewer. */
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 
-/* The two names of `a, b`; false: it is something else. */
+/* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
-/* FILE:LINE, the path cut short if it is very long; line 0: --set. */
+/* FILE:LINE, with a very long path shortened; line 0: --set. */
 enum { LOCATION_TEXT = 300 };
 void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
-/* A file name as the case file gives it, seen from the working directory; false: too long. */
+/* A file name of the case file, relative to the working directory; false: too long. */
 bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
 
 #endif

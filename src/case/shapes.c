@@ -96,7 +96,7 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
     return ERR_OK;
 }
 
-/* "thickness T:" in front of a polyline's points. */
+/* "thickness T:" before a polyline's points. */
 static enum err read_thickness(struct reader *r, const struct entry *e, struct slice *text,
                                double *thickness)
 {
@@ -152,7 +152,7 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     struct shape shape = {.kind = (enum shape_kind)kind};
     const char *start = e->value + length + strspn(e->value + length, " \t");
     TRY(read_shape(r, e, (struct slice){start, strlen(start)}, &shape));
-    if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: move to twice the room */
+    if ((list->n & (list->n - 1)) == 0) { /* full at powers of two: double the memory */
         struct shape *item =
             arena_alloc(&r->scene->arena, 2 * (size_t)list->n + 1, sizeof *item, "shapes", r->diag);
         if (!item) return ERR_MEMORY;

@@ -11,7 +11,7 @@
 
 enum { MAX_ROWS = 1000000 };
 
-/* Commas or blanks stand between the columns. */
+/* The columns are separated by commas or blanks. */
 
 struct table_file {
     FILE *file;
@@ -22,11 +22,11 @@ struct table_file {
 };
 
 /* 1: a row; 0: end of the file; -1: failed, in the diag. Lines that begin with # are comments, and
- * so is a head that begins with a letter. */
+ * so is a header that begins with a letter. */
 static int read_row(struct table_file *t, double row[3])
 {
     char text[512];
-    /* What fgets does not write stays 1, so the last zero is the one that it has put. */
+    /* Bytes that fgets does not write stay 1, so the last zero is the terminating one. */
     while (memset(text, 1, sizeof text), fgets(text, sizeof text, t->file)) {
         t->line++;
         const size_t length = strlen(text);
@@ -115,7 +115,7 @@ enum err table_load(struct scene *s, struct scene_table *table, const struct tab
     scene_location(s, line, place);
     if (!scene_file(s, name, path, sizeof path))
         return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
-    /* Opening a pipe would wait for whoever writes to it. */
+    /* Opening a pipe would wait for its writer. */
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
         return diag_fail(d, ERR_INPUT, "%s: %s = %s is not a regular file", place, key, name);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Units after numbers, and the dimensions they give. */
+ * Units after numbers, and their dimensions. */
 #include "case/expr.h"
 
 #include <ctype.h>
@@ -157,8 +157,8 @@ static void apply(struct quantity *q, const struct unit *u, double power)
     q->dim.s += power * u->s;
 }
 
-/* The unit that goes on behind * or /. Not g, which by itself is as a rule the gravitational
- * acceleration (no other symbol of a unit may name a constant). */
+/* The unit after * or /. Not g, which alone usually means the gravitational acceleration (no other
+ * unit symbol may name a constant). */
 static const struct unit *next_unit(struct slice rest)
 {
     const size_t length = identifier_length(rest);
@@ -200,7 +200,7 @@ bool unit_read(struct slice *text, struct quantity *q, char why[EXPR_WHY])
     return true;
 }
 
-/* Of a unit as case/params.def spells it: "m/s^2", "1/s", or "1". */
+/* Of a unit in the spelling of case/params.def: "m/s^2", "1/s", or "1". */
 static struct dim dim_of(const char *unit)
 {
     const bool inverse = strncmp(unit, "1/", 2) == 0;

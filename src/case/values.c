@@ -49,7 +49,7 @@ static enum err read_choice(struct reader *r, const struct entry *e, const struc
     return bad_value(r, e, "unknown choice; known: %s", p->choices);
 }
 
-/* Texts go into JSON, HDF5 and plots, which all want UTF-8. */
+/* Texts are written to JSON, HDF5 and plots, which all need UTF-8. */
 static bool is_utf8(struct slice text)
 {
     int follow = 0;
@@ -145,7 +145,7 @@ static enum err read_field(struct reader *r, const struct entry *e, const struct
     return ERR_OK;
 }
 
-/* Numbers where they are numbers, expressions where they depend on t. */
+/* Numbers, or expressions if they depend on t. */
 static enum err read_time_vector(struct reader *r, const struct entry *e, const struct param *p,
                                  void *section)
 {

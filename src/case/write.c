@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The effective case: every value spelled out in SI units, constants evaluated. */
+ * The effective case: all values in SI units, constants evaluated. */
 #include "case/case.h"
 
 #include <errno.h>
@@ -12,7 +12,7 @@
 #define SPHFSI_VERSION "(unversioned build)"
 #endif
 
-/* The shortest decimal that is read back as the same double; seventeen digits always are. */
+/* The shortest decimal that is read back as the same double; seventeen digits always suffice. */
 static void write_real(FILE *out, double value)
 {
     char text[40];
@@ -80,7 +80,8 @@ static void write_shape(FILE *out, const char *key, const struct shape *shape)
     fprintf(out, "\n");
 }
 
-/* The folder of a path with all links resolved and a / at its end; false: it cannot be told. */
+/* The folder of a path with all links resolved and a / at its end; false: it cannot be
+ * determined. */
 static bool real_directory(const char *path, char *folder, size_t size)
 {
     char head[4096 + SCENE_TEXT];
@@ -93,7 +94,7 @@ static bool real_directory(const char *path, char *folder, size_t size)
     return n > 0 && (size_t)n < size;
 }
 
-/* A file beside the case, as seen from the folder of the effective case. */
+/* A file given relative to the case, as a path relative to the folder of the effective case. */
 static void relocate(const struct scene *s, const char *name, const char *path,
                      char text[SCENE_TEXT])
 {
@@ -187,7 +188,7 @@ static void write_section(FILE *out, const struct scene *s, enum section_id id, 
     }
 }
 
-/* Expressions in x and y keep their text, so the constants they use are kept too. */
+/* Expressions in x and y keep their text, so their constants are written too. */
 static void write_constants(FILE *out, const struct scene *s)
 {
     if (s->n_constants) fprintf(out, "\n[constants]\n");

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Walls and structures as the fluid's sweeps have them: pressures, mirrored velocities and forces by the
- * fluid around. A part of the sweeps' text (fluid/sweep.h), once for each precision. */
+ * Walls and structures in the fluid's sweeps: pressures, mirrored velocities and forces from the
+ * fluid around them. Included by fluid/sweep.h, once for each precision. */
 
-/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with accelerations
- * (ax, ay) from the fluid that they see; 0 where none is in reach. */
+/* Eq. 19 in the form of Adami et al. 2012, Eq. 27: pressure of wall or solid particles with
+ * accelerations (ax, ay) from the fluid within reach; 0 if there is none. */
 SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct neighbours *neighbours,
                                          const struct receiver *s, const double *ax,
                                          const double *ay, double pressure[GROUPS])
@@ -29,14 +29,16 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct nei
         const double lift =
             (f->k.gravity[0] - ax[g]) * (double)x[g] + (f->k.gravity[1] - ay[g]) * (double)y[g];
         const double mean = ((double)p[g] + f->k.rho0 * f->k.h * lift) / (double)weight[g];
-        /* A particle alone on a wall meets nothing but its own pressure; pulled as well as pushed, its
-         * bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third of c0. */
+        /* A particle alone on a wall interacts with its own pressure only. With suction as well as
+         * pressure its bouncing grew on the gate's bed (dp = 1 mm) to 20 % of density and a third
+         * of c0. */
         pressure[g] = has_fluid_near(weight[g]) ? max2(f->k.lowest_wall_pressure, mean) : 0;
     }
 }
 
-/* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less the mean of
- * the fluid's around them, so that between them the fluid moves with the surface. */
+/* Adami et al. 2012, Eqs. 22 and 23: twice the velocities (u, v) of wall or solid particles less
+ * the mean velocity of the fluid around them. Halfway between dummies and fluid the velocity is
+ * that of the surface. */
 static void mirrored_velocity(const struct neighbours *neighbours, const struct receiver *s,
                               double *u, double *v)
 {
@@ -74,7 +76,7 @@ SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS],
     }
 }
 
-/* The mirror image of what sum_dummies adds to the fluid by laminar viscosity, as in fluid_force; s has
+/* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
  * the mirrored velocity. */
 static void drag_force(const struct fluid *f, const struct neighbours *neighbours,
                        const struct receiver *s, const double *volume,
@@ -91,9 +93,9 @@ static void drag_force(const struct fluid *f, const struct neighbours *neighbour
     add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
 }
 
-/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with the sign reversed;
- * N/m per depth. The mirror image of what the fluid particles sum. With FX_IMPEDANCE as well the surface per
- * depth, m, on which a pressure of 1 Pa on both sides of the pairs would press. */
+/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with opposite
+ * sign, N/m per depth; equal and opposite to the fluid's sums. With FX_IMPEDANCE also the surface
+ * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
 SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
                                const struct receiver *s, const real *own, const double *volume,
                                const struct vector_constants *k, effect_set effects,
@@ -125,10 +127,11 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
         add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
 }
 
-/* Effects that walls and structures have code of their own for: without them it is stamped out. */
+/* Effects with code of their own for walls and structures; without them that code is compiled
+ * out. */
 #define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION)
 
-/* The particles of a cluster: those there are, and their places in the arrays. */
+/* The particles of a cluster: their number and their indices in the arrays. */
 struct dummies {
     enum kind kind;
     int count;
@@ -137,13 +140,13 @@ struct dummies {
     real *packed;
 };
 
-/* Copies a field of the particles of a cluster, or zeros where it is off. */
+/* Copies a field of the particles of a cluster, or zeros if it is NULL. */
 SPHFSI_INLINE void take(const struct dummies *d, const double *field, double out[CLUSTER])
 {
     for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
 }
 
-/* A structure's velocity as the fluid sees it; walls have none where nothing moves them. */
+/* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
 SPHFSI_INLINE void take_velocity(const struct fluid *f, const struct dummies *d,
                                  const struct particles *p, double u[CLUSTER], double v[CLUSTER])
 {
@@ -157,13 +160,13 @@ SPHFSI_INLINE void put(const struct dummies *d, const double in[CLUSTER], double
     for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
 }
 
-/* Zeros, and with them no volume, where there are no particles. */
+/* Lanes without particles get zeros, hence no volume. */
 SPHFSI_INLINE void pack_four(const struct dummies *d, const double in[CLUSTER], enum packed_field m)
 {
     put_four(d->packed, m, (four_double) * (const four_double_at *)in);
 }
 
-/* Where they are, with the box around them. */
+/* Positions, and the box around them. */
 SPHFSI_INLINE void place_dummies(const struct fluid *f, const struct particles *p,
                                  const struct cells *c, int32_t cell, const struct dummies *d)
 {
@@ -200,7 +203,7 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct parti
     }
 }
 
-/* The forces on those of a kind that feels them. */
+/* Forces on the kinds that store them. */
 SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
                                   const struct dummies *d, const struct neighbours *neighbours,
                                   const struct cell_sides *sides, const struct vector_constants *k,
@@ -230,7 +233,7 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
     put(d, wet_y, p->wet_y);
 }
 
-/* Velocities that the fluid meets where it sticks, with the body's own elsewhere. */
+/* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. */
 static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
                   const struct neighbours *neighbours, const struct cell_sides *sides)
 {
@@ -264,7 +267,7 @@ SPHFSI_INLINE struct dummies dummies_at(const struct fluid *f, const struct cell
                             cluster_packed(&f->packed[kind], cluster)};
 }
 
-/* Their pressure by the fluid that they see. */
+/* Their pressure from the fluid within reach. */
 SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particles *p,
                                     const struct dummies *d, const struct neighbours *neighbours,
                                     const struct cell_sides *sides, double pressure[CLUSTER])
@@ -279,8 +282,8 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particle
     }
 }
 
-/* What follows from it. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer than the
- * fluid. */
+/* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
+ * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
                                  const struct dummies *d, const double pressure[CLUSTER],
                                  const double dens[CLUSTER])

@@ -20,10 +20,10 @@ SPHFSI_INLINE double eos_pressure(double dens, double rho0, double c0)
     return c0 * c0 * rho0 / EOS_GAMMA * eos_power(dens);
 }
 
-/* Eq. 20: dens d of a given pressure. (1 + d)^7 - 1 = z, from the diagonal Pade approximant of (1 + z)^(1/7)
- * of second order, off by 8e-4 z^5 where z is small, by Newton's method: a round leaves three times the
- * square of the error, so that in water one reaches the last digit, and five do for -0.9 < z < 10. Plain
- * arithmetic: the bits do not depend on a library's pow. */
+/* Eq. 20: dens d of a given pressure. The start for (1 + d)^7 - 1 = z is the diagonal Pade
+ * approximant of (1 + z)^(1/7) of second order, with an error of 8e-4 z^5 for small z. Newton
+ * iterations follow, each with three times the square of the error: one suffices in water, five for
+ * -0.9 < z < 10. Plain arithmetic: the bits do not depend on a library's pow. */
 enum { EOS_ROUNDS = 5 };
 
 SPHFSI_INLINE double eos_z(double pressure, double rho0, double c0)
@@ -33,7 +33,7 @@ SPHFSI_INLINE double eos_z(double pressure, double rho0, double c0)
 
 SPHFSI_INLINE double eos_start(double z) { return z * (14 + 7 * z) / (98 + z * (91 + 13 * z)); }
 
-/* What a round takes from d; and whether another one has to follow. */
+/* The correction of d by one iteration; and whether another one is needed. */
 SPHFSI_INLINE double eos_round(double d, double z)
 {
     const double s = 1 + d, s3 = s * s * s;
@@ -56,8 +56,8 @@ SPHFSI_INLINE double eos_dens(double pressure, double rho0, double c0)
     return d;
 }
 
-/* The same of a block side by side, whose rounds hide each other's latency; each keeps what it has when its
- * rounds are over. */
+/* The same for a block of values at a time, whose iterations hide each other's latency. Each value
+ * is final once its own iterations are done. */
 enum { EOS_BLOCK = 16 };
 SPHFSI_INLINE void eos_dens_of_block(const double *pressure, double rho0, double c0, double *d)
 {

@@ -37,7 +37,7 @@ static struct fluid_constants constants_of(const struct scene *s)
     };
 }
 
-/* Fields that the set calls for in the lanes of a kind. */
+/* Packed fields that the effects need for a kind. */
 static int packed_count(enum kind kind, effect_set effects)
 {
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
@@ -71,7 +71,7 @@ static enum err note_slip(struct fluid *f, struct arena *a, const struct scene *
     return ERR_OK;
 }
 
-/* One piece of memory for all threads, of which each gets its part to touch first. */
+/* One allocation for all threads; each thread writes to its own part first. */
 static enum err neighbour_scratch_create(struct fluid *f, struct arena *a, int64_t clusters,
                                          struct diag *d)
 {
@@ -123,9 +123,9 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     return ERR_OK;
 }
 
-/* Skillen et al. 2013 for the size, or the Mach number of 0.1 that Eq. 3 allows for (Sun et al. 2017). At
- * the free surface, where the divergence of the positions falls from 2 to below 1.5, the shift fades out as
- * it does in Dominguez et al. 2022. */
+/* The factor of the shift: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al.
+ * 2017). At the free surface, where the divergence of the positions falls from 2 to below 1.5, the
+ * shift goes to zero as in Dominguez et al. 2022. */
 double fluid_shift(const struct fluid *f, struct particles *p, double dt)
 {
     const double full = 2, none = 1.5;
@@ -136,7 +136,7 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
         const double speed = f->k.shifting_speed > 0
                                  ? f->k.shifting_speed
                                  : sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
-        if (p->open && p->open[i]) continue; /* T-50: buffers move as they are told */
+        if (p->open && p->open[i]) continue; /* T-50: the motion of buffers is given */
         const double size = -f->k.shifting * f->k.h * speed * dt * fade;
         const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
         p->x[i] += dx;
@@ -148,7 +148,8 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
     return sqrt(longest2);
 }
 
-/* Marks the nine cells around one of walls or structures; returns whether there is fluid in any of them. */
+/* Marks the nine cells around a cell of walls or structures; returns whether any of them contains
+ * fluid. */
 static bool mark_around(struct fluid *f, const struct cells *c, int32_t cell)
 {
     const int cx = cell_x(c, cell), cy = cell_y(c, cell);

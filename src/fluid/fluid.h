@@ -13,15 +13,15 @@ struct fluid_constants {
     double alpha; /* Eq. 7 */
     double tensile;        /* epsilon of Monaghan 2000 */
     double repulsion;      /* beta of fx_repulsion */
-    double dp;             /* spacing that it is relative to */
+    double dp;             /* particle spacing, m */
     double shifting;       /* A of Lind et al. 2012 */
-    double shifting_speed; /* m/s, for all particles alike; 0: each its own */
+    double shifting_speed; /* m/s, the same for all particles; 0: each particle's own speed */
     bool fills_domain; /* the fluid has no free surface: a shift takes the density along (L-9) */
     double nu;         /* laminar viscosity, m^2/s */
     double delta;      /* Eq. 6 */
     double damper;     /* alpha_D of the acoustic damper */
     double gravity[2];
-    double lowest_wall_pressure; /* Pa, of dummies; -INFINITY: no limit */
+    double lowest_wall_pressure; /* Pa, least pressure of dummies; -INFINITY: no limit */
 };
 
 /* Largest values over all fluid particles of the last evaluation; order-free maxima. */
@@ -30,8 +30,8 @@ struct fluid_extremes {
     double approach;      /* max |h v.x/(r^2 + eta^2)| of Eq. 28b, m/s */
 };
 
-/* Copies that the sweeps read: positions relative to the cell's centre in units of h, volume in units of
- * h^2, the rest in SI; float in mixed, double in double precision. */
+/* Packed copies that the sweeps read: positions relative to the cell's centre in units of h, volume
+ * in units of h^2, the rest in SI; float in mixed, double in double precision. */
 enum packed_field {
     PACKED_X,
     PACKED_Y,
@@ -47,11 +47,11 @@ enum packed_field {
     PACKED_MIRROR_V,
     PACKED_STICKS,
     PACKED_NO_SLIP_FIELDS,
-    /* Of walls and solids, where each fluid particle meets its own pressure there: rho0 h (g - a), Pa. */
+    /* Of walls and solids with one-sided pressure (L-6): rho0 h (g - a), Pa. */
     PACKED_LIFT_X = PACKED_NO_SLIP_FIELDS,
     PACKED_LIFT_Y,
     PACKED_ONE_SIDED_FIELDS,
-    /* Of walls and solids that push back: (r0^2 + eta^2)/h^2 of fx_repulsion. */
+    /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
     /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times h. */
@@ -61,8 +61,8 @@ enum packed_field {
     PACKED_MOST = PACKED_REPULSION_FIELDS
 };
 
-/* By cluster of the cell order, one after the other: each field of its four particles in a row. What a cell's
- * last cluster lacks is far away and has no volume. */
+/* By cluster in cell order, consecutively: each field of its four particles in a row. Missing
+ * particles of a cell's last cluster are far away and have no volume. */
 struct packed_fields {
     int n;         /* fields in use */
     void *cluster; /* [clusters][n][CLUSTER] */
@@ -74,17 +74,16 @@ struct fluid;
 /* The sweeps of one precision and set of effects. */
 struct fluid_sweeps {
     const char *name;
-    effect_set
-        effects; /* pair effects the kernel is stamped for; ANY_EFFECTS: decides at run time */
+    effect_set effects;      /* pair effects of a specialised kernel; ANY_EFFECTS: generic */
     size_t packed_item_size; /* of an item */
-    /* Pressure by the equation of state, and lanes of the fluid. */
+    /* Pressure by the equation of state, and packed fields of the fluid. */
     void (*packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
                    const struct cells *c);
-    /* Renormalised gradient of the fluid's density, and its lanes. */
+    /* Renormalised gradient of the fluid's density, and its packed fields. */
     void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                    const struct cells *c);
-    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their lanes, and the
-     * fluid's force on solid particles (Eq. 21b). */
+    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their packed fields,
+     * and the fluid's force on solid particles (Eq. 21b). */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
     /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
@@ -92,58 +91,60 @@ struct fluid_sweeps {
 };
 #define ANY_EFFECTS (~(effect_set)0)
 
-/* Pair effects that kernels are stamped for. */
+/* Pair effects that kernels are specialised for. */
 #define PAIR_EFFECTS                                                                      \
     (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING | \
      FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_ONE_SIDED)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
-/* The fluid's active cells are swept in shares: a pair within one is taken once for both of its particles.
- * At most so many cells, and multiples of so many shares, so that threads have equally many. The number of
- * threads must not matter: the order of sums follows from the shares. */
+/* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its
+ * particles. The limits are a number of cells per chunk and multiples of a number of chunks, so
+ * that threads have equal work. The order of sums follows from the chunks, not from the number of
+ * threads. */
 enum { CHUNK_CELLS = 64, CHUNKS = 24 };
 
-/* The shares of n active cells. */
+/* The number of chunks of n active cells. */
 SPHFSI_INLINE int32_t fluid_chunk_count(int32_t n)
 {
     return (n + CHUNKS * CHUNK_CELLS - 1) / (CHUNKS * CHUNK_CELLS) * CHUNKS;
 }
 
-/* The first cell of the m-th of them; shares may be empty. */
+/* The first cell of the m-th chunk; chunks may be empty. */
 SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m)
 {
     return (int32_t)((int64_t)n * m / fluid_chunk_count(n));
 }
 
-/* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and of what shifting needs; and how many are taken. */
+/* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and for shifting; and their number. */
 enum pair_sum { SUM_X, SUM_Y, SUM_RATE, SUM_MIXING, SUM_GRAD_C_X, SUM_GRAD_C_Y, SUM_DIV_R, SUMS };
 SPHFSI_INLINE int pair_sums(effect_set effects)
 {
     return effects & FX_SHIFTING ? SUMS : effects & FX_DIFFUSION ? SUM_MIXING + 1 : SUM_RATE + 1;
 }
 
-/* What the particles of a cell, and of a cluster, may see: of a thread. */
+/* Neighbour clusters of a cell and of a cluster: scratch memory of a thread. */
 struct neighbour_scratch {
     struct neighbour_clusters around[KIND_COUNT];
     struct cluster_list near[KIND_COUNT];
-    /* [1 + clusters of a share][sums][receiver][candidate]: what receivers before them have left for the
-     * clusters as candidates; zeros between evaluations, but for the first, which is what nobody asks for. */
+    /* [1 + clusters of a chunk][sums][receiver][candidate]: deferred sums of the clusters as
+     * candidates, from earlier receivers. Zero between evaluations, except for the first, the
+     * discard slot. */
     void *deferred;
 };
 
 struct fluid {
     struct fluid_constants k;
     effect_set effects;
-    bool idle_is_work;          /* dry walls visited, resting ones placed; set by tests */
-    double *volume[KIND_COUNT]; /* [sections] of a dummy at rest over that of a fluid particle */
+    bool idle_is_work;                 /* visit dry walls, place resting ones; set by tests */
+    double *volume[KIND_COUNT];        /* [sections] of a resting dummy over a fluid particle's */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct packed_fields packed[KIND_COUNT];
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    bool walls_placed;  /* walls are at rest, and their lanes say where since the last sorting */
-    bool *near_dummies; /* [cells]: whether walls or structures are in the nine cells around */
+    bool walls_placed;        /* walls rest, and their packed positions are valid */
+    bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */
@@ -151,13 +152,13 @@ struct fluid {
     struct fluid_extremes extremes;
 };
 
-/* Chooses the kernel and makes room for lanes. */
+/* Chooses the kernel and allocates packed fields. */
 enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, effect_set effects,
                       const struct particles kinds[KIND_COUNT], const struct cells *c,
                       struct diag *d) SPHFSI_CHECKED;
 
-/* Moves particles by A h |v| dt down the gradient of their concentration, as of the last evaluation, but
- * for those at the free surface; returns the longest way, m. */
+/* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
+ * except those at the free surface. Returns the largest shift, m. */
 double fluid_shift(const struct fluid *f, struct particles *p, double dt);
 
 /* After sorting: finds the cells of walls and solids that have fluid within reach, and the reverse. */
@@ -166,12 +167,12 @@ void fluid_find_near(struct fluid *f, const struct cells *c);
 /* Most particles of any kind in one cell. */
 int32_t fluid_crowding(const struct cells *c);
 
-/* One evaluation: pressures, dummies, rates. The cells must have room (cells_skin_left).
- * The time of each pass is added to phase_seconds. */
+/* One evaluation: pressures, dummies, rates. The cells must have skin left (cells_skin_left). The
+ * time of each pass is added to phase_seconds. */
 void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
                     double phase_seconds[PHASE_COUNT]);
 
-/* The fluid's own pressures into p, which no step needs. */
+/* The fluid's own pressures to p, which no step needs. */
 void fluid_show(const struct fluid *f, struct particles *p);
 
 #endif

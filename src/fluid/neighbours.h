@@ -1,20 +1,20 @@
 /* SPDX-License-Identifier: MIT
- * How a cluster of particles looks at the clusters near it, and the pairs that it sees. A part of the sweeps'
- * text (fluid/sweep.h), once for each precision. */
+ * The neighbour clusters of a cluster of particles, and the pairs of both. Included by
+ * fluid/sweep.h, once for each precision. */
 
 _Static_assert((int)CLUSTER == (int)GROUP, "a group of lanes is a cluster");
 
-/* Vectors that the candidates of a cluster take; sums over each are kept apart, so that they are the same as
- * where one is enough. */
+/* Vectors for the candidates of a cluster. Sums over each are kept separate, so that they equal
+ * those with one wider vector. */
 enum { PARTS = (int)CLUSTER * (int)GROUPS / (int)LANES };
 
-/* Vectors that the receivers of a cluster take. */
+/* Vectors for the receivers of a cluster. */
 enum { ROWS = (int)CLUSTER / (int)GROUPS };
 
 /* A field of the particles at b, in every group. */
 #define lane(b, field) vfour((b) + (field)*CLUSTER)
 
-/* What a cluster sees of one kind. */
+/* The neighbour clusters of one kind. */
 struct neighbours {
     const real *packed;
     size_t items; /* items of a cluster */
@@ -22,7 +22,7 @@ struct neighbours {
     int n; /* clusters */
 };
 
-/* For each cluster that is seen, and each of its parts. */
+/* For each neighbour cluster, and each of its parts. */
 #define EACH_SEEN(neighbours, k, part)        \
     for (int k = 0; k < (neighbours)->n; k++) \
         for (int part = 0; part < PARTS; part++)
@@ -54,7 +54,8 @@ SPHFSI_INLINE struct neighbours neighbours_of(const struct packed_fields *packed
                                near->code, near->n};
 }
 
-/* What the cluster `own` of one kind sees of another, around whose cell it was looked. */
+/* The neighbours of the cluster `own` of one kind among another kind, from the clusters collected
+ * around its cell. */
 SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighbour_scratch,
                                                 const struct fluid *f, enum kind kind,
                                                 enum kind own, int32_t cluster)
@@ -64,7 +65,8 @@ SPHFSI_INLINE struct neighbours gather_clusters(struct neighbour_scratch *neighb
     return neighbours_of(&f->packed[kind], near);
 }
 
-/* What the next cluster of a cell of fluid sees of the fluid outside of its share and ahead. */
+/* The neighbours of the next cluster of a fluid cell: fluid outside its chunk and fluid ahead in
+ * it. */
 SPHFSI_INLINE struct neighbours gather_clusters_ahead(struct neighbour_scratch *neighbour_scratch,
                                                       const struct fluid *f)
 {
@@ -84,15 +86,15 @@ static struct cell_sides cell_sides_of(const struct fluid *f, const struct cells
     return (struct cell_sides){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
 }
 
-/* Particles a, one to each group of four lanes; with their places as seen from the centres of the three
- * columns and rows of cells around. */
+/* Particles a, one in each group of four lanes; with their positions relative to the centres of the
+ * three columns and rows of cells around. */
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
-    vreal slope_x, slope_y; /* h times the gradient of dens, where it is taken */
-    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, of its unit */
+    vreal slope_x, slope_y; /* h times the gradient of dens, if it is used */
+    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, in its unit */
 };
 
-/* Pairs of each a with the candidates b, one to each lane of a group. */
+/* Pairs of each a with the candidates b, one in each lane of a group. */
 struct pair {
     vreal x, y;    /* xi_ab */
     vreal r2;      /* |xi_ab|^2 */
@@ -103,7 +105,7 @@ struct pair {
     vreal slope_x, slope_y;
 };
 
-/* Receivers from their lanes on, as far as geometry goes. */
+/* Receivers from their packed fields: geometry only. */
 SPHFSI_INLINE struct receiver receiver_at(const struct cell_sides *sides, const real *own)
 {
     struct receiver a;
@@ -115,18 +117,18 @@ SPHFSI_INLINE struct receiver receiver_at(const struct cell_sides *sides, const 
     a.y[0] = y + side_y;
     a.y[1] = y;
     a.y[2] = y - side_y;
-    /* cppcheck-suppress uninitvar ; the others are loaded by those sweeps that need them */
+    /* cppcheck-suppress uninitvar ; the other fields are loaded by the sweeps that need them */
     return a;
 }
 
-/* How many particles the m-th cluster of a cell has. */
+/* Number of particles in the m-th cluster of a cell. */
 SPHFSI_INLINE int particles_in(const struct cell_list *list, int32_t cell, int32_t m)
 {
     const int32_t rest = list->count[cell] - m * CLUSTER;
     return rest < CLUSTER ? rest : CLUSTER;
 }
 
-/* From candidates to receivers, in units of h. */
+/* Vector from candidates to receivers, in units of h. */
 struct separation {
     vreal x, y, length;
 };
@@ -153,6 +155,6 @@ SPHFSI_INLINE struct pair pair_load(const struct receiver *a, uint32_t code, con
     q.u = a->u - lane(b, PACKED_U);
     q.v = a->v - lane(b, PACKED_V);
     q.vx = vfma(q.v, q.y, q.u * q.x);
-    /* cppcheck-suppress uninitvar ; p and dens are loaded by those laws that need them */
+    /* cppcheck-suppress uninitvar ; p and dens are loaded by the laws that need them */
     return q;
 }

@@ -7,9 +7,9 @@
 
 #include <math.h>
 
-/* Fluid that has gone this far beyond the line, in spacings, is a part of the buffer; and a particle of the
- * buffer that has come this far before the line waits no longer. Fluid that swings about the line by less
- * makes no copies. */
+/* Distance from the line in spacings: fluid this far behind the line joins the buffer, and a buffer
+ * particle this far in front of it is relabelled without delay. Fluid that oscillates about the
+ * line by less creates no copies. */
 #define BAND 0.5
 
 int64_t open_places(const struct scene *s)
@@ -53,12 +53,12 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
 
 /* --- the fluid across the line --- */
 
-/* Sums of the kernel over the fluid around a point, of what it carries and of the way there. */
+/* Sums of the kernel over the fluid around a point: of its fields and of the vector to it. */
 struct across {
     double w, p, u, v;
-    double x, y, xx, xy, yy; /* of the way from the point to the particles */
+    double x, y, xx, xy, yy; /* of the vector from the point to the particles */
     double ux, uy, vx, vy;
-    double mass_x, mass_y; /* of rho/rho0 times the way back */
+    double mass_x, mass_y; /* of rho/rho0 times the vector back */
 };
 
 SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
@@ -85,7 +85,8 @@ SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
     s->mass_y -= mass * y;
 }
 
-/* The fluid in reach of a point, without the buffers. Particles may have strayed from their cells. */
+/* The fluid within reach of a point, without the buffers. Particles may have moved out of their
+ * cells. */
 static struct across look_across(const struct fluid_constants *k, const struct particles *p,
                                  const struct cells *c, const double at[2])
 {
@@ -112,8 +113,8 @@ static struct across look_across(const struct fluid_constants *k, const struct p
     return sums;
 }
 
-/* T-51: the value at the point itself of the linear field nearest to the sums; their mean where the
- * particles span no plane. */
+/* T-51: the value at the point of the linear field fitted to the sums; their mean if the particles
+ * span no plane. */
 static double linear_value(const struct across *s, double mean, double with_x, double with_y)
 {
     const double x = s->x / s->w, y = s->y / s->w;
@@ -124,9 +125,9 @@ static double linear_value(const struct across *s, double mean, double with_x, d
     return value - ((yy * x - xy * y) * cx + (xx * y - xy * x) * cy) / det;
 }
 
-/* --- what buffers have --- */
+/* --- fields of the buffers --- */
 
-/* Rate of the velocity that is given at a point of the line, over the time that sound crosses h. */
+/* Rate of the given velocity at a point of the line, over the time in which sound crosses h. */
 static void given_acceleration(const struct scene_open *b, const struct fluid_constants *k,
                                const double x[2], double time, double a[2])
 {
@@ -137,9 +138,9 @@ static void given_acceleration(const struct scene_open *b, const struct fluid_co
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (to - from);
 }
 
-/* What a particle of a buffer takes from the fluid at its mirror image in the line: pressure and
- * velocity (T-51), or the pressure that T-10 gives a wall that moves as the velocity is given (T-50).
- * Where there is no fluid it keeps what it has. */
+/* A buffer particle's fields from the fluid at its mirror image in the line: pressure and velocity
+ * (T-51). With a given velocity: the pressure that T-10 gives a wall with that velocity (T-50).
+ * Without fluid there its fields do not change. */
 static void see(struct open *o, int64_t m, const struct fluid_constants *k,
                 const struct particles *p, const struct cells *c, double time)
 {
@@ -173,7 +174,7 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
                    s.w;
 }
 
-/* The pressure that is given at a point of the line, Pa. */
+/* The given pressure at a point of the line, Pa. */
 static double given_pressure(const struct scene_open *b, const struct fluid_constants *k,
                              const double foot[2], double time)
 {
@@ -181,7 +182,8 @@ static double given_pressure(const struct scene_open *b, const struct fluid_cons
     return max2(0, -k->rho0 * k->gravity[1] * (b->level - foot[1]));
 }
 
-/* T-52: of a particle of the buffer, so that on the line it is `given`; no tension where water ends. */
+/* T-52: pressure of a buffer particle such that it is `given` on the line; no tension at the end of
+ * the water. */
 static double odd_pressure(const struct scene_open *b, double given, double mirrored)
 {
     if (isnan(mirrored)) return given;
@@ -189,8 +191,8 @@ static double odd_pressure(const struct scene_open *b, double given, double mirr
     return b->pressure ? odd : max2(0, odd);
 }
 
-/* Velocity out of the fluid a spacing before a point of the line: at fixed ones, since particles that come
- * and go would be noise. */
+/* Velocity out of the fluid a spacing in front of the line, at fixed points: particles that come
+ * and go would add noise. */
 static double flow_at(const struct scene_open *b, const struct fluid_constants *k,
                       const struct particles *p, const struct cells *c, double along)
 {
@@ -203,7 +205,7 @@ static double flow_at(const struct scene_open *b, const struct fluid_constants *
            linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
 }
 
-/* The mean flow out of the fluid through each boundary that needs to know it. */
+/* The mean flow out of the fluid through each boundary that uses it. */
 static void find_flow(struct open *o, const struct fluid_constants *k, const struct particles *p,
                       const struct cells *c)
 {
@@ -233,7 +235,7 @@ static double energy_of(const struct fluid_constants *k, const struct particles 
             k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
 }
 
-/* Books a particle that is made (sign 1) or ended (-1). */
+/* Counts a particle that is created (sign 1) or removed (-1). */
 static void book_particle(struct open *o, const struct fluid_constants *k,
                           const struct particles *p, int64_t i, double sign)
 {
@@ -332,7 +334,7 @@ bool open_due(const struct open *o, const struct particles *p, double dp)
     return due;
 }
 
-/* A copy of a particle that enters, at `in` before the line. */
+/* A copy of a particle that enters, at `in` in front of the line. */
 static enum err make_copy(struct open *o, const struct fluid_constants *k, struct particles *p,
                           int64_t i, double in, struct diag *d)
 {
@@ -356,8 +358,8 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k, struc
     return ERR_OK;
 }
 
-/* How far the last particle of the column of i in the buffer is before the line. Those from `fresh` on are
- * new. */
+/* Distance of the last particle in the buffer column of i from the line. Particles from `fresh` on
+ * are new. */
 static double last_of_column(const struct open *o, const struct particles *p, int64_t i,
                              int64_t fresh, double dp)
 {
@@ -374,8 +376,9 @@ static double last_of_column(const struct open *o, const struct particles *p, in
     return last;
 }
 
-/* T-54: behind a particle that enters, its column is filled to the depth of the buffer, each a spacing
- * behind the last. Compressed fluid lies closer: what comes in is its density times its velocity. */
+/* T-54: behind a particle that enters, its column is filled to the depth of the buffer, each a
+ * spacing behind the last. Compressed fluid has smaller distances: the inflow is its density times
+ * its velocity. */
 static enum err fill_column(struct open *o, const struct fluid_constants *k, struct particles *p,
                             int64_t i, int64_t fresh, struct diag *d)
 {
@@ -386,7 +389,7 @@ static enum err fill_column(struct open *o, const struct fluid_constants *k, str
     return ERR_OK;
 }
 
-/* The boundary whose buffer fluid at x has come into, from 1; 0: none. */
+/* The boundary whose buffer contains fluid at x, from 1; 0: none. */
 static int32_t buffer_at(const struct open *o, const double x[2], double dp)
 {
     for (int k = 0; k < o->n; k++) {
@@ -398,8 +401,8 @@ static int32_t buffer_at(const struct open *o, const double x[2], double dp)
     return 0;
 }
 
-/* Whether a particle of a buffer is still in it or before it. Beside it are walls, which a buffer does not
- * answer to. */
+/* Whether a buffer particle is still in the buffer or in front of it. The sides of the buffer are
+ * walls, which do not affect its motion. */
 static bool stays(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];
@@ -408,7 +411,7 @@ static bool stays(const struct open *o, const struct particles *p, int64_t i, do
     return in >= -b->depth - dp && along > 0 && along < b->length;
 }
 
-/* Ends the particles that have left their buffers. */
+/* Removes the particles that have left their buffers. */
 static void end_particles(struct open *o, const struct fluid_constants *k, struct particles *p)
 {
     int64_t kept = 0;

@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT
- * What the fluid brings to the sweeps: its lanes, and the renormalised gradient of its density. A part of the
- * sweeps' text (fluid/sweep.h), once for each precision. */
+ * Packed fields of the fluid, and the renormalised gradient of its density. Included by
+ * fluid/sweep.h, once for each precision. */
 
 /* In units of h; the kernel ends at 2. */
 #define FAR 1e9
 
-/* The lanes of a cluster; those of its field m are lanes + m CLUSTER. */
+/* The packed fields of a cluster; those of its field m are at packed + m CLUSTER. */
 SPHFSI_INLINE real *cluster_packed(const struct packed_fields *packed, size_t cluster)
 {
     return (real *)packed->cluster + cluster * (size_t)(packed->n * CLUSTER);
 }
 
-/* Ends a cluster behind its first `count` particles. */
+/* Fills a cluster after its first `count` particles. */
 static void cluster_close(real *packed, int fields, int count)
 {
     for (int r = count; r < CLUSTER; r++) {
@@ -38,7 +38,7 @@ SPHFSI_INLINE void cluster_box(const struct cluster_boxes *boxes, size_t cluster
     boxes->side[BOX_UP][cluster] = (float)high[1];
 }
 
-/* Four values of a field, as those of a lane. */
+/* Four values of a field. */
 #define FOUR(field, i) ((four_double) * (const four_double_at *)&(field)[i])
 
 SPHFSI_INLINE void put_four(real *packed, enum packed_field m, four_double four)
@@ -62,7 +62,8 @@ SPHFSI_INLINE four_double damper_pressure(four_double swell, const struct fluid_
     return k->damper * k->rho0 * k->c0 * k->h * swell;
 }
 
-/* Lanes of the particles from i on; where they are fewer than four, the rest are of the next cell. */
+/* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
+ * next cell. */
 SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
                                 const double centre[2], real *out)
 {
@@ -107,9 +108,9 @@ static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KI
         pack_cell(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
 }
 
-/* Antuono et al. 2010, Eq. 4: the gradient of dens that is exact for linear fields whatever the neighbours,
- * (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W, times h. Where the neighbours
- * span no plane (a determinant below a thousandth of the trace squared) it is taken as zero. */
+/* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
+ * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
+ * neighbours span no plane (a determinant below a thousandth of the trace squared) it is zero. */
 static void slopes_of(const struct neighbours *neighbours, const struct receiver *a,
                       double slope[GROUPS][2])
 {

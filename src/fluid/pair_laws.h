@@ -10,8 +10,8 @@
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
-/* What a pair brings its receiver; its candidate it brings the opposite, but for the rate and the spread,
- * which are even. With the volumes of both, over h^4. */
+/* The contribution of a pair to its receiver. The candidate gets the opposite, except for the rate
+ * and div_r, which are even. With the volumes of both, over h^4. */
 struct exchange {
     vreal ax, ay;                    /* Pa */
     vreal rate;                      /* m/s */
@@ -19,7 +19,7 @@ struct exchange {
     vreal grad_c_x, grad_c_y, div_r; /* 1: sums of slope xi and of slope |xi|^2 */
 };
 
-/* Constants of the sweep, spread over the lanes. */
+/* Constants of the sweep, in all SIMD lanes. */
 struct vector_constants {
     vreal viscosity;      /* root of 2 alpha c0 rho0 of Eq. 7, (kg/(m^2 s))^(1/2) */
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
@@ -39,8 +39,8 @@ SPHFSI_INLINE vreal fx_pressure(const struct receiver *a, const struct pair *q)
     return a->p + q->p;
 }
 
-/* 1/((|xi|^2 + eta^2)(2 + dens_a + dens_b)): the one division that viscosity and diffusion share; `both`
- * is its second factor. */
+/* 1/((|xi|^2 + eta^2)(2 + dens_a + dens_b)): the one division of viscosity and diffusion; `both` is
+ * its second factor. */
 SPHFSI_INLINE vreal pair_damping(const struct receiver *a, const struct pair *q,
                                  const struct vector_constants *k, vreal *both)
 {
@@ -67,16 +67,17 @@ SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
     return -(k->tensile * tension) * (f2 * f2);
 }
 
-/* As in Zhang, Rezavand and Hu 2021 a fluid particle meets its own pressure p in a wall or structure, and
- * what gravity and acceleration add to it on the way: Eq. 19 with it as the only fluid. (x, y) is its place
- * from the dummy's in units of h, `lift` rho0 h (g - a) of the dummy. */
+/* As in Zhang, Rezavand and Hu 2021 a fluid particle interacts with its own pressure p in a wall or
+ * structure, plus the part of gravity and acceleration in between: Eq. 19 with this particle as the
+ * only fluid. (x, y) is its position relative to the dummy in units of h, `lift` rho0 h (g - a) of
+ * the dummy. */
 SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal lift_x, vreal lift_y,
                                  const struct vector_constants *k)
 {
     return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
 }
 
-/* In the place of the boundary force of Monaghan 1994, between fluid and the dummies nearer than r0: a
+/* Used in place of the boundary force of Monaghan 1994, between fluid and dummies nearer than r0: a
  * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2, inv =
  * h^2/(r^2 + eta^2). */
 SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_constants *k)
@@ -116,5 +117,5 @@ SPHFSI_INLINE void fx_concentration(const struct pair *q, struct exchange *e)
     e->div_r = q->slope * q->r2;
 }
 
-/* Eq. 28b: the pair's rate of approach or parting. */
+/* Eq. 28b: the pair's rate of approach or separation. */
 SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Sums over the pairs of the fluid. A pair of clusters in the same share of cells is taken once. Its
- * receivers, of the cluster whose turn it is, have what it brings them in registers; what it brings its
- * candidates is left for their turn. A part of the sweeps' text (fluid/sweep.h), once
- * for each precision. */
+ * Sums over the pairs of the fluid. A pair of clusters in the same chunk of cells is computed once.
+ * The receivers' sums stay in registers. The candidates' sums are deferred until these clusters are
+ * receivers. Included by fluid/sweep.h, once for each precision. */
 
 /* Vectors of sums of a cluster's receivers. */
 typedef vreal of_cluster[ROWS][PARTS];
@@ -21,7 +20,7 @@ SPHFSI_INLINE void add_concentration(struct cluster_sums *s, int row, int part,
     s->div_r[row][part] = s->div_r[row][part] + e->div_r;
 }
 
-/* Adds what pairs bring their receivers. */
+/* Adds the contributions of pairs to their receivers. */
 SPHFSI_INLINE void add_exchange(struct cluster_sums *s, int row, int part, const struct exchange *e,
                                 effect_set fx)
 {
@@ -41,7 +40,7 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
     return q;
 }
 
-/* What pairs of the receivers with candidates exchange; fx is a constant where the kernel is stamped. */
+/* Contributions of pairs of receivers and candidates; fx is a constant in specialised kernels. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
                                             const struct vector_constants *k, effect_set fx,
                                             vreal *approach)
@@ -75,18 +74,18 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     }
     if (fx & FX_SHIFTING) fx_concentration(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
-    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
+    /* cppcheck-suppress uninitvar ; sums of effects that are off are not read */
     return e;
 }
 
-/* Items that are left for a cluster; and where one of the sums lies, `at` the first. */
+/* Numbers deferred for a cluster; and the position of one of the sums, with the first at `at`. */
 SPHFSI_INLINE size_t deferred_stride(effect_set fx)
 {
     return (size_t)pair_sums(fx) * CLUSTER * CLUSTER;
 }
 #define DEFERRED(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
-/* The place of a cluster of the share in what is left, behind that of those nobody asks for. */
+/* The slot of a cluster of the chunk in the deferred sums, after the discard slot. */
 SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 {
     return cluster + 1 - (size_t)chunk->range.first;
@@ -94,7 +93,7 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 
 SPHFSI_INLINE void defer_add(real *at, vreal more) { vstore(at, vload(at) + more); }
 
-/* Leaves what pairs bring their candidates. */
+/* Adds the contributions of pairs to their candidates. */
 SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, effect_set fx)
 {
     defer_add(DEFERRED(at, SUM_X), e->ax);
@@ -107,7 +106,8 @@ SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, effect_set fx)
     defer_add(DEFERRED(at, SUM_DIV_R), e->div_r);
 }
 
-/* Sums over the fluid that is seen. What is not ahead leaves it at the first place, where nobody looks. */
+/* Sums over neighbouring fluid. Candidates that are not ahead in the chunk add to the discard
+ * slot. */
 SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
                              const struct vector_constants *k, effect_set fx,
                              const struct chunk *chunk, struct cluster_sums *sums)
@@ -149,11 +149,11 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     }
     if (fx & FX_SHIFTING) fx_concentration(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
-    /* cppcheck-suppress uninitvar ; sums of effects that fx has not are not looked at */
+    /* cppcheck-suppress uninitvar ; sums of effects that are off are not read */
     return e;
 }
 
-/* Sums over walls or structures that are seen, which have a sweep of their own for what it brings them. */
+/* Sums over neighbouring walls or structures; the forces on these have a sweep of their own. */
 SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct receiver a[ROWS],
                                const struct vector_constants *k, effect_set fx,
                                struct cluster_sums *sums)
@@ -176,7 +176,7 @@ SPHFSI_INLINE four_double own_sum(const of_cluster own)
     return __builtin_convertvector(*(const four_real *)(const void *)sum, four_double);
 }
 
-/* The same sum of what those before them have left for them; which leaves zeros for the next share. */
+/* The same sum of the contributions deferred for them; resets it to zero for the next chunk. */
 SPHFSI_INLINE four_double take_deferred(real *at)
 {
     four_real *const by = (four_real *)(void *)at; /* [receiver] */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * The sweeps of the fluid, one text for both precisions: fluid/sweep_mixed.c and fluid/sweep_double.c
- * include it after the words of base/real_float.h and base/real_double.h. Four particles of a cell
- * that lie close together, a cluster, look at the clusters near them. What a thread writes belongs to
- * its share of the cells, and shares do not depend on the number of threads, so that the bits do not;
- * and each lane of a group of four sums its own candidates, so that they do not depend on how many
- * groups a vector holds. */
+ * The sweeps of the fluid for both precisions: fluid/sweep_mixed.c and fluid/sweep_double.c include
+ * this file after base/real_float.h and base/real_double.h. Four particles of a cell that are close
+ * together form a cluster, which interacts with the clusters near it. A thread writes to its chunk
+ * of cells only, and chunks do not depend on the number of threads; so neither do the bits. Each
+ * lane of a group of four has its own sum over candidates, so the bits do not depend on the number
+ * of groups in a vector. */
 
 #include <math.h>
 #include <string.h>
@@ -14,7 +14,7 @@
 #include "particles/kernel.h"
 
 #include "fluid/neighbours.h"
-/* After what they are written with. */
+/* After the definitions that they need. */
 #include "fluid/pair_laws.h"
 #include "fluid/packed.h"
 
@@ -45,18 +45,18 @@ SPHFSI_INLINE vreal kernel_of(vreal q)
     return t2 * t2 * vfma(vset(2), q, vset(1));
 }
 
-/* Whether there is fluid in reach of a dummy, by the sum of the kernel over it. */
+/* Whether there is fluid within reach of a dummy, from the sum of the kernel over it. */
 SPHFSI_INLINE bool has_fluid_near(real weight) { return (double)weight > 1e-12; }
 
 #include "fluid/dummies.h"
 
-/* The part of the fluid that a thread takes at once. */
+/* A range of the fluid that a thread processes at a time. */
 struct chunk {
     struct cluster_range range;
     real *deferred; /* sight.left */
 };
 
-/* Largest values over a share: the lanes are searched once. */
+/* Largest values over a chunk: reduced over the SIMD lanes once. */
 struct chunk_maxima {
     vreal approach;
     double acceleration2[CLUSTER];
@@ -73,7 +73,8 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
         for (int r = 0; r < count; r++) to[r] = four[r];
 }
 
-/* Writes the rates of `count` particles from i on, which `left` has sums of: the factors that they lack. */
+/* Writes the rates of `count` particles from i on, from their sums and the factors not included in
+ * them. */
 SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32_t i, int count,
                                const struct cluster_sums *s, real *deferred, effect_set fx,
                                double acceleration2[CLUSTER])
@@ -83,7 +84,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     const double mix = 2 * k->delta * k->c0;
     four_double full = 1 + FOUR(p->dens, i), push = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
-    if (f->effects & FX_MASSES) { /* all sums have the volume of the particle itself */
+    if (f->effects & FX_MASSES) { /* all sums contain the volume of the particle itself */
         push = push / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
@@ -111,7 +112,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     store_four(p->div_r + i, slope * k->h * full * div_r, count);
 }
 
-/* Receivers of the fluid from their lanes on. */
+/* Receivers of the fluid from their packed fields. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
                                        const struct vector_constants *k, effect_set fx)
 {
@@ -147,7 +148,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     top->approach = s.approach;
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);
-    if (count == CLUSTER) /* a number that the compiler knows */
+    if (count == CLUSTER) /* a compile-time constant */
         rates_store(f, p, i, CLUSTER, &s, deferred, fx, top->acceleration2);
     else
         rates_store(f, p, i, count, &s, deferred, fx, top->acceleration2);
@@ -168,7 +169,8 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
         around[kind] = f->near_dummies[cell] && f->n_near_fluid[kind];
         if (around[kind]) gather_around_cell(neighbour_scratch, f, c, (enum kind)kind, cell);
     }
-    for (int32_t m = clusters_in(list, cell) - 1; m >= 0; m--) { /* as they come ahead */
+    for (int32_t m = clusters_in(list, cell) - 1; m >= 0;
+         m--) { /* in the order of the clusters ahead */
         const int32_t cluster = list->cluster[cell] + m;
         struct neighbours neighbours[KIND_COUNT];
         neighbours[KIND_FLUID] = gather_clusters_ahead(neighbour_scratch, f);
@@ -181,7 +183,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
     }
 }
 
-/* A share of the active cells, first to end - 1. */
+/* A chunk of the active cells, first to end - 1. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, const struct cells *c,
                                   int32_t first, int32_t end, const struct vector_constants *k,
                                   effect_set fx, struct fluid_extremes *top)
@@ -197,8 +199,8 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, co
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
 }
 
-/* A share of the active cells. Stamped outside of any parallel region: the compiler turns the body of a
- * region into a function of its own before it can see that fx is a constant. */
+/* A chunk of the active cells. Specialised outside of any parallel region: the compiler makes the
+ * body of a region a separate function before it can see that fx is a constant. */
 typedef void SWEEP(chunk)(const struct fluid *f, struct particles *p, const struct cells *c,
                           int32_t first, int32_t end, const struct vector_constants *k,
                           struct fluid_extremes *top);
@@ -254,7 +256,7 @@ VARIANT(any, ANY_EFFECTS)
             SWEEP(dummies), SWEEP(rates_##variant)                                        \
     }
 
-/* The generic kernel stands last. */
+/* The generic kernel is the last one. */
 const struct fluid_sweeps SWEEP(fluid_sweeps)[] = {
 #define VARIANT(variant, set) SWEEPS_ROW(variant, set),
 #include "fluid/variants.def"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Walls that move: placed by their laws, sorted where they have moved, and left alone while they rest. */
+ * Walls that move: set to their positions, sorted if they have moved, and skipped while they rest.
+ * */
 #ifndef SPHFSI_FLUID_WALL_MOTION_H
 #define SPHFSI_FLUID_WALL_MOTION_H
 
@@ -10,7 +11,7 @@
 struct moving_wall {
     int section, motion;
     int64_t first, end;
-    struct motion_state placed; /* where it was put last, if `known` */
+    struct motion_state placed; /* its last position, if `known` */
     bool known;
     bool rests; /* placed without velocity */
 };
@@ -19,20 +20,20 @@ struct wall_motion {
     int n;
     struct moving_wall *body;
     bool moved;        /* any wall, since the last sorting */
-    bool idle_is_work; /* nothing is left alone; set by tests */
+    bool idle_is_work; /* nothing is skipped; set by tests */
 };
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
                             const struct particles *walls, struct diag *d) SPHFSI_CHECKED;
 
-/* Puts moving walls where they are at a time, with their velocity and acceleration. */
+/* Sets position, velocity and acceleration of moving walls at a time. */
 void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct particles *walls,
                        double time);
 
-/* Sorts the walls again where any has moved since the last sorting. */
+/* Sorts the walls again if any has moved since the last sorting. */
 void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls);
 
-/* Largest speed, squared, and power that the walls give to the fluid, W/m. */
+/* Largest squared speed, and power of the walls on the fluid, W/m. */
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
 double moving_body_power(const struct moving_wall *b, const struct particles *walls);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Shapes that the lattice cannot represent as they are drawn: the user is told what was made of
- * them. */
+ * Warnings on shapes that the lattice cannot represent as drawn: they tell what was sampled
+ * instead. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"
@@ -84,7 +84,8 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
     }
 }
 
-/* Bending stiffness of a thin body goes with the third power of its thickness, and with it of its area. */
+/* The bending stiffness of a thin body is proportional to the third power of its thickness, hence
+ * of its area. */
 static enum err check_area(struct sampler *g, const struct region *region)
 {
     static const double tolerance = 0.005;
@@ -108,7 +109,7 @@ static enum err check_area(struct sampler *g, const struct region *region)
     return ERR_OK;
 }
 
-/* Whether a shape is sampled in layers, which lie along its faces wherever they are. */
+/* Whether a shape is sampled in layers, which follow its faces at any position. */
 static bool has_layers(const struct region *region, int shape)
 {
     for (int k = 0; k < region->add.n; k++)
@@ -128,9 +129,10 @@ static double thinnest(const struct shape *shape)
     return HUGE_VAL;
 }
 
-/* Fluid feels fluid behind a body that is thinner than the kernel's reach: through the pressure of the
- * body's particles, unless each fluid particle meets its own in them; and directly, where the nearest fluid
- * on both sides, one spacing further apart than the body is thick, is within reach. */
+/* A body thinner than the kernel's reach does not separate the fluid on its two sides. They
+ * interact through the pressure of the body's particles, unless each fluid particle uses its own
+ * pressure there. They interact directly if the nearest fluid on both sides, thickness plus one
+ * spacing apart, is within reach. */
 static void warn_see_through(struct sampler *g, const struct region *region, int line, double thick)
 {
     const struct scene *const s = g->scene;
@@ -167,13 +169,13 @@ static enum err check_solid(struct sampler *g, const struct region *region)
                   "will be inaccurate",
                   place, region->name, across, region->lattice.dp);
     if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
-    /* At the default h/dp this is said of two particles across only, which is one warning too many. */
+    /* At the default h/dp a warning here would repeat the one on two particles across. */
     if (across > 2 || (across + 1) * region->lattice.dp < 2 * g->scene->h)
         warn_see_through(g, region, region->line, across * region->lattice.dp);
     return ERR_OK;
 }
 
-/* Boxes of walls and solids that leave a slit which no particle fits in. */
+/* Boxes of walls and solids with a slit between them that is too narrow for a particle. */
 static void warn_slit(struct sampler *g, const struct region *a, const struct shape *p,
                       const struct region *b, const struct shape *q)
 {
@@ -196,7 +198,7 @@ static void warn_slit(struct sampler *g, const struct region *a, const struct sh
 
 static void warn_slits(struct sampler *g)
 {
-    enum { MAX_PAIRS = 1000000 }; /* a courtesy: not for scenes made of thousands of boxes */
+    enum { MAX_PAIRS = 1000000 }; /* not done for scenes of thousands of boxes */
     long pairs = 0;
     for (int i = 0; i < g->n_regions && g->scene->n_fluid; i++) {
         for (int j = i; j < g->n_regions; j++) {

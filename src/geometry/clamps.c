@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Which particles of a solid its clamps hold: those whose centres lie in one. The solid's lattice is fitted
- * to where its clamps end (geometry/lattice.c). */
+ * The particles of a solid that its clamps hold: those with their centres in a clamp. The solid's
+ * lattice is fitted to the ends of its clamps (geometry/lattice.c). */
 #include "geometry/sampling.h"
 
 #include "case/case.h"

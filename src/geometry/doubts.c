@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Scenes that can be simulated and are hardly meant: a tank without a floor, a body clamped all over. Each
- * gets a warning that says what will happen and what to change. */
+ * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a body clamped
+ * all over. Each gets a warning with the consequence and the remedy. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"
@@ -14,8 +14,8 @@ static void warn(const struct scene *s, int line, struct diag *d, const char *te
     diag_warn(d, "%s: %s", place, text);
 }
 
-/* For each strip of width dp along gravity, the coordinate along gravity of the last particle of a wall or
- * body in it. */
+/* For each strip of width dp along gravity: the coordinate along gravity of the last wall or body
+ * particle in it. */
 struct floors {
     double along[2], across[2]; /* unit vectors: of gravity, and to its left */
     double low;                 /* coordinate across of the first strip, m */
@@ -45,7 +45,7 @@ static enum err find_floors(struct floors *f, const struct sampler *g, struct ar
             low = min2(low, at);
             high = max2(high, at);
         }
-    f->low = low - 1.5 * dp; /* a strip more on either side */
+    f->low = low - 1.5 * dp; /* one strip more on each side */
     f->n = (int64_t)((high - f->low) / dp) + 3;
     f->last = arena_alloc(a, (size_t)f->n, sizeof *f->last, "strips", g->diag);
     if (!f->last) return ERR_MEMORY;
@@ -59,13 +59,14 @@ static enum err find_floors(struct floors *f, const struct sampler *g, struct ar
     return ERR_OK;
 }
 
-/* Fluid with no wall and no body below it, down to the edge of the domain, falls out of the scene. */
+/* Fluid without a wall or body between it and the edge of the domain below falls out of the
+ * scene. */
 static enum err warn_of_missing_floor(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     const struct scene_points *const p = &s->points[KIND_FLUID];
     if (p->n == 0 || (s->top.gravity[0] == 0 && s->top.gravity[1] == 0)) return ERR_OK;
-    if (s->domain.periodic != PERIODIC_NONE) return ERR_OK; /* it may come in again */
+    if (s->domain.periodic != PERIODIC_NONE) return ERR_OK; /* it may enter again */
     struct floors f;
     TRY(find_floors(&f, g, &g->temp));
     int64_t falling = 0, first = -1;
@@ -88,7 +89,7 @@ static enum err warn_of_missing_floor(struct sampler *g)
     return ERR_OK;
 }
 
-/* The hydrostatic start of `surface` supposes gravity along -y and water up to there. */
+/* The hydrostatic start of `surface` assumes gravity along -y and water up to that height. */
 static void warn_of_surface(struct sampler *g)
 {
     const struct scene *const s = g->scene;
@@ -119,11 +120,13 @@ static void warn_of_surface(struct sampler *g)
     }
 }
 
-/* Units that were taken for others: water of 1 g/cm^3 is one of 1000 kg/m^3. */
+/* Probable errors of units: a density in g/cm^3, as of water with 1 instead of 1000 kg/m^3. */
 static void warn_of_density(struct sampler *g)
 {
     const struct scene *const s = g->scene;
-    enum { LIGHTEST_LIQUID = 100 }; /* kg/m^3; liquid hydrogen has 71, all others have more */
+    enum {
+        LIGHTEST_LIQUID = 100
+    }; /* kg/m^3; liquid hydrogen has 71, all other liquids have more */
     for (int f = 0; f < s->n_fluid; f++)
         if (s->fluid[f].density < LIGHTEST_LIQUID) {
             char place[LOCATION_TEXT];
@@ -171,7 +174,7 @@ static bool clamped_to(const struct scene *s, int body, int wall)
     return false;
 }
 
-/* A tank that moves away from under a body whose clamp stays where it is. */
+/* A tank that moves while the clamp of a body in it stays at rest. */
 static void warn_of_resting_clamps(struct sampler *g)
 {
     const struct scene *const s = g->scene;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What follows from all points together: the domain in effect, probes, initial values. */
+ * Data that depend on all points: the effective domain, probes, initial values. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"
@@ -14,7 +14,7 @@ static void include(double low[2], double high[2], const double point[2])
     }
 }
 
-/* The box of a kind's points, with the way that moving walls go. */
+/* The box of a kind's points, including the displacement of moving walls. */
 static void include_points(const struct scene *s, int kind, double low[2], double high[2])
 {
     const struct scene_points *p = &s->points[kind];
@@ -41,8 +41,8 @@ static void include_motion(const struct scene *s, int wall, double low[2], doubl
     }
 }
 
-/* All that is there or will be driven there; around it the kernel's reach, or the size of the
- * largest solid, which may swing that far; above it the scene's height once more. */
+/* All initial positions and those of prescribed motion. Around them the kernel's reach, or the size
+ * of the largest solid, which may swing that far; above them the scene's height once more. */
 static void default_domain(struct scene *s)
 {
     double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
@@ -60,7 +60,8 @@ static void default_domain(struct scene *s)
     }
 }
 
-/* The two sides of a periodic domain are one place: a point on the upper one lies on the lower. */
+/* The two sides of a periodic domain coincide: a point on the upper one is moved to the lower
+ * one. */
 static bool in_domain(const struct scene *s, int axis, double x)
 {
     const double upper = s->domain_upper[axis];
@@ -93,7 +94,7 @@ static enum err given_domain(struct scene *s, struct diag *d)
 
 /* --- periodic sides --- */
 
-/* The lattice must go on through the side without a seam. */
+/* The lattice must continue through the side without a seam. */
 static enum err check_period(const struct scene *s, int axis, const char *place, struct diag *d)
 {
     const double period = s->domain.upper[axis] - s->domain.lower[axis];
@@ -105,7 +106,7 @@ static enum err check_period(const struct scene *s, int axis, const char *place,
                      place, "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
 }
 
-/* Bodies are bonded within the domain only: one from side to side would be cut there. */
+/* Bodies are bonded within the domain only: a body through a periodic side would be cut there. */
 static enum err check_span(const struct scene *s, int axis, int body, const char *place,
                            struct diag *d)
 {
@@ -158,7 +159,7 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == body)
             nearest = min2(nearest, hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));
-    /* A corner of a body is sqrt(1/2) dp away from its particle's centre. */
+    /* A corner of a body is sqrt(1/2) dp from its particle's centre. */
     const double dp = scene_solid_dp(s, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;
     char place[LOCATION_TEXT];

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The lattices that regions are sampled on: which way they are turned, where they begin, and their spacings.
- * Fluid and walls share one lattice of spacing dp. Each solid, with those bonded to it, has its own. */
+ * The lattices that regions are sampled on: their angles, origins and spacings. Fluid and walls
+ * have one common lattice of spacing dp. Each solid, with the solids bonded to it, has its own. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"
@@ -9,10 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Directions nearer than this are one, rad; edges nearer than this to the lattice are on it, dp. */
+/* Tolerances: directions closer than this are equal, rad; edges closer than this to the lattice are
+ * on it, dp. */
 static const double same_direction = 1e-6, on_lattice = 1e-6;
 
-/* Lines at right angles to an axis, for each spacing, that look for the edges along it. */
+/* Sampling lines at right angles to an axis, per spacing, which find the edges along it. */
 enum { LINES_PER_DP = 4, MAX_LINES = 20000, MAX_EDGES = 24 };
 
 /* --- direction --- */
@@ -27,7 +28,7 @@ static int by_angle(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* An edge's direction, rad, a right angle counted as none: above -PI/4, up to PI/4. */
+/* An edge's direction modulo a right angle, rad: above -PI/4, up to PI/4. */
 static struct direction direction_of(const double a[2], const double b[2])
 {
     const double dx = b[0] - a[0], dy = b[1] - a[1];
@@ -38,7 +39,7 @@ static struct direction direction_of(const double a[2], const double b[2])
     return (struct direction){fabs(angle) < same_direction ? 0 : angle, hypot(dx, dy)};
 }
 
-/* Appends the straight edges of shapes; of a polyline both sides, which are taken to be equally long. */
+/* Appends the straight edges of shapes; both sides of a polyline, with equal lengths. */
 static int add_directions(const struct shape_list *list, struct direction *to)
 {
     int n = 0;
@@ -59,7 +60,7 @@ static int add_directions(const struct shape_list *list, struct direction *to)
     return n;
 }
 
-/* The direction that more than half of all straight edges have, in length; else 0. */
+/* The direction of more than half of all straight edges, by length; otherwise 0. */
 static double main_direction(struct direction *all, int n)
 {
     double total = 0;
@@ -79,10 +80,10 @@ static double main_direction(struct direction *all, int n)
 
 /* --- edges along an axis --- */
 
-/* Positions where lines cross the boundary, gathered into edges at right angles to the axis. */
+/* Positions at which lines cross the boundary, grouped into edges at right angles to the axis. */
 struct crossing {
     double at, weight;
-    bool clamp; /* of a clamp's end within the body, else of the body's own */
+    bool clamp; /* of a clamp's end inside the body, otherwise of the body's own boundary */
 };
 
 static int by_place(const void *a, const void *b)
@@ -104,8 +105,8 @@ static bool covered(const double *from, int n, double x, double tolerance)
     return false;
 }
 
-/* Ends of the body on a line, those within its clamps left out, and ends of clamps within the body: what
- * bounds the part that is free to move. Appends them, and returns how many. */
+/* Ends of the body on a line, except those inside its clamps, and ends of clamps inside the body:
+ * the boundary of the part that is free to move. Appends them, and returns their number. */
 static int free_ends(const struct outlines *body, const struct outlines *minus,
                      const struct outlines *clamp, double y, double dp, double *buffer, int room,
                      struct crossing *to)
@@ -123,9 +124,9 @@ static int free_ends(const struct outlines *body, const struct outlines *minus,
     return count;
 }
 
-/* Merges crossings that lie close together into edges, each at its mean place. Left out are edges shorter
- * than a spacing, curved or slanted ends of a body, and clamps that are spread over more than two spacings:
- * their rows end on average where they are drawn, on any lattice. */
+/* Merges crossings that are close together into edges, each at the mean position. Omits edges
+ * shorter than a spacing, curved or slanted ends of a body, and clamps spread over more than two
+ * spacings. On any lattice, the rows of these end on average where they are drawn. */
 static int merge_edges(struct crossing *c, int n, double dp)
 {
     int kept = 0;
@@ -145,7 +146,7 @@ static int merge_edges(struct crossing *c, int n, double dp)
     return kept < MAX_EDGES ? kept : MAX_EDGES;
 }
 
-/* A group of regions that share a lattice. */
+/* A group of regions with a common lattice. */
 struct lattice_group {
     int n;
     struct region *const *region;
@@ -159,8 +160,8 @@ static enum err turned_outlines(struct outlines *o, const struct outlines *from,
     return outlines_turn(o, angle, &g->temp, g->diag);
 }
 
-/* Whether the line before has a crossing of the same kind in nearly the same place: the boundary lies across
- * the axis there, and is not slanted. */
+/* Whether the previous line has a crossing of the same kind at nearly the same position: then the
+ * boundary is at right angles to the axis, and not slanted. */
 static bool goes_on(const struct crossing *before, int n, const struct crossing *c, double dp)
 {
     for (int k = 0; k < n; k++)
@@ -168,7 +169,8 @@ static bool goes_on(const struct crossing *before, int n, const struct crossing 
     return false;
 }
 
-/* Adds the crossings of one region along the axis at `angle`; only their number if `to` is NULL. */
+/* Adds the crossings of one region along the axis at `angle`; returns only their number if `to` is
+ * NULL. */
 static enum err region_crossings(struct sampler *g, const struct region *region, double angle,
                                  double dp, bool whole, struct crossing **to, int *n)
 {
@@ -221,7 +223,7 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
     return ERR_OK;
 }
 
-/* The edges of a group across one axis; of its free part, or of the whole where nothing is free. */
+/* The edges of a group across one axis: of its free part, or of the whole if no part is free. */
 static enum err find_edges(struct sampler *g, const struct lattice_group *group, int axis,
                            struct crossing **edge, int *n)
 {
@@ -250,8 +252,8 @@ static double misfit(const struct crossing *edge, int n, double origin, double s
     return weight > 0 ? sum / weight : 0;
 }
 
-/* The line through (count, place) of the edges, by least squares, where `origin` and `spacing` say which
- * lattice line is the nearest to each. With `fixed` the spacing stays. */
+/* The line through (count, position) of the edges, by least squares; `origin` and `spacing`
+ * determine the lattice line nearest to each. With `fixed` the spacing is constant. */
 static void regress(const struct crossing *edge, int n, bool fixed, double *origin, double *spacing)
 {
     double w = 0, x = 0, y = 0, xx = 0, xy = 0;
@@ -270,8 +272,8 @@ static void regress(const struct crossing *edge, int n, bool fixed, double *orig
     *spacing = found;
 }
 
-/* The origin and the spacing that fit the edges best, tried from each of them with dp, and from every pair.
- * Of equal fits the spacing nearest to dp is taken. */
+/* The origin and spacing with the best fit to the edges. Candidates: each edge with dp, and every
+ * pair of edges. Among equal fits, the spacing nearest to dp. */
 static void fit_axis(const struct crossing *edge, int n, double dp, bool fixed, double *origin,
                      double *spacing)
 {
@@ -318,8 +320,8 @@ static void tell_shift(struct sampler *g, const struct region *region, const dou
               place, region->name, corner[0], corner[1], region->lattice.dp);
 }
 
-/* A solid's lattice is the common one where that fits. Else it begins at its lower left corner; and where
- * that leaves edges between lattice lines, it is fitted to them. */
+/* A solid's lattice is the common one if that fits. Otherwise its origin is its lower left corner.
+ * If edges are then between lattice lines, it is fitted to them. */
 static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
 {
     double corner[2];
@@ -370,14 +372,14 @@ static enum err group_direction(struct sampler *g, struct lattice_group *group)
     return ERR_OK;
 }
 
-/* An angle that is given, as the lattice takes it: a right angle is none. */
+/* A given angle modulo a right angle. */
 static double given_angle(double angle)
 {
     const double a[2] = {0, 0}, b[2] = {cos(angle), sin(angle)};
     return direction_of(a, b).angle;
 }
 
-/* The lattice of fluid and walls. A periodic one cannot be turned. */
+/* The lattice of fluid and walls. A periodic one cannot be rotated. */
 static enum err common_lattice(struct sampler *g, struct region **list)
 {
     struct scene *s = g->scene;
@@ -408,7 +410,7 @@ static enum err common_lattice(struct sampler *g, struct region **list)
     return ERR_OK;
 }
 
-/* Gives solids that are bonded to one another, directly or by way of others, one number. */
+/* Gives solids that are bonded to each other, directly or through others, the same number. */
 static void number_bonds(const struct scene *s, int *bond)
 {
     for (int k = 0; k < s->n_solid; k++) bond[k] = k;

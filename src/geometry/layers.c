@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * Layer k of a wall holds the points that are (k + 1/2) dp from the nearest point of its faces: segments
- * beside edges, cut at convex corners by the next edge's, and arcs around concave corners. Along a layer
- * the points are evenly spaced, as near to dp as a whole number of them allows. */
+ * Layer k of a wall consists of the points (k + 1/2) dp from the nearest point of its faces:
+ * segments beside edges, cut at convex corners by those of the next edge, and arcs around concave
+ * corners. Along a layer the points are evenly spaced, as near to dp as a whole number of them
+ * allows. */
 #include "geometry/layers.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Parts of a spacing that faces are cut into. */
+/* Parts per spacing that faces are divided into. */
 enum { PARTS = 8 };
-/* Nearer than this many dp, two points of a wall stand for one place. */
+/* Two points of a wall nearer than this many dp count as one. */
 static const double too_near = 0.65;
 
 /* --- points in a hash table --- */
@@ -73,10 +74,10 @@ static bool any_within(const struct point_grid *t, double x, double y, double di
     return false;
 }
 
-/* --- which pieces --- */
+/* --- choice of pieces --- */
 
-/* Whether a shape's edges all lie along the lattice. Of a polyline the joints between its segments do not
- * count. */
+/* Whether all edges of a shape are along the lattice. The joints between a polyline's segments are
+ * ignored. */
 static bool along_lattice(const struct shape *shape, const struct region *region)
 {
     const double c = region->lattice.turn[0], s = region->lattice.turn[1],
@@ -227,7 +228,7 @@ static void part_of(const struct edge *e, int k, double depth, double at[2])
     for (int c = 0; c < 2; c++) at[c] = e->a[c] + s * e->along[c] + depth * e->in[c];
 }
 
-/* Whether a part of an edge is a face: wall on its left, none on its right. */
+/* Whether a part of an edge is a face: wall on its left, no wall on its right. */
 static bool exposed(const struct layers *l, const struct edge *e, int k)
 {
     double left[2], right[2];
@@ -251,7 +252,7 @@ static enum err add_faces(struct layers *l, struct face_set *set, const struct l
 
 /* --- layers --- */
 
-/* Points of a layer before they are spaced evenly. */
+/* Points of a layer before they are evenly spaced. */
 struct trace {
     const struct face_set *set;
     double depth;
@@ -318,7 +319,7 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
     return hypot(t->pt[b][0] - t->pt[a][0], t->pt[b][1] - t->pt[a][1]);
 }
 
-/* Adds a point unless another one stands for its place already. */
+/* Adds a point unless there is already one at its place. */
 static enum err offer(struct layers *l, double x, double y)
 {
     if (any_within(&l->points, x, y, too_near * l->dp)) return ERR_OK;
@@ -346,7 +347,7 @@ static enum err space_out(struct layers *l, const struct trace *t, int64_t first
     return ERR_OK;
 }
 
-/* A trace is cut where it leaps; one that nowhere does is closed. */
+/* A trace is cut at its jumps; one without jumps is closed. */
 static enum err space_runs(struct layers *l, const struct trace *t)
 {
     const double leap = 0.5 * l->dp;
@@ -362,7 +363,7 @@ static enum err space_runs(struct layers *l, const struct trace *t)
     return ERR_OK;
 }
 
-/* --- all of it --- */
+/* --- all layers --- */
 
 static const struct shape *shape_of(const struct region *r, int piece)
 {
@@ -376,7 +377,7 @@ static bool is_polyline(const struct region *r, int piece)
 
 typedef enum err visitor(struct layers *, struct face_set *, const struct loop *);
 
-/* Calls for each loop of a set; `minus` bounds those that are no polylines. */
+/* Calls for each loop of a set; `minus` limits those that are not polylines. */
 static enum err each_loop(struct layers *l, struct face_set *set, visitor *visit)
 {
     const struct region *const r = l->region;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Walls whose faces do not lie along the lattice: particles in layers that follow the faces. */
+ * Walls with faces that are not along the lattice: particles in layers that follow the faces. */
 #ifndef SPHFSI_GEOMETRY_LAYERS_H
 #define SPHFSI_GEOMETRY_LAYERS_H
 
@@ -14,10 +14,11 @@ struct point_grid {
     double side;
 };
 
-/* Faces that layers are measured from. A polyline has its own, on the side that is drawn, and layers through
- * all of its thickness. All other shapes share one set, and layers as deep as the kernel reaches. */
+/* Faces from which layers are measured. A polyline has its own, on the drawn side, and layers
+ * through all of its thickness. All other shapes have one common set, and layers as deep as the
+ * kernel's reach. */
 struct face_set {
-    struct point_grid grid; /* what is exposed of the faces */
+    struct point_grid grid; /* the exposed parts of the faces */
     double spacing, depth;  /* of layers; down to which they go, m */
     int first, end;         /* pieces */
 };
@@ -29,20 +30,20 @@ struct layers {
     int n_sets;
     struct face_set *set;
     struct point_grid points; /* of the region: of its lattice, of its layers */
-    int64_t first;            /* those of the layers begin here */
+    int64_t first;            /* those of the layers start here */
 };
 
 /* Sets region->layered for the pieces that need layers. */
 enum err layers_find(struct sampler *g, struct region *region) SPHFSI_CHECKED;
 
-/* Begins with the faces of the pieces that need layers. */
+/* Starts with the faces of the pieces that need layers. */
 enum err layers_create(struct layers *l, struct sampler *g, const struct region *region)
     SPHFSI_CHECKED;
 /* Adds a point of the lattice of the other pieces. */
 enum err layers_take(struct layers *l, double x, double y) SPHFSI_CHECKED;
-/* Lays all layers. */
+/* Creates all layers. */
 enum err layers_trace(struct layers *l) SPHFSI_CHECKED;
-/* Adds a point of the lattice behind the last layer, where there is space for it. */
+/* Adds a point of the lattice behind the last layer, if there is space for it. */
 enum err layers_fill(struct layers *l, double x, double y) SPHFSI_CHECKED;
 
 #endif

@@ -5,14 +5,14 @@
 
 #include "case/scene.h"
 
-/* scene_read and scene_parse with scene_sample behind them. On success the caller frees with scene_free;
- * on failure nothing remains to be freed. */
+/* scene_read and scene_parse followed by scene_sample. After success the caller frees with
+ * scene_free; after a failure there is nothing to free. */
 enum err scene_load(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d) SPHFSI_CHECKED;
 enum err scene_load_text(struct scene *s, const char *text, const char *path, int n_sets,
                          const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 
-/* Samples all shapes into s->points and fixes h and the domain in effect (geometry/sampling.c). */
+/* Samples all shapes into s->points; sets h and the effective domain (geometry/sampling.c). */
 enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
 
 #endif

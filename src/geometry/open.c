@@ -6,9 +6,9 @@
 
 #include <math.h>
 
-/* Nearer than this many spacings, two points are in one place (geometry/overlap.c). */
+/* Two points nearer than this many spacings coincide (geometry/overlap.c). */
 #define SAME_PLACE 0.7
-/* A particle of the fluid is no further than this many spacings from the place it should have. */
+/* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 
 static enum err fail_at(const struct sampler *g, const struct scene_open *o, const char *what,
@@ -57,7 +57,7 @@ static int64_t nearest(const struct around *a, const double x[2], double within)
     return found;
 }
 
-/* Places across the line and rows behind it. */
+/* Positions across the line and rows behind it. */
 struct lattice {
     int across, rows;
     double step; /* m, along the line */
@@ -71,7 +71,7 @@ static struct lattice lattice_of(const struct scene *s, const struct scene_open 
     return l;
 }
 
-/* Place i of row j; row -1 is the first one within the fluid. False: above the water. */
+/* Position i of row j; row -1 is the first one inside the fluid. False: above the water. */
 static bool lattice_point(const struct scene *s, const struct scene_open *o,
                           const struct lattice *l, int i, int j, double x[2])
 {
@@ -80,7 +80,7 @@ static bool lattice_point(const struct scene *s, const struct scene_open *o,
     return isnan(o->level) || x[1] < o->level;
 }
 
-/* Fluid that starts behind the line, and a line that no fluid starts at. */
+/* Fluid behind the line at the start, and a line without fluid at it. */
 static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
                             const struct around *fluid)
 {
@@ -109,7 +109,7 @@ static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
                    "side");
 }
 
-/* What is in the place of a particle of the buffer. */
+/* The particle at the position of a buffer particle, if any. */
 static enum err check_place(const struct sampler *g, const struct scene_open *o,
                             const struct around kinds[KIND_COUNT], const double x[2])
 {
@@ -149,7 +149,7 @@ static enum err append(struct sampler *g, int number, const struct scene_open *o
     return p->n > before ? ERR_OK : fail_at(g, o, "is above its level", o->from, "raise `level`");
 }
 
-/* Makes room in a field of the fluid's points. */
+/* Enlarges a field of the fluid's points. */
 #define GROW(field)                                                                          \
     do {                                                                                     \
         __typeof__(*p->field) *const to =                                                    \

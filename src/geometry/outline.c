@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A joint sharper than this many thicknesses long is refused. */
+/* A joint longer than this many thicknesses is too sharp and refused. */
 static const double max_mitre = 4;
 
 static void set_bounds(struct outline *o)
@@ -37,7 +37,8 @@ static bool polyline_closed(const struct shape *p)
     return p->n > 3 && a[0] == b[0] && a[1] == b[1];
 }
 
-/* The far side's point over point k, on the bisector of its two segments; false: too sharp. */
+/* The point opposite to point k on the far side, on the bisector of its two segments; false: too
+ * sharp. */
 static bool mitre(const struct shape *p, int k, double far[2])
 {
     const bool closed = polyline_closed(p);
@@ -48,7 +49,8 @@ static bool mitre(const struct shape *p, int k, double far[2])
     double a[2], b[2];
     left_normal(p, before, a);
     left_normal(p, after, b);
-    /* The sum of the normals over 1 + their cosine has length 1/cos of half the turn. */
+    /* The sum of the normals over 1 + their cosine has length 1/cos of half the angle between the
+     * segments. */
     const double scale = 1 + a[0] * b[0] + a[1] * b[1];
     if (scale < 2 / square(max_mitre)) return false;
     far[0] = p->pt[k][0] + p->size * (a[0] + b[0]) / scale;
@@ -226,7 +228,7 @@ static int by_start(const void *a, const void *b)
     return (x[1] > y[1]) - (x[1] < y[1]);
 }
 
-/* The stretches inside any of the pieces, merged and in order. */
+/* The intervals inside any of the pieces, merged and in order. */
 static int merged(const struct outlines *o, double y, double *to)
 {
     int n = 0, kept = 0;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Outlines of shapes, and which stretches of a horizontal line they cover. */
+ * Outlines of shapes, and the intervals of a horizontal line inside them. */
 #ifndef SPHFSI_GEOMETRY_OUTLINE_H
 #define SPHFSI_GEOMETRY_OUTLINE_H
 
@@ -13,7 +13,7 @@ struct outline {
     double low[2], high[2]; /* bounding box */
 };
 
-/* A region: the union of some shapes, less others. */
+/* A region: the union of some shapes, minus others. */
 struct outlines {
     int n;
     struct outline *item;
@@ -25,26 +25,26 @@ struct outlines {
 enum err outlines_of(struct outlines *o, const struct scene *s, const struct shape_list *list,
                      struct arena *a, struct diag *d) SPHFSI_CHECKED;
 
-/* The stretches [from[0], from[1]), [from[2], from[3]) ... of the line at height y that lie inside;
- * returns how many numbers. `from` has room for max(n, 2). Neighbours that share an edge neither
- * overlap nor leave a gap: an edge is intersected with the same arithmetic from both sides. */
+/* The intervals [from[0], from[1]), [from[2], from[3]) ... of the line at height y inside a piece;
+ * returns the count of numbers. `from` has memory for max(n, 2). Neighbours with a common edge
+ * neither overlap nor leave a gap: both sides intersect an edge with the same arithmetic. */
 int outline_crossings(const struct outline *o, double y, double *from);
-/* Room that outline_crossings needs for any piece. */
+/* Memory that outline_crossings needs for any piece. */
 int outlines_capacity(const struct outlines *o);
 
-/* Turns pieces into the axes of a lattice at `angle`; the shapes themselves stay as they are. */
+/* Rotates pieces into the axes of a lattice at `angle`; the shapes themselves do not change. */
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The stretches of the line at height y that are inside `add` and not inside `minus` (NULL: none), as
- * outline_crossings gives them, merged where they touch. `to` and `scratch` each hold outlines_ends of
- * both. */
+/* The intervals of the line at height y inside `add` and not inside `minus` (NULL: none), in the
+ * format of outline_crossings, merged where they touch. `to` and `scratch` each hold outlines_ends
+ * of both. */
 int outlines_union(const struct outlines *add, const struct outlines *minus, double y, double *to,
                    double *scratch);
-/* The most numbers that outline_crossings returns for all pieces together. */
+/* The largest count that outline_crossings returns for all pieces together. */
 int outlines_ends(const struct outlines *o);
 
-/* Area of `add` less `minus`, by lines no more than `step` apart. */
+/* Area of `add` minus `minus`, by lines at most `step` apart. */
 enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
                        double *area, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 

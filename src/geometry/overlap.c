@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Which particles stay where regions meet. Solids come first: a clamped part takes the place of the
- * wall it is held in. Walls unite. Whatever else overlaps is a mistake of the case. */
+ * Which particles remain where regions overlap. Solids have priority: a clamped part replaces the
+ * wall that holds it. Walls form a union. Any other overlap is an error of the case. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"
@@ -9,11 +9,11 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Nearer than this many dp, two points are in one place; a lattice has 1, two of them at most
- * sqrt(1/2) between a point and the nearest of the other. */
+/* Two points nearer than this many dp coincide. The distance on a lattice is 1. Between two
+ * lattices, it is at most sqrt(1/2) from a point to the nearest one of the other. */
 static const double same_place = 0.7;
 
-/* Points by cell of side dp, in a hash table: sparse scenes cost no more than dense ones. */
+/* Points by cell of side dp, in a hash table: sparse scenes need no more memory than dense ones. */
 struct near_table {
     double side;
     uint32_t mask;
@@ -49,7 +49,7 @@ static double spacing(const struct region *regions, const struct samples *p, int
     return 0.5 * (regions[p->region[a]].lattice.dp + regions[p->region[b]].lattice.dp);
 }
 
-/* The first point in the table, of another region, in one place with point k; -1: none. */
+/* The first point in the table, of another region, that coincides with point k; -1: none. */
 static int64_t table_find(const struct near_table *t, const struct region *regions,
                           const struct samples *p, int64_t k)
 {
@@ -70,7 +70,7 @@ static int motion_of(const struct scene *s, const struct region *wall)
     return scene_find_motion(s, s->wall[wall->body].motion);
 }
 
-/* Whether a point lies in a region's shapes, as geometry_sample sees it. */
+/* Whether a point is inside a region's shapes, with the rounding of geometry_sample. */
 static bool covers(const struct sampler *g, const struct region *region, double x, double y)
 {
     double at[2];
@@ -84,8 +84,8 @@ static bool covers(const struct sampler *g, const struct region *region, double 
     return false;
 }
 
-/* Whether point k may simply be left out where point `other` is already. Lattices that are turned
- * differently, and layers, meet at an edge with points on either side of it that are too near. */
+/* Whether point k can be omitted because of point `other`. Lattices at different angles, and
+ * layers, have points too near to each other on both sides of a common edge. */
 static bool yields_to(const struct sampler *g, const struct samples *p, int64_t k, int64_t other)
 {
     const struct region *mine = &g->regions[p->region[k]], *its = &g->regions[p->region[other]];
@@ -122,7 +122,7 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
                      kind_names[its->kind], its->name, x, y, mend);
 }
 
-/* Sets `kept`; fails where a region overlaps another one and may not. */
+/* Sets `kept`; fails if a region overlaps another one and must not. */
 static enum err find_overlaps(struct sampler *g, const struct samples *p, struct near_table *t,
                               uint8_t *kept)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sampling of shapes: particles are the centres of the cells of a square lattice. A centre within
- * 1e-6 dp of an edge counts as lying above and to the right of it, whatever the round-off, so
- * shapes that share an edge neither miss nor double a particle. */
+ * 1e-6 dp of an edge counts as above and to the right of it, for any rounding error. So shapes with
+ * a common edge neither miss nor double a particle. */
 #include "geometry/layers.h"
 #include "geometry/load.h"
 
@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A rough figure for refusing absurd cases: fields, lists of neighbours and copies of a particle. */
+/* Approximate bytes of a particle, to refuse absurd cases: fields, neighbour lists and copies. */
 static const double bytes_per_particle = 300;
 static const double max_lattice = 1e9, max_cells = 1e10;
 
@@ -41,7 +41,7 @@ static double piece_area(const struct outline *o)
     return 0.5 * fabs(twice);
 }
 
-/* Refuses what could not be held, before anything of that size is touched. */
+/* Refuses scenes that do not fit into memory before allocating anything of that size. */
 static enum err check_size(struct sampler *g)
 {
     const double dp = g->scene->top.dp;
@@ -96,7 +96,7 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
     return ERR_OK;
 }
 
-/* Shapes into the axes of their lattices. */
+/* Rotates shapes into the axes of their lattices. */
 static enum err turn_region(struct sampler *g, struct region *region)
 {
     const double angle = region->lattice.angle;
@@ -127,7 +127,7 @@ static enum err list_regions(struct sampler *g)
 
 /* --- rows --- */
 
-/* The first lattice index whose centre lies at or behind x. */
+/* The first lattice index with its centre at or beyond x. */
 static int64_t index_from(const struct region *region, int c, double x)
 {
     const struct scene_lattice *const l = &region->lattice;
@@ -139,13 +139,13 @@ static double centre(const struct region *region, int c, int64_t index)
     return region->lattice.origin[c] + ((double)index + 0.5) * region->lattice.spacing[c];
 }
 
-/* x, brought between the region's left and right end. */
+/* x, limited to the region's left and right end. */
 static double inside(const struct region *region, double x)
 {
     return min2(max2(x, region->low[0]), region->high[0]);
 }
 
-/* Marks a row's points inside a piece with `value`; returns how many they are. */
+/* Marks a row's points inside a piece with `value`; returns their number. */
 static int64_t mark(struct sampler *g, const struct region *region, const struct outline *o,
                     double y, unsigned char value)
 {
@@ -162,8 +162,8 @@ static int64_t mark(struct sampler *g, const struct region *region, const struct
     return marked;
 }
 
-/* Fills the mask for row j, with pieces that are sampled in layers or without; counts the points that each
- * shape covers, if asked. */
+/* Fills the mask for row j from pieces in layers or the others; optionally counts the points in
+ * each shape. */
 static void mark_row(struct sampler *g, const struct region *region, int64_t j, bool with_layered,
                      int64_t *per_shape)
 {
@@ -201,8 +201,8 @@ static enum err prepare_rows(struct sampler *g)
     return g->mask && g->scratch ? ERR_OK : ERR_MEMORY;
 }
 
-/* The points of a wall with layers: those of the lattice in the pieces along it, then layers, then the
- * lattice again behind them. */
+/* The points of a wall with layers: the lattice in the pieces along it, then the layers, then the
+ * lattice behind them. */
 static enum err lay_layers(struct sampler *g, struct region *region)
 {
     struct layers l;
@@ -249,7 +249,7 @@ static enum err count_points(struct sampler *g, struct region *region)
                      kind_names[region->kind], region->name);
 }
 
-/* Stores a point that is given in the axes of its lattice. */
+/* Stores a point given in the axes of its lattice. */
 static void put_point(const struct sampler *g, const struct region *region, struct samples *p,
                       int64_t k, double x, double y)
 {
@@ -260,12 +260,12 @@ static void put_point(const struct sampler *g, const struct region *region, stru
     p->region[k] = (int32_t)(region - g->regions);
 }
 
-/* Appends a region's points: row by row, or column by column where `upright`. */
+/* Appends a region's points: row by row, or column by column with `upright`. */
 static enum err append_points(struct sampler *g, const struct region *region, bool upright,
                               struct samples *p)
 {
     int64_t *next = NULL;
-    if (upright) { /* where each column goes: a counting sort over the rows */
+    if (upright) { /* position of each column: a counting sort over the rows */
         next =
             arena_alloc(&g->temp, (size_t)region->count[0] + 1, sizeof *next, "sampling", g->diag);
         if (!next) return ERR_MEMORY;

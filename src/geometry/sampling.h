@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * Inside of scene_sample: regions (geometry/sampling.c), how they meet (geometry/overlap.c), what
- * follows from the points as a whole (geometry/extent.c). */
+ * Internal to scene_sample: regions (geometry/sampling.c), their overlaps (geometry/overlap.c),
+ * data of all points together (geometry/extent.c). */
 #ifndef SPHFSI_GEOMETRY_SAMPLING_H
 #define SPHFSI_GEOMETRY_SAMPLING_H
 
 #include "particles/particles.h"
 #include "geometry/outline.h"
 
-/* Where a centre is taken to be, in spacings, relative to where it is. The two differ so that a slanted
- * edge through a row of centres is not met exactly either. */
+/* Offset of a centre for tests, in spacings. The two components differ so that a slanted edge
+ * through a row of centres does not pass exactly through them either. */
 #define NUDGE_X 1e-6
 #define NUDGE_Y 0.618e-6
 
-/* What one section covers. Its shapes are held in the axes of its lattice. */
+/* The region of one section. Its shapes are in the axes of its lattice. */
 struct region {
     enum kind kind;
     int body; /* index of the section */
@@ -22,7 +22,7 @@ struct region {
     struct outlines add, minus;
     struct scene_lattice lattice;
     double low[2], high[2];     /* bounding box of the shapes */
-    int64_t first[2], count[2]; /* lattice points that the box spans */
+    int64_t first[2], count[2]; /* lattice points within the box */
     int64_t n;                  /* points inside */
     bool *layered,
         has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
@@ -35,7 +35,7 @@ struct sampler {
     struct diag *diag;
     struct arena temp;
     int n_regions;
-    struct region *regions; /* solids, walls, fluids: who comes first takes the place */
+    struct region *regions; /* solids, walls, fluids: in order of priority */
     unsigned char *mask;    /* of a row */
     double *scratch;        /* crossings of a line */
 };
@@ -50,10 +50,10 @@ struct samples {
 
 enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 
-/* Sets every region's lattice, from shapes that are not turned yet, and those of the scene. */
+/* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
 
-/* Marks the particles of a solid, from one on, that its clamps hold. */
+/* Marks the particles of a solid, from index `from` on, that its clamps hold. */
 enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,
                         struct samples *p) SPHFSI_CHECKED;
 
@@ -66,10 +66,10 @@ enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECK
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 
-/* Domain in effect; probes inside of what they probe; initial values finite. */
+/* Effective domain; probes inside their bodies; initial values finite. */
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
-/* Warns of scenes that can be simulated and are hardly meant (geometry/doubts.c). */
+/* Warns of scenes that can be simulated but are probably a mistake (geometry/doubts.c). */
 enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
 
 #endif

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * The true stress of a particle and the energy of bodies, for output. */
+ * True stress of a particle and energy of bodies, for output. */
 #include <math.h>
 
 #include "solid/material_energy.h"
 
-/* The displacement gradient of a particle, in all lanes. */
+/* The displacement gradient of a particle, in all SIMD lanes. */
 static struct vtensor2 gradient_at(const struct particles *p, int64_t i)
 {
     return (struct vtensor2){vset_double(p->Uxx[i]), vset_double(p->Uxy[i]), vset_double(p->Uyx[i]),

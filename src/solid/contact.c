@@ -7,17 +7,17 @@
 
 /* --- the law of a pair --- */
 
-/* Each surface of a pair of bodies carries half: points of one on the edges of the other, and the
- * other way round. */
+/* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
+ * of the other. */
 #define HALF 0.5
 
 /* Constants of a point and an edge. */
 struct pair {
     double reach;     /* m */
-    double stiffness; /* force over overlap where they begin to touch, N/m per depth */
+    double stiffness; /* force per overlap at first contact, N/m per depth */
     double damping;   /* N s/m */
     double friction;
-    double grip; /* friction over the speed of slip before it slides, N s/m */
+    double grip; /* friction force over sliding speed, below the onset of sliding, N s/m */
 };
 
 static double mass_of(const struct contact *c, int body)
@@ -30,8 +30,8 @@ static double dp_of(const struct contact *c, int body)
     return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
 }
 
-/* A point stands for its own spacing of surface. Damping in shares of 2 sqrt(k m), with the mass m of the
- * pair, m_a m_b/(m_a + m_b). */
+/* A point represents its own spacing of surface. Damping as a fraction of 2 sqrt(k m), with the
+ * mass m of the pair, m_a m_b/(m_a + m_b). */
 static struct pair pair_of(const struct contact *c, const struct contact_law *law, int32_t point,
                            int32_t edge)
 {
@@ -55,7 +55,7 @@ static double touch_energy(const struct pair *q, double r)
     return q->stiffness * square(q->reach) * (s - 1 - log(s));
 }
 
-/* Its slope, k r0 (r0/r - 1), and the slope of that, k (r0/r)^2. */
+/* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
 static double touch_push(const struct pair *q, double r)
 {
     return q->stiffness * q->reach * (q->reach / r - 1);
@@ -65,9 +65,9 @@ static double touch_stiffness(const struct pair *q, double r)
     return q->stiffness * square(q->reach / min2(r, q->reach));
 }
 
-/* T-62, from a place at distance r on the way (x, y) to the point, at a velocity (vx, vy) beside it. The
- * dashpot may weaken the push but not turn it into a pull; friction is Coulomb's, below the speed of
- * sliding proportional to the speed. */
+/* T-62 for a point at (x, y) from its foot on an edge, at distance r and relative velocity (vx,
+ * vy). The dashpot may reduce the repulsion but not turn it into attraction. Friction is Coulomb's,
+ * and below the onset of sliding proportional to the speed. */
 static void touch_force(const struct pair *q, const double way[2], double r, const double v[2],
                         double f[2])
 {
@@ -85,7 +85,7 @@ static void touch_force(const struct pair *q, const double way[2], double r, con
     f[1] -= drag * sy;
 }
 
-/* The same from one of the points. */
+/* The same for one of the points. */
 static void touch_end(const struct contact *c, const struct pair *q, int32_t point, int32_t end,
                       double f[2])
 {
@@ -94,7 +94,7 @@ static void touch_end(const struct contact *c, const struct pair *q, int32_t poi
     touch_force(q, way, sqrt(way[0] * way[0] + way[1] * way[1]), v, f);
 }
 
-/* Velocity of a point beside the place of an edge that is nearest to it. */
+/* Velocity of a point relative to the nearest place on an edge. */
 static void relative_velocity(const struct contact *c, int32_t point, int32_t edge, double s,
                               double v[2])
 {
@@ -103,7 +103,8 @@ static void relative_velocity(const struct contact *c, int32_t point, int32_t ed
     v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
 }
 
-/* T-61a: an edge pushes with all of it, less what its ends push, shared among the edges that meet there. */
+/* T-61a: an edge acts with its full force, less the fraction that its end points exert, which the
+ * edges that meet there divide among them. */
 static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
                        struct contact_force *out)
 {
@@ -187,11 +188,12 @@ void contact_forces(struct contact *c, const struct solid *s, struct particles *
     }
 }
 
-/* Beyond what two points approach in the time at their present speeds they may gain so many spacings. */
+/* Number of spacings that two points may approach in excess of their present speeds times the
+ * time. */
 #define GAIN 0.25
-/* Surfaces nearer than this many of their reaches count in the bound of the step. */
+/* Surfaces nearer than this many times their reach count in the step bound. */
 #define NEAR 1.25
-/* What the list has beyond that, in spacings: pairs are listed anew when points have gone so far. */
+/* Skin of the list in spacings: pairs are listed again when points have moved by it. */
 #define SKIN 1.0
 
 double contact_energy(struct contact *c, const struct particles *p, double time)
@@ -213,7 +215,7 @@ double contact_energy(struct contact *c, const struct particles *p, double time)
 
 /* --- before a step --- */
 
-/* Mean displacement since the list was made, and velocity, of a group's points. */
+/* Mean displacement since the list was made, and mean velocity, of a group's points. */
 struct contact_mean {
     double n, x, y, vx, vy;
 };
@@ -236,14 +238,14 @@ static void find_means(struct contact *c)
     }
 }
 
-/* How far two points may have come together since the list was made, and their speed. */
+/* Largest distance that two points may have approached since the list was made, and their speed. */
 struct contact_pace {
     double moved[CONTACT_WITH], speed[CONTACT_WITH];
 };
 
 static struct contact_pace pace_of(const struct contact *c)
 {
-    double far2[3] = {0}, speed2[3] = {0}; /* beside their group; of solids; of walls */
+    double far2[3] = {0}, speed2[3] = {0}; /* relative to their group; of solids; of walls */
     for (int64_t k = 0; k < c->n_solid_points; k++) {
         const struct contact_mean *const m = &c->mean[c->group[k]];
         const double x = c->x[k] - c->at_x[k], y = c->y[k] - c->at_y[k];
@@ -262,7 +264,7 @@ static struct contact_pace pace_of(const struct contact *c)
     };
 }
 
-/* A point may go this share of the way to what it touches in a step (T-62b). */
+/* Fraction of the distance to a surface that a point may move in a step (T-62b). */
 #define ADVANCE 0.25
 
 static void add_row(struct contact *c, const struct particles *p, int32_t point, double weight,
@@ -279,7 +281,8 @@ static double moves_freely(const struct contact *c, const struct particles *p, i
     return point < c->n_solid_points ? p->free[c->index[point]] : 0;
 }
 
-/* T-62a: a pair's share of the rows of M^-1 K by Gershgorin, where it is at the end of the step. */
+/* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
+ * step. */
 static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
                      const struct pair *q, const struct contact_foot *foot, double r)
 {
@@ -303,7 +306,7 @@ static void note_depth(struct contact *c, int32_t point, int32_t edge, double ov
                                         c->body[c->edge[edge].a]};
 }
 
-/* Distance beyond the reach within which a pair matters to the coming time `span`. */
+/* Distance beyond the reach within which a pair matters in the coming time `span`. */
 static double distance_near(const struct contact *c, double speed, double span)
 {
     return max2((NEAR - 1) * c->reach, GAIN * c->spacing) + 1.5 * span * speed;
@@ -334,8 +337,8 @@ static void watch_pair(struct contact *c, const struct particles *p, int64_t pai
     add_rows(c, p, pair, &q, &foot, then);
 }
 
-/* How far a point is behind the nearest edge of another body, whose surface it has passed then: of the
- * pairs of one point; 0: before it. */
+/* Depth of a point behind the nearest edge of another body whose surface it has passed, from the
+ * pairs of one point; 0: in front of it. */
 static double behind(const struct contact *c, int64_t first, int64_t end, int32_t *nearest_edge)
 {
     double nearest = (double)INFINITY;
@@ -403,7 +406,7 @@ bool contact_watch(struct contact *c, const struct particles *p, double time, do
 
 void contact_forget(struct contact *c, const struct particles *walls)
 {
-    /* Walls have been sorted; their numbers tell how they were sampled. */
+    /* Walls have been sorted; their numbers give the order of sampling. */
     int64_t first = INT64_MAX;
     for (int64_t i = 0; i < walls->n; i++)
         if (walls->id[i] < first) first = walls->id[i];
@@ -424,7 +427,7 @@ void contact_name(const struct contact *c, int body, char text[CONTACT_NAME])
         snprintf(text, CONTACT_NAME, "[wall %s]", c->scene->wall[body - c->n_solids].common.name);
 }
 
-/* --- the beginning --- */
+/* --- start --- */
 
 /* A pressure p leaves an overlap of dp p/(stiffness E + p) (T-61). */
 static void set_law(struct contact *c, const struct scene_contact *from, int a, int b)
@@ -455,8 +458,8 @@ static void set_laws(struct contact *c)
         }
 }
 
-/* Notes how near points begin to another group, where that is nearer than the reach: bodies on lattices that
- * do not fit, and what is clamped within a wall, begin without a push and keep that distance. */
+/* Stores initial distances from other groups that are below the reach. Bodies on lattices that do
+ * not fit, and particles clamped within a wall, start without repulsion and keep that distance. */
 static void note_beginnings(struct contact *c)
 {
     c->margin[CONTACT_SELF] = -c->reach;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Contact of solids with each other, with walls and with themselves: surface particles and the line
- * through the surface particles opposite push each other apart (docs/theory.md, Contact). */
+ * Contact of solids with each other, with walls and with themselves: a surface particle and the
+ * line through the surface particles opposite repel each other (docs/theory.md, Contact). */
 #ifndef SPHFSI_SOLID_CONTACT_H
 #define SPHFSI_SOLID_CONTACT_H
 
@@ -11,36 +11,35 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
                         const struct solid *s, const struct particles *solid, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Looks at the state before a step of at most `longest`: whether any surfaces may touch within the time
- * `span`, what contact adds to the solid's eigenvalues, and the longest step in which nothing passes.
- * Nothing of what it finds depends on when it looked before. By one thread; returns `near`. */
+/* Examines the state before a step of at most `longest`: whether surfaces may touch within the time
+ * `span`, what contact adds to the solid's eigenvalues, and the longest step in which nothing
+ * passes. The results do not depend on earlier calls. By one thread; returns `near`. */
 bool contact_watch(struct contact *c, const struct particles *p, double time, double longest,
                    double span);
 
-/* The state is another one, in which walls at rest may stand elsewhere: nothing is known of its
- * surroundings. */
+/* The state has been replaced, and walls at rest may be elsewhere: discards all that is known of
+ * it. */
 void contact_forget(struct contact *c, const struct particles *walls);
 
-/* Adds the accelerations of contact to sx, sy, with walls where they are at `time`. Inside a parallel
- * region all threads call it together. */
+/* Adds the accelerations of contact to sx, sy, with walls at their positions at `time`. Inside a
+ * parallel region all threads call it together. */
 void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time);
 
-/* Energy of contact, J/m, with walls where they are at `time`. */
+/* Energy of contact, J/m, with walls at their positions at `time`. */
 double contact_energy(struct contact *c, const struct particles *p, double time);
 
-/* "[solid a]" or "[wall b]" of a body, walls behind solids. */
+/* "[solid a]" or "[wall b]" of a body, walls after solids. */
 enum { CONTACT_NAME = 160 };
 void contact_name(const struct contact *c, int body, char text[CONTACT_NAME]);
 
-/* --- what its files share --- */
+/* --- internal to the files of contact --- */
 
-/* The surfaces of solids and walls: points, edges, share (solid/contact_surface.c). */
+/* The surfaces of solids and walls: points, edges, weights (solid/contact_surface.c). */
 enum err contact_find_surface(struct contact *c, struct arena *a, const struct particles *solid,
                               struct diag *d) SPHFSI_CHECKED;
 
-/* Places by cell (solid/contact_search.c): memory for n; fills in those of `item`, or 0 to n - 1
- * where that is
- * NULL; calls `found` for each within reach of (x, y). */
+/* Positions by cell (solid/contact_search.c): memory for n; inserts those of `item`, or 0 to n - 1
+ * if it is NULL; calls `found` for each within reach of (x, y). */
 enum err contact_grid_create(struct contact_grid *g, struct arena *a, int64_t n, struct diag *d)
     SPHFSI_CHECKED;
 void contact_grid_fill(struct contact_grid *g, int64_t n, const uint8_t *skip);
@@ -51,21 +50,21 @@ void contact_grid_find(const struct contact_grid *g, double x, double y, double 
 /* Lists every pair nearer than its reach and margin, by point and edge. */
 void contact_list(struct contact *c);
 
-/* Brings points to where they are at the state, those of moving walls to `time`, and lists pairs anew
- * where some point has left the margin. All threads together. */
+/* Moves points to their positions in the state, those of moving walls to `time`. Lists the pairs
+ * again if some point has left the margin. All threads together. */
 void contact_place(struct contact *c, const struct particles *p, double time);
 
-/* The law of a point and an edge, with the reach of this pair; not on: they do not meet. */
+/* The law of a point and an edge, with the reach of this pair; not on: they do not interact. */
 struct contact_law contact_pair_law(const struct contact *c, int32_t point, int32_t edge);
 
-/* Where on an edge a point is nearest: place 0 to 1 from a to b, and the way from there to the point.
- * */
+/* The point's nearest place on an edge: 0 to 1 from a to b, and the vector from there to the
+ * point. */
 struct contact_foot {
     double at, x, y, distance;
 };
 struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t edge);
 
-/* Whether a pair is of one group. */
+/* Whether both parts of a pair belong to one group. */
 SPHFSI_INLINE enum contact_with contact_with(const struct contact *c, int32_t point, int32_t edge)
 {
     return c->group[point] == c->group[c->edge[edge].a] ? CONTACT_SELF : CONTACT_OTHER;

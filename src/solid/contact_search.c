@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Where surface points are, and which edges are near them. */
+ * Positions of surface points, and the edges near them. */
 #include "solid/contact.h"
 
 #include "particles/kernel.h"
@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- places by cell --- */
+/* --- positions by cell --- */
 
 static int64_t cell_of(const struct contact_grid *g, double x)
 {
@@ -43,7 +43,7 @@ void contact_grid_find(const struct contact_grid *g, double x, double y, double 
     for (int64_t j = j0; j <= j1; j++) {
         for (int64_t i = i0; i <= i1; i++) {
             for (int32_t k = g->head[hash_cell(i, j, g->mask)]; k >= 0; k = g->next[k]) {
-                /* Cells may share a slot. */
+                /* Several cells may have the same slot. */
                 if (cell_of(g, g->x[k]) != i || cell_of(g, g->y[k]) != j) continue;
                 if (square(g->x[k] - x) + square(g->y[k] - y) < reach * reach) found(context, k);
             }
@@ -60,7 +60,7 @@ struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t
     const double px = c->x[point] - c->x[a], py = c->y[point] - c->y[a];
     struct contact_foot f = {.x = px, .y = py};
     if (length2 > 0) f.at = min2(1, max2(0, (px * ex + py * ey) / length2));
-    /* At an end to the bit what the neighbouring edge finds there. */
+    /* At an end of an edge: bitwise equal to the result of the neighbouring edge. */
     if (f.at == 1) {
         f.x = c->x[point] - c->x[b];
         f.y = c->y[point] - c->y[b];
@@ -72,7 +72,8 @@ struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t
     return f;
 }
 
-/* Whether a point began within the kernel of an end of an edge, for the smoothing length of a body. */
+/* Whether a point was initially within the kernel of an end of an edge, with the smoothing length
+ * of a body. */
 static bool began_within(const struct contact *c, int32_t point, int32_t edge, int body)
 {
     const int32_t end[2] = {c->edge[edge].a, c->edge[edge].b};
@@ -94,8 +95,8 @@ static bool held_together(const struct contact *c, int32_t point, int32_t edge)
            began_within(c, point, edge, one);
 }
 
-/* What began within the kernel of each other in one body is held apart by the material, and what a clamp
- * holds to a wall by the clamp. */
+/* The material keeps points apart that were initially within each other's kernel in one body. A
+ * clamp does so for its particles and the wall. */
 struct contact_law contact_pair_law(const struct contact *c, int32_t point, int32_t edge)
 {
     const struct contact_edge *const e = &c->edge[edge];
@@ -111,7 +112,7 @@ struct contact_law contact_pair_law(const struct contact *c, int32_t point, int3
     return law;
 }
 
-/* The box around the solids' surfaces, widened: walls beyond it need not be looked at. */
+/* The box around the solids' surfaces, widened: walls outside need no search. */
 struct box {
     double low[2], high[2];
 };
@@ -133,7 +134,7 @@ static bool in_box(const struct box *box, double x, double y)
     return x >= box->low[0] && x <= box->high[0] && y >= box->low[1] && y <= box->high[1];
 }
 
-/* Makes the list longer; without memory for it the run stops. */
+/* Enlarges the list; if there is no memory for it, the run stops. */
 static bool grow(struct contact *c)
 {
     struct diag d = {0};
@@ -158,7 +159,7 @@ struct lister {
     int64_t first; /* of the point's pairs */
 };
 
-/* Keeps an edge if it is near enough, in the order of the edges. */
+/* Keeps an edge if it is near enough, in ascending order of edges. */
 static void keep_pair(void *context, int32_t edge)
 {
     const struct lister *const l = context;
@@ -207,7 +208,7 @@ void contact_list(struct contact *c)
     c->known = true;
 }
 
-/* --- where points are --- */
+/* --- positions of points --- */
 
 static void place_wall_point(struct contact *c, int64_t k)
 {
@@ -239,7 +240,7 @@ void contact_place(struct contact *c, const struct particles *p, double time)
         } else {
             place_wall_point(c, k);
         }
-        /* Not a number counts as far. */
+        /* A NaN counts as far. */
         if (!(square(c->x[k] - c->at_x[k]) + square(c->y[k] - c->at_y[k]) <= far2)) {
 #pragma omp atomic write
             c->stale = 1;

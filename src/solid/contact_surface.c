@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Radius of the circle that rolls over the surface, in spacings. Four particles of a lattice cell lie on a
- * circle of 0.71, and a slit of one missing row is open to one of less than 1: between them the
- * surface of a body on the lattice does not depend on it. */
+/* Radius of the circle that rolls over the surface, in spacings. Four particles of a lattice cell
+ * lie on a circle of 0.71, and a circle below 1 enters a slit of one missing row. Between these
+ * values the surface of a body on the lattice does not depend on it. */
 static const double roll = 0.85;
 
 /* Particles of one kind that may have a surface. */
@@ -19,7 +19,7 @@ struct cloud {
     const double *x, *y;
     int32_t *body, *group;
     double *dp;
-    int32_t *point; /* [n] number at the surface; -1: within */
+    int32_t *point; /* [n] number at the surface; -1: inside */
 };
 
 /* Two neighbours with a free side. */
@@ -28,7 +28,7 @@ struct link {
     bool sided;
 };
 
-/* Particles of the group of one within reach of the circles. */
+/* Particles of the same group within reach of the circles. */
 enum { AROUND = 64 };
 struct around {
     const struct cloud *of;
@@ -47,7 +47,7 @@ static void note(void *context, int32_t item)
     if (x * x + y * y < at->limit2) at->item[at->n++] = item;
 }
 
-/* Whether the circle about (x, y) holds none but `other` of those around. */
+/* Whether the circle about (x, y) contains none of the particles around but `other`. */
 static bool empty_circle(const struct around *at, double x, double y, double radius, int32_t other)
 {
     const double inside2 = square(radius * (1 - 1e-9));
@@ -59,7 +59,7 @@ static bool empty_circle(const struct around *at, double x, double y, double rad
     return true;
 }
 
-/* Links of a particle to neighbours of higher numbers. */
+/* Links of a particle to neighbours with higher numbers. */
 static int64_t links_of(const struct around *at, struct link *link, int64_t n)
 {
     const struct cloud *const of = at->of;
@@ -134,7 +134,7 @@ static void add_edges(struct contact *c, const struct cloud *of, const struct li
     }
 }
 
-/* From the number of edges that end at each point to its share; one without any becomes one. */
+/* Converts the number of edges at each point to its weight (T-61a); 0 edges count as 1. */
 static void set_shares(struct contact *c)
 {
     for (int64_t k = 0; k < c->n_points; k++) {
@@ -168,7 +168,7 @@ static enum err cloud_create(struct cloud *of, struct arena *temp, int64_t n, co
     return of->body && of->group && of->point && of->dp ? ERR_OK : ERR_MEMORY;
 }
 
-/* Bonded solids are one, and so are walls that move together or not at all. */
+/* Bonded solids form one group; so do walls that move together or are at rest. */
 static enum err make_clouds(struct contact *c, const struct particles *solid, struct cloud of[2],
                             struct arena *temp, struct diag *d)
 {

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * A surface that moves meets the pressure rho0 c0 times its velocity immediately; sound spreads it later. As
- * a force that is constant over the sub-steps this pressure acts a step late, and oscillations of a quarter
- * to three quarters of a period a step gain energy from it. */
+ * The pressure at a moving surface changes by rho0 c0 times its velocity immediately; sound spreads
+ * it later. As a constant force over the sub-steps this pressure acts a step late. Oscillations
+ * with periods between 4/3 and 4 steps then gain energy. */
 #include "solid/interface.h"
 
 #include <math.h>
 
-/* Of the interface impulse, in a step: slow beside oscillations of some tens of steps. A tenth
- * drives structures of a fiftieth of the fluid's density; none leaves them too heavy. */
+/* Fraction of the interface impulse returned per step: slow compared with oscillations of some tens
+ * of steps. A tenth excites structures of a fiftieth of the fluid's density; zero makes them too
+ * heavy. */
 #define RETURN_FRACTION 0.02
 
 static void return_fraction(struct particles *p, int64_t i, double per_time)
@@ -18,9 +19,9 @@ static void return_fraction(struct particles *p, int64_t i, double per_time)
     p->interface_impulse_y[i] *= 1 - RETURN_FRACTION;
 }
 
-/* T-35a: the direction of the wetted surface times the root of the fraction of the velocity along
- * it that one sub-step of dt takes, implicitly so that no bound of the step follows; and the
- * velocity along it that the fluid uses. Zero for dry and clamped particles. */
+/* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
+ * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
+ * velocity that the fluid uses. Zero for dry and clamped particles. */
 static void find_face(const struct solid *s, struct particles *p, int64_t i, double dt)
 {
     const struct solid_body *const body = &s->body[p->body[i]];

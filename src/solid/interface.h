@@ -7,10 +7,11 @@
 
 /* For use inside a parallel region: each ends with all threads together. */
 
-/* Before n sub-steps of dt: returns a share of the interface impulse and finds the wetted normals. */
+/* Before n sub-steps of dt: returns a fraction of the interface impulse and finds the wetted
+ * normals. */
 void interface_begin(const struct solid *s, struct particles *p, double dt, int n);
 
-/* After them: adds what they have exchanged to the interface impulse. */
+/* After them: adds the impulse that they have exchanged to the interface impulse. */
 void interface_end(const struct solid *s, struct particles *p);
 
 /* T-35a for one particle, after the kick of a sub-step. */

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* --- the beginning --- */
+/* --- start --- */
 
 static int moving_clamp(const struct scene *scene, int body)
 {
@@ -29,8 +29,8 @@ static enum err find_held(struct loads *v, struct arena *a, const struct particl
     return ERR_OK;
 }
 
-/* Appends the particles of a load; a centre on an edge counts as above and to the right of it, as where
- * bodies are sampled. */
+/* Appends the particles of a load. A centre on an edge counts as above and to the right of it, as
+ * in the sampling of bodies. */
 static enum err find_loaded(struct loads *v, struct load_region *load, const struct particles *p,
                             struct arena *temp, struct diag *d)
 {
@@ -57,8 +57,8 @@ static enum err find_loaded(struct loads *v, struct load_region *load, const str
     return ERR_OK;
 }
 
-/* The length of surface that each of a row of particles stands for: the spacing of their lattice along the
- * axis in which they extend further. */
+/* The length of surface that each particle of a row represents: the lattice spacing along the
+ * longer axis of the row. */
 static double row_spacing(const struct loads *v, const struct load_region *load, int body,
                           const struct particles *p)
 {
@@ -75,7 +75,8 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
     return l->spacing[high[1] - low[1] > high[0] - low[0]];
 }
 
-/* Each particle's part of the force, or the traction on the length of surface that it stands for. */
+/* Each particle's part of the force, or the traction times the length of surface that it
+ * represents. */
 static void set_forces(struct loads *v, const struct load_region *load, const struct particles *p)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
@@ -127,7 +128,7 @@ enum err loads_create(struct loads *v, struct arena *a, const struct scene *scen
     return ERR_OK;
 }
 
-/* --- on the way --- */
+/* --- during the run --- */
 
 static void move(struct loads *v, double time)
 {
@@ -147,7 +148,7 @@ void loads_place_clamps(struct loads *v, struct particles *p, double time)
         p->vy[i] = at.v[1];
         if (p->interface_impulse_x)
             p->interface_impulse_x[i] = p->interface_impulse_y[i] =
-                0; /* a fork's new clamp takes it */
+                0; /* a new clamp after a fork uses it */
     }
 }
 
@@ -156,7 +157,7 @@ void clear_driven_normals(const struct loads *v, struct particles *p)
     for (int64_t k = 0; k < v->n_held; k++) p->face_x[v->held[k]] = p->face_y[v->held[k]] = 0;
 }
 
-/* Dead loads: they keep their direction and do not follow the surface. */
+/* Dead loads: their direction is constant and does not follow the surface. */
 void loads_forces(struct loads *v, const struct solid *s, struct particles *p, double time)
 {
     for (int n = 0; n < v->n_loads; n++) {

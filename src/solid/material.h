@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Stress laws of the solid, one short function each, over lanes of `real`. All take the displacement gradient
- * U = F - I, so that small strains keep their digits, and give the first Piola-Kirchhoff stress P. */
+ * Stress laws of the solid, one short function each, on vectors of `real`. All use the displacement
+ * gradient U = F - I, which keeps the digits of small strains, and return the first Piola-Kirchhoff
+ * stress P. */
 #ifndef SPHFSI_SOLID_MATERIAL_H
 #define SPHFSI_SOLID_MATERIAL_H
 
@@ -30,13 +31,13 @@ SPHFSI_INLINE struct vtensor2 hooke(struct vtensor2 e, double lambda, double mu)
                              trace + e.yy * twice};
 }
 
-/* In plane stress the strain across is this times (e_xx + e_yy), */
+/* In plane stress the strain across the plane is this times (e_xx + e_yy), */
 SPHFSI_INLINE double across_ratio(const struct solid_body *b)
 {
     return -b->lambda / (b->lambda + 2 * b->mu);
 }
 
-/* which lowers lambda to this. */
+/* which reduces lambda to this. */
 SPHFSI_INLINE double plane_lambda(const struct solid_body *b)
 {
     return b->plane == PLANE_STRESS ? 2 * b->lambda * b->mu / (b->lambda + 2 * b->mu) : b->lambda;
@@ -66,11 +67,11 @@ SPHFSI_INLINE struct vtensor2 svk_pk1(const struct solid_body *b, struct vtensor
     return vtensor2_mul(deformation(U), hooke(green_lagrange(U), plane_lambda(b), b->mu));
 }
 
-/* Compressible neo-Hookean, W = mu/2 (tr(F^T F) - 3) - mu ln J + lambda/4 (J^2 - 1 - 2 ln J):
- * P = mu F + (lambda/2 (J^2 - 1) - mu) F^-T = (mu (J F - cof F) + lambda/2 (J^2 - 1) cof F)/J, in
- * J - 1 = tr U + det U so that nothing cancels (T-21a): J F - cof F = U - cof U + (J - 1) F. In plane stress
- * the thickness t follows from P_zz = 0 in closed form: t^2 = (2 mu + lambda)/(2 mu + lambda J_2^2),
- * J = J_2 t, which makes J^2 - 1 of J_2^2 - 1 as below. */
+/* Compressible neo-Hookean, W = mu/2 (tr(F^T F) - 3) - mu ln J + lambda/4 (J^2 - 1 - 2 ln J): P =
+ * mu F + (lambda/2 (J^2 - 1) - mu) F^-T = (mu (J F - cof F) + lambda/2 (J^2 - 1) cof F)/J, in J - 1
+ * = tr U + det U to avoid cancellation (T-21a): J F - cof F = U - cof U + (J - 1) F. In plane
+ * stress the thickness t follows from P_zz = 0 in closed form: t^2 = (2 mu + lambda)/(2 mu + lambda
+ * J_2^2), J = J_2 t, which turns J_2^2 - 1 into J^2 - 1 as below. */
 SPHFSI_INLINE struct vtensor2 neo_hookean_pk1(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), cof = vtensor2_cof(F);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What belongs to the stress laws and is asked for output alone: stored energy, and what happens across the
- * plane. In double. */
+ * Parts of the stress laws that only output needs: stored energy, and the state across the plane.
+ * In double. */
 #ifndef SPHFSI_SOLID_MATERIAL_ENERGY_H
 #define SPHFSI_SOLID_MATERIAL_ENERGY_H
 
@@ -10,8 +10,8 @@
 
 #include "solid/material.h"
 
-/* Strain energy per reference volume, J/m^3. The paper's law has no stored-energy function: its row is
- * half the product of stress and strain, which is exact for small strains only. */
+/* Strain energy per reference volume, J/m^3. The paper's law has no stored-energy function. Its row
+ * is half the product of stress and strain, exact for small strains only. */
 SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), E = green_lagrange(U), cof = vtensor2_cof(F);
@@ -41,8 +41,8 @@ SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor
     return W * J / vsqrt_double(1.0 - 2.0 * eps_zz);
 }
 
-/* What happens across the plane: the stretch of the thickness and the Cauchy stress sigma_zz, Pa, of
- * lane 0. In plane strain the stretch is 1, in plane stress the stress is 0. */
+/* State across the plane: the thickness stretch and the Cauchy stress sigma_zz, Pa, of lane 0. In
+ * plane strain the stretch is 1; in plane stress the stress is 0. */
 SPHFSI_INLINE void material_across(const struct solid_body *b, struct vtensor2 U, double *stretch,
                                    double *sigma_zz)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/packed.h"
 
-/* Whether the scene calls for a lane. */
+/* Whether the scene needs a packed field. */
 static bool lane_needed(const struct solid *s, int lane)
 {
     bool mixed = false;

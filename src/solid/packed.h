@@ -5,7 +5,7 @@
 
 #include "solid/solid.h"
 
-/* A number of an array of the precision of the sweeps, such as a lane or the weights. */
+/* Element of an array in the precision of the sweeps, such as a packed field or the weights. */
 SPHFSI_INLINE void solid_set(const struct solid *s, void *array, int64_t i, double value)
 {
     if (s->sweeps->size == sizeof(double))
@@ -20,8 +20,8 @@ SPHFSI_INLINE double solid_get(const struct solid *s, const void *array, int64_t
                                              : (double)((const float *)array)[i];
 }
 
-/* The lanes that the scene calls for, for the particles p. In double precision the sweeps work on the fields
- * themselves, where there are such. s->body, sweeps and variational are set. */
+/* The packed fields that the scene needs, for the particles p. Sweeps in double precision use the
+ * particle fields themselves where these exist. s->body, sweeps and variational are set. */
 enum err solid_packed_create(struct solid *s, struct arena *a, const struct particles *p,
                              struct diag *d) SPHFSI_CHECKED;
 

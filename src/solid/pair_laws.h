@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * One inline function for each law between two particles of the solid, over a pack of pairs. A part of the
- * sweeps' text (solid/sweep.h), once for each precision. */
+ * One inline function for each law between two particles of the solid, for a pack of pairs.
+ * Included by the sweeps (solid/sweep.h), once for each precision. */
 #ifndef SPHFSI_SOLID_PAIR_LAWS_H
 #define SPHFSI_SOLID_PAIR_LAWS_H
 
 #include "solid/material.h"
 #include "solid/solid.h"
 
-/* A lane of the particles from i on; a weight of a slot. */
+/* A packed field of the particles from i on; a weight of a slot. */
 #define lane_of(s, number, i) vload((const real *)(s)->lane[number] + (i))
 #define weight_of(slot, weight) vload((slot) + (weight)*LANES)
 
 /* Displacements are in two parts where real is float. */
-/* NOLINTNEXTLINE(misc-redundant-expression): this text is compiled for both */
+/* NOLINTNEXTLINE(misc-redundant-expression): compiled for both precisions */
 enum { SPLIT = sizeof(real) < sizeof(double) };
 
 SPHFSI_INLINE struct vtensor2 load_gradient(const struct solid *s, int64_t i)
@@ -25,7 +25,7 @@ struct vvector2 {
     vreal x, y;
 };
 
-/* Displacements of the particles from i on, and of these those of others. */
+/* Displacements of the particles from i on, and differences from others to these. */
 struct placed {
     struct vvector2 u, low;
 };
@@ -37,7 +37,8 @@ SPHFSI_INLINE struct placed placed_at(const struct solid *s, int64_t i)
     return at;
 }
 
-/* u_ab: the parts apart, since near neighbours share their leading digits. */
+/* u_ab: the two parts are subtracted separately, since near neighbours have equal leading
+ * digits. */
 SPHFSI_INLINE struct vvector2 displacement_between(const struct solid *s, const struct placed *a,
                                                    int64_t j)
 {
@@ -53,7 +54,7 @@ SPHFSI_INLINE struct vvector2 velocity_between(const struct solid *s, struct vve
     return (struct vvector2){a.x - lane_of(s, S_VX, j), a.y - lane_of(s, S_VY, j)};
 }
 
-/* Particles a of a pack, as the pair laws see them. */
+/* Particles a of a pack: what the pair laws use. */
 struct solid_receiver {
     struct placed at;
     struct vvector2 v;
@@ -90,10 +91,10 @@ SPHFSI_INLINE struct solid_pair pair_of(const struct solid *s, const real *slot,
     return q;
 }
 
-/* What a pack sums over its slots. */
+/* Sums of a pack over its slots. */
 struct solid_sums {
     vreal stress_x, stress_y;   /* Pa/m */
-    vreal viscous_x, viscous_y; /* of Pi_ab G_ab, still to be turned by J F^-T of a */
+    vreal viscous_x, viscous_y; /* of Pi_ab G_ab, still to be multiplied by J F^-T of a */
     vreal turned_x, turned_y;   /* of Pi_ab (J F^-T)_b H_ab, in the symmetric form */
     vreal ax, ay;               /* m/s^2 */
     struct vtensor2 pull;       /* of k_ab e_ab X_ab^T, in the variational form, m^2/s^2 */
@@ -119,8 +120,8 @@ SPHFSI_INLINE vreal viscous_pressure(const struct solid *s, const struct solid_p
     return approach / vfma(q->x, q->x, vfma(q->y, q->y, eta2));
 }
 
-/* Of joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that the
- * pair's Pi is one number. */
+/* For joined bodies: the mean of both particles' rho0 alpha_s c_s h, over the density of a, so that
+ * Pi is the same for both particles. */
 SPHFSI_INLINE vreal mean_viscosity(const struct solid *s, int64_t i, int64_t j,
                                    const struct solid_body *body)
 {

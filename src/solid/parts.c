@@ -10,24 +10,24 @@
 #include "solid/packed.h"
 #include "solid/stencil.h"
 
-/* Lanes of HALO_POSITION, HALO_GRADIENT and HALO_STRESS. */
+/* Packed fields of HALO_POSITION, HALO_GRADIENT and HALO_STRESS. */
 static const struct {
     int first, end;
 } handed[] = {{S_UX, S_UXX}, {S_UXX, S_PXX}, {S_PXX, S_GX}};
 enum { HALO_MOST = 8 };
 
-/* From one part to another. Two rooms in turn: who fills one for the second time has been told since that the
- * other has emptied it, as they tell each other the same number of times. */
+/* From one part to another, with two buffers used alternately. Before a sender fills a buffer
+ * again, the receiver has emptied it: both send each other the same number of messages. */
 struct part_message {
-    _Alignas(64) uint32_t sequence; /* how often; written by the giver */
+    _Alignas(64) uint32_t sequence; /* number of messages; written by the sender */
     _Alignas(64) int n;
-    int32_t *given, *taken; /* [n] where they are in the giver and in the taker */
+    int32_t *given, *taken; /* [n] indices in the sender and in the receiver */
     void *room[2];          /* [HALO_MOST][n] */
 };
 
 /* --- cutting --- */
 
-/* A particle's place along the axis across which the solid is cut. */
+/* Coordinate of a particle along the axis across which the solid is cut. */
 struct spot {
     double at;
     int32_t i;
@@ -40,12 +40,14 @@ static int compare_spot(const void *a, const void *b)
     return (x->i > y->i) - (x->i < y->i);
 }
 
-/* Of n spots in order, a part's own and, around them, those within its reach: up to before `end`. */
+/* Of n particles in order along the axis: a part's own ones and those within its reach around them,
+ * up to before `end`. */
 struct cut {
     int64_t first, end, own_first, own_end;
 };
 
-/* Both parts of a pair take the same difference, so that each is in the other's reach or neither. */
+/* Both parts of a pair compute the same difference, so each is within the other's reach or neither
+ * is. */
 static struct cut cut_of(const struct spot *spot, int64_t n, double reach, int part, int parts)
 {
     struct cut c = {.own_first = n * part / parts, .own_end = n * (part + 1) / parts};
@@ -55,7 +57,7 @@ static struct cut cut_of(const struct spot *spot, int64_t n, double reach, int p
     return c;
 }
 
-/* Orders the particles along an axis; returns how many there will be in all parts together. */
+/* Orders the particles along an axis; returns their number in all parts together. */
 static int64_t order_along(struct spot *spot, const double *at, int64_t n, double reach, int parts)
 {
     for (int64_t i = 0; i < n; i++) spot[i] = (struct spot){at[i], (int32_t)i};
@@ -74,7 +76,7 @@ static int compare_index(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Indices of spots among all, ascending. */
+/* Their indices in the whole, ascending. */
 static void indices_of(const struct spot *spot, int64_t n, int32_t *index)
 {
     for (int64_t k = 0; k < n; k++) index[k] = spot[k].i;
@@ -83,7 +85,7 @@ static void indices_of(const struct spot *spot, int64_t n, int32_t *index)
 
 /* --- building --- */
 
-/* What building needs for a while. */
+/* Temporary data of building. */
 struct plan {
     const struct solid *s;
     const struct particles *p;
@@ -91,8 +93,8 @@ struct plan {
     struct diag *d;
     struct spot *spot; /* [p->n] */
     struct cut *cut;   /* [parts] */
-    int32_t **global;  /* [parts]: index among all, ascending */
-    int32_t *local;    /* [p->n]: index in a part, -1: not there */
+    int32_t **global;  /* [parts]: index in the whole, ascending */
+    int32_t *local;    /* [p->n]: index in a part, -1: not in it */
     bool *own;         /* [p->n]: the part's own */
 };
 
@@ -111,7 +113,8 @@ static void find_runs(struct solid_part *part, const struct plan *plan, const in
     }
 }
 
-/* The particles of a part, with what does not change. Copies are never free: what moves them is told. */
+/* The particles of a part, with their constant fields. Copies are never free: messages set their
+ * motion. */
 static enum err create_particles(struct solid_part *part, const struct plan *plan,
                                  const struct cut *c, const int32_t *global)
 {
@@ -146,14 +149,14 @@ static enum err create_part(struct solid_part *part, const struct plan *plan, co
     return solid_stencil_of_part(s, plan->arena, &part->p, plan->s, global, plan->local, plan->d);
 }
 
-/* Where a particle is in a part. */
+/* Index of a particle in a part. */
 static int32_t place_of(const int32_t *global, int64_t n, int32_t i)
 {
     const int32_t *const found = bsearch(&i, global, (size_t)n, sizeof i, compare_index);
     return (int32_t)(found - global);
 }
 
-/* The message of what part `to` has copies of in part `from`, if any. */
+/* The message with the particles of part `from` that part `to` has copies of, if any. */
 static enum err create_message(struct solid *s, const struct plan *plan, int from, int to)
 {
     const struct cut *const a = &plan->cut[from], *const b = &plan->cut[to];
@@ -199,8 +202,8 @@ static enum err create_all(struct solid *s, struct plan *plan, int parts)
     return ERR_OK;
 }
 
-/* Room for the plan, and the cuts across the axis that leaves the fewest copies; false in `pays` where they
- * are too many. */
+/* Memory for the cuts; chooses the axis with the fewest copies. Sets `pays` to false if there are
+ * too many. */
 static enum err make_plan(struct plan *plan, struct arena *scratch, int parts, bool *pays)
 {
     const char *const what = "cutting the solid";
@@ -232,8 +235,8 @@ static enum err make_plan(struct plan *plan, struct arena *scratch, int parts, b
 enum err solid_parts_create(struct solid *s, struct arena *a, const struct particles *p,
                             struct diag *d)
 {
-    /* Of larger bodies what both threads need is a small part of each one's own: no gain with 8080 particles
-     * a thread, a loss of 1 % with 32160. */
+    /* In larger bodies the data that both threads need is a small fraction of each one's own.
+     * Measured: no gain with 8080 particles a thread, a loss of 1 % with 32160. */
     enum { MOST_OWN = 8192 };
     const int parts = s->threads;
     if (parts < 2 || p->n > (int64_t)MOST_OWN * parts) return ERR_OK;
@@ -269,7 +272,7 @@ void solid_part_load(struct solid_part *part, const struct particles *whole)
             memcpy(&p->free[r->here], &whole->free[r->there], (size_t)r->n * sizeof(double));
 }
 
-/* Fields of the part's own particles into those of the whole. */
+/* Copies fields of the part's own particles to those of the whole. */
 static void give(const struct solid_part *part, double *const *from, double *const *to, int fields)
 {
     for (int f = 0; f < fields && from[f]; f++)
@@ -291,7 +294,7 @@ void solid_part_show(struct solid_part *part, const struct particles *whole)
     give(part, from, to, COUNT_OF(from));
 }
 
-/* Numbers of a lane to a room, and from it. */
+/* Numbers of a packed field to a buffer, and from it. */
 static void pick(const void *lane, const int32_t *at, int n, size_t size, void *room)
 {
     if (size == sizeof(double))
@@ -308,7 +311,7 @@ static void place(void *lane, const int32_t *at, int n, size_t size, const void 
         for (int k = 0; k < n; k++) ((float *)lane)[at[k]] = ((const float *)room)[k];
 }
 
-/* The lanes of what is handed over; returns their number. */
+/* The packed fields of a halo; returns their number. */
 static int lanes_of(const struct solid *s, unsigned what, void *lane[HALO_MOST])
 {
     int n = 0;

@@ -40,7 +40,7 @@ static struct solid_body body_of(const struct scene *scene, int k)
     };
 }
 
-/* Bodies that are joined, directly or by way of others, get the number of the first of them. */
+/* Bodies joined directly or through others get the number of the first of them. */
 static void join_bodies(struct solid *s, const struct scene *scene)
 {
     for (int k = 0; k < s->n_bodies; k++) s->body[k].bond = k;
@@ -58,17 +58,17 @@ static void join_bodies(struct solid *s, const struct scene *scene)
                                                           s->body[k].density * s->body[k].viscosity;
 }
 
-/* All threads where each has enough of n particles between two barriers to outweigh them, or one: a team
- * that shrinks costs more than it saves, since libgomp ends the threads left over and starts others for the
- * next. */
+/* All threads if each has enough of n particles between two barriers, otherwise one. A smaller
+ * team costs more than it saves: libgomp ends the other threads and starts new ones for the next
+ * region. */
 static int useful_threads(int64_t n)
 {
     enum { PARTICLES_PER_THREAD = 192 };
     return n >= (int64_t)PARTICLES_PER_THREAD * thread_count() ? thread_count() : 1;
 }
 
-/* Eq. 17 has no potential: its operator is not symmetric, and some shapes have modes that grow at a rate
- * that does not depend on the step (tests/stability/test_step_bound.c). */
+/* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
+ * not depend on the step (tests/stability/test_step_bound.c). */
 static void warn_of_flutter(const struct solid_body *b, const char *name, struct diag *d)
 {
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
@@ -81,12 +81,12 @@ static void warn_of_flutter(const struct solid_body *b, const char *name, struct
         quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
-/* Float holds what a displacement gradient has of a turn to 1e-7 of it, beside strains that may be smaller,
- * and what that does to the motion adds up where nothing damps it: a steel strip without viscosity gained
- * 4e-4 of its energy in 0.14 s, with alpha_s = 0.001 as much as in double. */
+/* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
+ * smaller. Without damping the effect on the motion accumulates: a steel strip without viscosity
+ * gained 4e-4 of its energy in 0.14 s. With alpha_s = 0.001 it gained as much as in double. */
 #define DAMPED 0.01
 
-/* The name of a body for which float is not enough; NULL: there is none. */
+/* The name of a body for which float is not sufficient; NULL: none. */
 static const char *needs_double(const struct solid *s, const struct scene *scene,
                                 const struct particles *p)
 {
@@ -163,12 +163,13 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     return solid_parts_create(s, a, p, d);
 }
 
-/* What a thread of a parallel region steps: its share of the packs of all, or a part of its own. */
+/* The work of a thread in a parallel region: its part of all packs, or a part with arrays of its
+ * own. */
 struct chunk {
     const struct solid *s;
     struct particles *p;
     int64_t first, last;     /* its packs */
-    struct solid_part *part; /* NULL: threads share the arrays */
+    struct solid_part *part; /* NULL: threads use the same arrays */
 };
 
 static struct chunk chunk_of(const struct solid *s, struct particles *p)
@@ -187,7 +188,7 @@ static void sweep(const struct chunk *own, solid_sweep *f)
     f(own->s, own->p, own->first, own->last);
 }
 
-/* All threads together: each has what the others have found. */
+/* All threads together: afterwards each can read the results of the others. */
 static void together(const struct chunk *own, unsigned found)
 {
     if (own->part)
@@ -208,7 +209,7 @@ static void stress_sweeps(const struct chunk *own)
     together(own, s->variational ? HALO_STRESS : HALO_GRADIENT | HALO_STRESS);
 }
 
-/* What acts on each particle beside its neighbours; clamped ones do not move. */
+/* Forces other than those of neighbours; clamped particles do not move. */
 static void add_own_forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     for (int64_t k = first; k < last; k++) {
@@ -253,13 +254,14 @@ static void vary_gravity(const struct solid *s, struct particles *p, double time
     }
 }
 
-/* Whether what acts from outside may ask a motion of the program, which belongs to the calling thread. */
+/* Whether prescribed motion may call a function of the program, which belongs to the calling
+ * thread. */
 static bool calls_program(const struct solid *s)
 {
     return s->calls_out && (s->contact || s->loads);
 }
 
-/* What acts on the solid from outside, each a pass of its own. */
+/* Actions from outside the solid, each a pass of its own. */
 static void outer_forces(const struct solid *s, struct particles *p, double time)
 {
     if (s->contact) {
@@ -275,7 +277,7 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
     }
 }
 
-/* The first behind a share's particles, and the first of them. */
+/* The end of a thread's particles, and the first of them. */
 static int64_t end_of(const struct chunk *own)
 {
     return own->last < own->s->n_packs ? own->s->pack[own->last].i : own->p->n;
@@ -286,14 +288,14 @@ static int64_t first_of(const struct chunk *own)
     return own->first < own->last ? own->s->pack[own->first].i : end_of(own);
 }
 
-/* What the sweeps take of new places and velocities is taken at once. */
+/* Packs new positions and velocities for the sweeps immediately. */
 static void look(const struct chunk *own)
 {
     sweep(own, own->s->sweeps->look);
     together(own, HALO_POSITION);
 }
 
-/* Kick and drift, with the fluid's impedance where the body meets fluid. */
+/* Kick and drift, with the fluid's impedance where the body touches fluid. */
 SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool impeded)
 {
     const struct particles *const p = own->p;
@@ -396,8 +398,8 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
     }
 }
 
-/* Whether each thread of a region can step its part by itself: there is one for each, nothing from outside
- * looks at the whole in between, and there are sub-steps enough to outweigh the copies. */
+/* Whether each thread of a region can step a part by itself. Conditions: one part for each thread,
+ * nothing from outside reads the whole in between, and enough sub-steps to outweigh the copies. */
 static bool steps_parts(const struct solid *s, int n)
 {
     enum { WORTH_COPYING = 4 };

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the paper knows
- * the speed of sound only; the hourglass springs are stiffer than the material and bound the step. */
+ * The solid's stable step, from the largest eigenvalues of its own operator. Eq. 29 of the paper
+ * contains the speed of sound only; the hourglass springs are stiffer than the material and limit
+ * the step. */
 #include <math.h>
 #include <string.h>
 
 #include "solid/material.h"
 #include "solid/solid.h"
 
-/* Numbers without a pattern that the operator could share, the same on every machine. */
+/* Numbers without a pattern that the operator could have too; the same on every machine. */
 static void scramble(double *v, int64_t n, uint64_t seed, const double *moves)
 {
     for (int64_t i = 0; i < n; i++) {
@@ -49,9 +50,9 @@ static void set_field(double *const field[2], double *const base[2], const doubl
     }
 }
 
-/* What the operator answers to the direction in (sx, sy), scaled to `amplitude` at most, that the field
- * departs from its base with; in (sx, sy) again, as the difference from the answer to the base alone. Returns
- * by how much the answer is larger. */
+/* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to
+ * `amplitude` at most. Stores the difference from its result at the base in (sx, sy). Returns the
+ * factor by which that is larger. */
 static double answer(struct solid *s, struct particles *p, double *const field[2],
                      double *const base[2], double amplitude, bool both_signs)
 {
@@ -60,8 +61,8 @@ static double answer(struct solid *s, struct particles *p, double *const field[2
     double *const other[2] = {p->x0, p->y0};
     const double *const rest[2] = {s->scratch[2], s->scratch[3]};
     if (both_signs) {
-        /* The viscous force acts on approaching pairs only: the other half of the pairs answers to the
-         * opposite field. */
+        /* The viscous force acts on approaching pairs only: the other half of the pairs responds to
+         * the opposite field. */
         set_field(field, base, p->sx, p->sy, p->n, -factor);
         keep(other, p->sx, p->sy, p->n);
         solid_stress(s, p);
@@ -80,9 +81,9 @@ static double answer(struct solid *s, struct particles *p, double *const field[2
     return norm(p->sx, p->sy, p->n) / asked;
 }
 
-/* Largest factor by which the answer of the operator exceeds a small change of the field, displacement
- * or velocity; `amplitude` keeps it in the linear range. Power iteration approaches from below: 0.3 %
- * are missing after so many rounds at kappa = 50; one percent is added. */
+/* Largest ratio of the operator's change to a small change of the field, displacement or velocity;
+ * `amplitude` keeps it in the linear range. Power iteration approaches it from below: after so many
+ * iterations 0.3 % are missing at kappa = 50; one percent is added. */
 static double largest_factor(struct solid *s, struct particles *p, double *const field[2],
                              double *const base[2], double amplitude, bool both_signs)
 {
@@ -108,11 +109,11 @@ double solid_step_of(double omega2, double damping)
 
 double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping)
 {
-    /* Without the fluid's force and gravity, which do not depend on the field, and without contact, which
-     * has bounds of its own. */
+    /* Without the fluid's force and gravity, which do not depend on the field, and without contact,
+     * which has its own bounds. */
     double *const rates[2] = {s->scratch[4], s->scratch[5]};
     if (s->in_parts) solid_show(s, p);
-    s->in_parts = false; /* the fields of p will be of the last trial */
+    s->in_parts = false; /* the fields of p will be those of the last trial */
     keep(rates, p->sx, p->sy, p->n);
     struct solid bare = *s;
     struct solid_body body[s->n_bodies];
@@ -130,7 +131,8 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     double *const base[2] = {s->scratch[0], s->scratch[1]};
     double *const rest[2] = {s->scratch[2], s->scratch[3]};
     double *const kept[2] = {p->vx0, p->vy0};
-    /* Beside a base of strain 1 float is off by a thousandth of the change; velocities swing as far. */
+    /* At a base strain of 1 the rounding error of float is a thousandth of the change; velocities
+     * have the same amplitude. */
     const double amplitude = (s->sweeps->size < sizeof(double) ? 1e-4 : 1e-6) * s->dp;
     keep(kept, p->vx, p->vy, p->n);
     memset(p->vx, 0, bytes);
@@ -145,16 +147,16 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     memset(base[0], 0, bytes);
     memset(base[1], 0, bytes);
     *damping = 0;
-    /* Linear damping answers to both signs. */
+    /* Linear damping acts on both signs. */
     for (int k = 0; k < s->n_bodies; k++) body[k].damping_time *= 0.5;
     for (int k = 0; k < s->n_bodies; k++)
         if (s->body[k].viscosity + s->body[k].damping_time > 0 && *damping == 0)
             *damping = largest_factor(&bare, p, v, base, amplitude * *omega, true);
     keep(v, kept[0], kept[1], p->n);
-    /* Whoever looks next finds the body, not a trial. */
+    /* Later readers get the fields of the body, not of a trial. */
     solid_stress(s, p);
     keep((double *[2]){p->sx, p->sy}, rates[0], rates[1], p->n);
-    /* Eigenvalues of two operators together are no larger than the sum of the largest of each. */
+    /* The eigenvalues of a sum of two operators are at most the sum of the largest of each. */
     return solid_step_of(square(*omega), *damping);
 }
 
@@ -165,8 +167,8 @@ void solid_find_step(struct solid *s, struct particles *p)
 
 static vdouble larger(vdouble a, vdouble b) { return -vmin_double(-a, -b); }
 
-/* The larger of dP_11/dF_11 and dP_22/dF_22 in the principal axes, which is what an axial wave meets, Pa.
- * From the stretches alone, since the laws are isotropic. */
+/* The larger of dP_11/dF_11 and dP_22/dF_22 in the principal axes, the stiffness of an axial wave,
+ * Pa. From the stretches only, since the laws are isotropic. */
 static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdouble second)
 {
     const double delta = 1e-5;

@@ -11,11 +11,10 @@
 /* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
 enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
 
-/* W_X of a lane that has no such neighbour: it divides by the distance all the same, which must not
- * vanish. */
+/* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
 #define NOBODY 1e6
 
-/* A slot in the making. */
+/* A slot under construction. */
 struct draft {
     double weight[SOLID_WEIGHTS][MAX_LANES];
     int64_t offset;
@@ -38,7 +37,7 @@ static enum err buckets_create(struct bucket_grid *g, struct arena *a, const str
         upper[0] = max2(upper[0], p->X[i]);
         upper[1] = max2(upper[1], p->Y[i]);
     }
-    /* Few bodies far apart must not cost a bucket for every spot between them. */
+    /* Few bodies far apart must not need a bucket for every cell between them. */
     g->side = max2(reach, 1e-4 * max2(upper[0] - g->lower[0], upper[1] - g->lower[1]));
     g->nx = (int)((upper[0] - g->lower[0]) / g->side) + 1;
     g->ny = (int)((upper[1] - g->lower[1]) / g->side) + 1;
@@ -56,8 +55,8 @@ static enum err buckets_create(struct bucket_grid *g, struct arena *a, const str
     return ERR_OK;
 }
 
-/* X_a - X_b, rounded to 2^-30 dp: on a lattice equal surroundings become equal to the bit, so that
- * packs can share their slots. */
+/* X_a - X_b, rounded to 2^-30 dp: equal surroundings on a lattice become bitwise equal, so that
+ * packs can use the same slots. */
 static double reference_distance(double a, double b, double dp)
 {
     const double unit = ldexp(dp, -30);
@@ -96,7 +95,7 @@ static int neighbours_of(const struct solid *s, const struct bucket_grid *g,
     return n;
 }
 
-/* The slot of a pack for neighbours at this offset, made if there is none. */
+/* The slot of a pack for neighbours at this offset; creates it if there is none. */
 static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
 {
     for (int k = 0; k < *n; k++)
@@ -108,7 +107,7 @@ static struct draft *slot_for(struct draft *slots, int *n, int64_t offset)
     return slot;
 }
 
-/* What gives the gradient at a particle from the fields of its neighbours. */
+/* Computes the gradient at a particle from the fields of its neighbours. */
 struct gradient_moments {
     double inverse[2][5]; /* rows d/dX and d/dY of the inverse moment matrix */
     bool quadratic;
@@ -149,10 +148,10 @@ static bool solve_row(const double M[5][5], int n, int row, double z[5])
     return true;
 }
 
-/* Moment matrix of a particle with the weight |grad W|/r: its linear block is L of Eq. 13c, so that two
- * rows give the paper's corrected gradient and all five one that is exact for quadratic fields as well
- * (moving least squares). Where the neighbours cannot tell a quadratic field, as across two particles,
- * the linear one stays. false: not even that. */
+/* Moment matrix of a particle with the weight |grad W|/r. Its linear block is L of Eq. 13c: two
+ * rows give the paper's corrected gradient, all five one that is exact for quadratic fields (moving
+ * least squares). If the neighbours cannot determine a quadratic field, as across two particles,
+ * the gradient stays linear. false: not even linear. */
 static bool find_moments(const struct solid *s, const struct particles *p, int64_t i,
                          const int32_t *found, int n, bool quadratic, struct gradient_moments *m)
 {
@@ -217,9 +216,9 @@ static int compare_slot(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Where the slots of a pack come from: the reference positions, or a solid that this one is a part of. */
+/* Source of a pack's slots: the reference positions, or a solid that this one is a part of. */
 struct slot_source {
-    /* Makes the slots of a pack, in any order; returns their number. */
+    /* Creates the slots of a pack, in any order; returns their number. */
     int (*fill)(const struct slot_source *from, const struct solid *s,
                 const struct solid_pack *pack, struct draft *slots);
     const struct particles *p;
@@ -274,7 +273,7 @@ static int pack_slots(const struct slot_source *from, const struct solid *s,
     return n;
 }
 
-/* Slots as the sweeps take them. */
+/* Slots in the layout of the sweeps. */
 struct slots {
     int64_t *offset;
     char *weight;
@@ -367,7 +366,7 @@ static void cut_packs(struct solid *s, const struct particles *p)
     }
 }
 
-/* Two rounds: the first counts the slots there would be without sharing, the second stores them. */
+/* Two rounds: the first counts the slots without common sets, the second stores them. */
 static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
                             const struct slot_source *from, struct diag *d)
 {
@@ -395,7 +394,7 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
     return ERR_OK;
 }
 
-/* Moments of every particle, and the neighbours' number checked on the way. */
+/* Moments of every particle; also checks the number of neighbours. */
 static enum err all_moments(struct solid *s, const struct bucket_grid *g, const struct particles *p,
                             struct gradient_moments *moments, struct diag *d)
 {
@@ -421,7 +420,7 @@ static enum err all_moments(struct solid *s, const struct bucket_grid *g, const 
     return ERR_OK;
 }
 
-/* Sums of the gradient weights over the neighbours, which do not change. */
+/* Sums of the gradient weights over the neighbours, constant in time. */
 static void sum_weights(const struct solid *s)
 {
     const int lanes = s->sweeps->lanes;

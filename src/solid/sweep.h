@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
- * The sweeps of the solid, one text for both precisions: solid/sweep_mixed.c and solid/sweep_double.c
- * include it after the words of base/real_float.h and base/real_double.h. A pack of particles goes
- * through its slots, one neighbour for each lane at a time; every particle is written by its own pack
- * alone. */
+ * The sweeps of the solid for both precisions: solid/sweep_mixed.c and solid/sweep_double.c include
+ * this file after base/real_float.h and base/real_double.h. A pack of particles goes through its
+ * slots, one neighbour per lane at a time. Each particle is written by its own pack only. */
 #include "solid/material.h"
 #include "solid/solid.h"
 #include "solid/pair_laws.h"
 
-/* Writes the lanes of a pack only: what follows belongs to the next. */
+/* Writes the lanes of a pack only: the memory behind it belongs to the next. */
 SPHFSI_INLINE void store_packed(const struct solid *s, int lane, const struct solid_pack *pack,
                                 vreal value)
 {
@@ -23,7 +22,7 @@ SPHFSI_INLINE void keep_tensor(const struct solid *s, int lane, const struct sol
     store_packed(s, lane + 3, pack, t.yy);
 }
 
-/* Adds a share to the stress of a pack. */
+/* Adds a part to the stress of a pack. */
 SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pack,
                               struct vtensor2 more)
 {
@@ -33,7 +32,7 @@ SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pa
                                   lane_of(s, S_PYX, i) + more.yx, lane_of(s, S_PYY, i) + more.yy});
 }
 
-/* The slots of a pack: the weights of one after the other, and where its neighbours are. */
+/* The slots of a pack: the weights of all slots in order, and the indices of its neighbours. */
 #define SLOT_SIZE (SOLID_WEIGHTS * LANES)
 #define EACH_SLOT(s, pack, slot, j)                                                         \
     const real *slot = (const real *)(s)->weight + (size_t)(pack)->first_slot * SLOT_SIZE;  \
@@ -41,7 +40,7 @@ SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pa
                                                                   offset + (pack)->n_slots; \
     for (int64_t j; offset < end && (j = (pack)->i + *offset, true); offset++, slot += SLOT_SIZE)
 
-/* Where real is double the lanes are the fields themselves. */
+/* In double precision the packed fields are the particle fields. */
 static void look(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     if (!SPLIT || first == last) return;
@@ -112,7 +111,7 @@ static void damping(const struct solid *s, struct particles *p, int64_t first, i
         if (s->body[s->pack[k].body].damping_time > 0) damping_of_pack(s, &s->pack[k]);
 }
 
-/* What the loop over the slots of a pack sums; constants where it is inlined. */
+/* What the loop over the slots of a pack sums; constants after inlining. */
 struct slot_laws {
     bool stress, viscous, mixed, symmetric, hourglass, variational;
 };
@@ -142,7 +141,7 @@ SPHFSI_INLINE struct solid_sums sum_slots(const struct solid *s, const struct so
     return sums;
 }
 
-/* What a body has beside its stress. */
+/* What a body has besides its stress. */
 static struct slot_laws pair_laws(const struct solid_body *body)
 {
     return (struct slot_laws){.viscous = body->viscosity > 0 || body->mixed,
@@ -152,7 +151,8 @@ static struct slot_laws pair_laws(const struct solid_body *body)
                               .variational = body->variational};
 }
 
-/* Acceleration by the forces of pairs: the viscous one turned by J F^-T, and that of hourglass control. */
+/* Acceleration by the forces of pairs: the viscous force multiplied by J F^-T, and that of
+ * hourglass control. */
 SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
                                                  const struct solid_receiver *a,
                                                  const struct solid_sums *s)
@@ -166,15 +166,15 @@ SPHFSI_INLINE struct vvector2 pairs_acceleration(const struct solid_body *body,
                                          viscosity};
 }
 
-/* The variational form adds to the stress, which has to be whole before neighbours sum it, so that its pairs
- * have a pass of their own. */
+/* The variational form adds to the stress, which must be complete before neighbours sum it. So its
+ * pairs have a pass of their own. */
 static void pairs_of_pack(const struct solid *s, const struct solid_pack *pack)
 {
     const struct solid_body *const body = &s->body[pack->body];
     const struct solid_receiver a = receiver_of(s, pack->i);
     const struct slot_laws laws = pair_laws(body);
     struct solid_sums sums;
-    /* The default is stamped; the others are decided as they go. */
+    /* The default has a specialised loop; the other combinations branch at run time. */
     if (laws.viscous && laws.symmetric && !laws.mixed)
         sums = sum_slots(s, pack, &a, (struct slot_laws){false, true, false, true, true, true});
     else
@@ -210,7 +210,7 @@ SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *s, const stru
         sums = sum_slots(s, pack, &a, (struct slot_laws){.stress = true});
         acc = (struct vvector2){lane_of(s, S_PAIRS_X, i), lane_of(s, S_PAIRS_Y, i)};
     } else {
-        /* The paper's combination is stamped. */
+        /* The paper's combination has a specialised loop. */
         if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
             sums =
                 sum_slots(s, pack, &a, (struct slot_laws){true, true, false, false, true, false});
@@ -218,7 +218,8 @@ SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *s, const stru
             sums = sum_slots(s, pack, &a, laws);
         acc = pairs_acceleration(body, &a, &sums);
     }
-    /* Eq. 13a: the own part of the stress is P_a times the sum of G_ab, which vanishes inside a lattice. */
+    /* Eq. 13a: the particle's own part of the stress is P_a times the sum of G_ab, zero inside a
+     * lattice. */
     const vreal Gx = lane_of(s, S_GX, i), Gy = lane_of(s, S_GY, i);
     const vreal own_x = vfma(lane_of(s, S_PXX, i), Gx, lane_of(s, S_PXY, i) * Gy);
     const vreal own_y = vfma(lane_of(s, S_PYX, i), Gx, lane_of(s, S_PYY, i) * Gy);
@@ -237,7 +238,7 @@ static void forces(const struct solid *s, struct particles *p, int64_t first, in
     }
 }
 
-/* Where real is double the lanes are the fields themselves. */
+/* In double precision the packed fields are the particle fields. */
 static void show(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     if (!SPLIT) return;
@@ -247,9 +248,9 @@ static void show(const struct solid *s, struct particles *p, int64_t first, int6
             vwiden(&to[c][s->pack[k].i], lane_of(s, S_UXX + c, s->pack[k].i), s->pack[k].lanes);
 }
 
-/* Energy of the hourglass force, J/m, half of it since each pair is met twice. Variational: the sum of
- * k |e|^2/2. The printed force has no potential, since it leaves out how e_ab depends on F: half of force
- * times stretch of the pair, which is the work it takes for small strains. */
+/* Energy of the hourglass force, J/m; half of it, since each pair occurs twice. Variational: the
+ * sum of k |e|^2/2. The printed force omits how e_ab depends on F and has no potential: half of
+ * force times stretch of the pair, its work for small strains. */
 static void hourglass(const struct solid *s, const struct solid_pack *pack, double *energy)
 {
     const struct solid_receiver a = receiver_of(s, pack->i);

@@ -20,19 +20,19 @@ struct solid_body {
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
     double gravity[2];
     int law, plane, gradient;
-    int bond;         /* bodies joined to each other share this number, that of the first of them */
-    bool symmetric;   /* viscous force with both particles' tensors */
+    int bond;       /* the same number for bodies joined to each other: that of the first of them */
+    bool symmetric; /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */
     bool touches;     /* has a neighbour in a body it is joined to */
-    bool mixed;       /* joined to a body of another viscosity: pairs take the mean of both */
+    bool mixed;       /* joined to a body of another viscosity: pairs use the mean of both */
 };
 
-/* What the sweeps take of a particle: arrays of the solid's own, of float in mixed and double in double
+/* Packed fields of the sweeps: arrays of the solid's own, float in mixed and double in double
  * precision. */
 enum solid_packed_field {
     S_UX, /* displacement, m: in mixed precision its leading digits, */
     S_UY,
-    S_LOW_X, /* and what they leave: differences of neighbours keep theirs. Mixed only */
+    S_LOW_X, /* and the remainder, which keeps differences of neighbours accurate. Mixed only */
     S_LOW_Y,
     S_VX, /* m/s */
     S_VY,
@@ -40,7 +40,7 @@ enum solid_packed_field {
     S_UXY,
     S_UYX,
     S_UYY,
-    S_PXX, /* first Piola-Kirchhoff stress, with the share of a variational hourglass force, Pa */
+    S_PXX, /* first Piola-Kirchhoff stress, with the part of a variational hourglass force, Pa */
     S_PXY,
     S_PYX,
     S_PYY,
@@ -52,9 +52,9 @@ enum solid_packed_field {
     SOLID_PACKED_FIELDS
 };
 
-/* One reference neighbour of each particle of a pack, a slot: of lane l the particle `offset` + i + l, with
- * weights that are zero where that lane has no such neighbour. A slot has of each weight as many as a pack
- * has lanes, one weight after the other. */
+/* One reference neighbour of each particle of a pack, a slot. For lane l it is the particle
+ * `offset` + i + l; the weights are zero if that lane has no such neighbour. A slot has one number
+ * per lane for each weight, one weight after the other. */
 enum solid_weight {
     W_GX, /* G_ab = V_b L_a^-1 grad_0 W_0ab, 1/m: F_a = sum of x_ba G_ab */
     W_GY,
@@ -66,8 +66,8 @@ enum solid_weight {
     SOLID_WEIGHTS
 };
 
-/* Particles i .. i + lanes - 1 of one body, which have their neighbours in common slots. Packs of equal
- * surroundings share their slots: on a lattice all of the interior needs one set. */
+/* Particles i .. i + lanes - 1 of one body, with common slots for their neighbours. Packs with
+ * equal surroundings use the same slots: the interior of a lattice needs one set. */
 struct solid_pack {
     int32_t i, lanes, body;
     int32_t first_slot, n_slots;
@@ -75,21 +75,21 @@ struct solid_pack {
 
 struct solid;
 
-/* Takes the packs from `first` to before `last`. */
+/* Processes the packs from `first` to before `last`. */
 typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
 
-/* The sweeps of one precision. Bodies with the variational form have their pairs apart: the hourglass force
- * and the viscous force, and the stress, to which the first adds. */
+/* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:
+ * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */
 struct solid_sweeps {
     const char *name;
     int lanes;            /* particles of a full pack */
     size_t size;          /* bytes of a number */
-    solid_sweep *look;    /* takes displacement and velocity from p */
-    solid_sweep *stress;  /* gradient, and stress but of variational bodies */
-    solid_sweep *pairs;   /* forces of pairs and stress of variational bodies */
-    solid_sweep *damping; /* adds the stress of Kelvin and Voigt */
-    solid_sweep *forces;  /* acceleration by neighbours into sx, sy of p */
-    solid_sweep *show;    /* gradient and stress into p */
+    solid_sweep *look;    /* packs displacement and velocity of p */
+    solid_sweep *stress;  /* gradient, and stress except of variational bodies */
+    solid_sweep *pairs;   /* forces of pairs, and stress of variational bodies */
+    solid_sweep *damping; /* adds the Kelvin-Voigt stress */
+    solid_sweep *forces;  /* acceleration by neighbours to sx, sy of p */
+    solid_sweep *show;    /* gradient and stress to p */
     /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
     void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
 };
@@ -115,19 +115,19 @@ struct solid {
     double paper_step;            /* Eq. 29, s */
     struct spin_barrier *barrier; /* of the threads between two loops */
     struct solid_part *part;      /* [threads], each stepped by a thread; NULL: not cut */
-    bool in_parts;                /* the last evaluation was theirs */
-    double *scratch[6];           /* room for the search of the step */
-    double time; /* of the displacements, s: walls that are touched stand where they are then */
-    /* What acts from outside, each NULL where there is none; contact: where none is near. */
+    bool in_parts;                /* the last evaluation was done by the parts */
+    double *scratch[6];           /* memory for the search of the step */
+    double time; /* of the displacements, s: contact uses walls at their positions then */
+    /* Actions from outside, each NULL if there is none; contact: if none is near. */
     struct contact *contact;
     struct loads *loads;
-    bool calls_out;              /* a motion may be the program's own, which its own thread calls */
-    const struct scene *gravity; /* varies in time: what it is beyond its value at t = 0 */
+    bool calls_out; /* a motion may be a function of the program, called on its own thread */
+    const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *push[2];       /* accelerations, x and y, m/s^2 */
     double
         impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
-    double work;   /* of walls, clamps and loads on the solid since it was last asked for, J/m */
-    double *work_on; /* [n_bodies] the same of each; that of contact at the first */
+    double work;   /* of walls, clamps and loads on the solid since the last query, J/m */
+    double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };
 
 /* --- contact --- */
@@ -136,20 +136,20 @@ struct solid {
 struct contact_law {
     bool on;
     double spacing;   /* mean of both spacings, m */
-    double reach;     /* distance below which they push: the spacing and the gap, m */
-    double stiffness; /* stress over the share of the spacing that is overlapped, Pa */
-    double damping;   /* share of the critical damping */
+    double reach;     /* distance below which they repel each other: the spacing and the gap, m */
+    double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
+    double damping;   /* fraction of the critical damping */
     double friction;  /* Coulomb's coefficient */
 };
 
-/* A piece of a surface: the line between two neighbouring points; a particle that has no neighbour is a
- * line from itself to itself. */
+/* A piece of a surface: the line between two neighbouring points. A particle without a neighbour is
+ * a line from itself to itself. */
 struct contact_edge {
     int32_t a, b;
-    bool sided; /* the outside is to the right of the way from a to b; else on both sides */
+    bool sided; /* the outside is to the right from a to b; else on both sides */
 };
 
-/* Places by cell in a hash table: bodies may fly apart without making it larger. */
+/* Positions by cell in a hash table: bodies far apart do not make it larger. */
 struct contact_grid {
     double side;
     const double *x, *y;
@@ -163,7 +163,7 @@ struct contact_force {
     bool touches;
 };
 
-/* The worst overlap of a step. */
+/* The largest overlap of a step. */
 struct contact_depth {
     double overlap; /* in spacings */
     double x, y;
@@ -184,10 +184,10 @@ struct contact {
     int64_t n_solid_points, n_moving_points, n_points;
     int32_t *index;      /* among the particles of its kind */
     int32_t *body;       /* walls behind solids */
-    int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: within */
-    int32_t *group;      /* solids that are bonded, and walls that move together, share a number */
-    double *X, *Y, *x, *y, *vx, *vy; /* where it began; where it is, and its velocity */
-    double *began;                   /* distance from another group where less than the reach, m */
+    int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: inside */
+    int32_t *group; /* solids that are bonded, and walls that move together, have the same number */
+    double *X, *Y, *x, *y, *vx, *vy; /* initial position; present position and velocity */
+    double *began;                   /* initial distance from another group if below the reach, m */
     int32_t *began_group;            /* and that group; -1: none */
     double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
     uint8_t *held;                   /* within the kernel of a clamped particle of its group */
@@ -196,7 +196,7 @@ struct contact {
     struct contact_grid grid; /* of the edges' middles */
     double *middle_x, *middle_y;
     uint8_t *skip;         /* [n_edges] of walls far away */
-    double reach, spacing; /* the largest of any law */
+    double reach, spacing; /* largest of all laws */
     /* The list: every pair nearer than its reach and `margin` when points were at at_x, at_y. */
     bool known;
     double margin[CONTACT_WITH];
@@ -210,12 +210,12 @@ struct contact {
     int stale;                   /* some point has moved by half of the margin */
     bool crowded;                /* no memory for a longer list */
     double power;                /* of moving walls at the last call of contact_forces, W/m */
-    /* What the next step has to mind, by contact_watch. */
+    /* What the next step must respect, from contact_watch. */
     bool near;              /* some surfaces may touch */
-    double omega2, damping; /* what contact adds to the solid's eigenvalues, 1/s^2 and 1/s */
-    double approach;        /* longest step in which nothing can pass, s */
+    double omega2, damping; /* added by contact to the solid's eigenvalues, 1/s^2 and 1/s */
+    double approach;        /* longest step in which nothing can pass through a surface, s */
     struct contact_depth deepest;
-    double seconds; /* that its forces have taken since they were last asked for */
+    double seconds; /* of its forces since the last query */
 };
 
 /* --- loads and prescribed motion --- */
@@ -234,21 +234,21 @@ struct loads {
     int32_t *loaded;
     double *fx, *fy; /* [n_loaded] before the factor of time, N/m */
     double *factor;  /* [n_loads] now */
-    /* Particles of clamps that move; their `free` is 1, so that they feel what they resist. */
+    /* Particles of clamps that move; their `free` is 1, so that they record the force on them. */
     int64_t n_held;
     int32_t *held;
     double *held_power;          /* [n_held] of the clamp, W/m, */
-    double *held_rise;           /* and what its acceleration adds to that in a second, W/(m s) */
+    double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
     bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
 };
 
 /* --- parts --- */
 
-/* Particles that follow each other in the whole and in a part. */
+/* Particles that are consecutive in the whole and in a part. */
 struct part_run {
     int32_t here, there, n; /* first in the part, first in the whole, how many */
-    bool own;               /* the part steps them; others are copies */
+    bool own;               /* stepped by the part; the others are copies */
 };
 
 struct part_message;

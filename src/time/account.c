@@ -18,7 +18,7 @@ static bool in_region(const struct account *a, enum kind kind, int section, int 
     return region_of(a, account_entry(kind, section)) == entry;
 }
 
-/* Sections that take part: fluids, solids, walls that move. */
+/* The [fluid] and [solid] sections and the walls that move. */
 static int sections(const struct simulation *s, enum kind kind)
 {
     if (kind == KIND_FLUID) return s->scene->n_fluid;
@@ -43,7 +43,7 @@ static void unite(struct account *a, int one, int other)
         if (region_of(a, k) == second) a->region[k] = first;
 }
 
-/* The least box around a section's particles, with a margin. */
+/* The smallest box around a section's particles, with a margin. */
 struct box {
     double low[2], high[2];
 };
@@ -93,7 +93,8 @@ static bool exchange(enum kind one, enum kind other)
     return one == KIND_FLUID || other == KIND_FLUID;
 }
 
-/* Sections whose boxes have come within the reach of the kernel are of one region from now on. */
+/* Sections whose boxes are within the kernel's reach of each other belong to one region from now
+ * on. */
 static void join_neighbours(struct simulation *s)
 {
     if (one_region(s)) return;
@@ -113,9 +114,9 @@ static void join_neighbours(struct simulation *s)
         }
 }
 
-/* Those that are one whatever the distance: bodies that are joined; all once any is in contact, since their
- * energy of contact is a single number; and all sections of a periodic domain or of one with open
- * boundaries. */
+/* Sections that belong together at any distance: joined bodies; all bodies once any is in contact,
+ * since the energy of contact is a single number; all sections of a domain that is periodic or has
+ * open boundaries. */
 static void join_at_once(struct simulation *s, double contact)
 {
     for (int j = 0; j < s->scene->n_solid; j++)
@@ -170,7 +171,7 @@ static void add_solids(const struct simulation *s, struct energies *of)
     }
 }
 
-/* Energies of the sections; that of contact, of all bodies together, at the first of them. */
+/* Energies of the sections. The first solid carries the energy of contact of all. */
 static void find_energies(const struct simulation *s, const struct ledger *now,
                           struct energies of[ACCOUNT_ENTRIES])
 {
@@ -210,7 +211,7 @@ void account_work(struct account *a, enum kind kind, int section, double work)
     a->step_work[k] = max2(a->step_work[k], fabs(work));
 }
 
-/* --- a look --- */
+/* --- the check at a row --- */
 
 /* Round-off of the sums (T-46). */
 #define ROUND_OFF 1e-9
@@ -250,8 +251,8 @@ static struct gain gain_of(struct account *a, int region, const struct energies 
     };
 }
 
-/* The power at the end of a step is booked with the next one: fluid that a wall meets first has its energy
- * before any work of it is booked. */
+/* The power at the end of a step is counted with the next step. So fluid that a wall has just
+ * touched has its energy before any work of the wall is counted. */
 static void look_ahead(struct simulation *s)
 {
     for (int k = 0; k < s->wall_motion.n; k++) {
@@ -271,7 +272,7 @@ struct gain account_look(struct simulation *s, const struct ledger *now)
     join_neighbours(s);
     if (s->effects & FX_FLUID) look_ahead(s);
     find_energies(s, now, of);
-    /* What open boundaries bring in is not known to the accuracy of a gain (T-46): not judged. */
+    /* The energy that open boundaries bring in is less accurate than a gain (T-46): no check. */
     const int open = s->effects & FX_OPEN ? region_of(a, account_entry(KIND_FLUID, 0)) : -1;
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         if (region_of(a, k) != k || k == open) continue;
@@ -282,7 +283,7 @@ struct gain account_look(struct simulation *s, const struct ledger *now)
     return worst;
 }
 
-/* --- words --- */
+/* --- names in messages --- */
 
 void account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT])
 {

@@ -11,7 +11,7 @@ double phase_add(struct simulation *s, enum phase phase, double since)
     const double now = wall_clock();
     s->phase_seconds[phase] += now - since;
     if (phase == PHASE_solid && s->effects & FX_CONTACT) {
-        /* Its forces are found among the solid's sub-steps. */
+        /* Its forces are computed during the solid's sub-steps. */
         s->phase_seconds[PHASE_solid] -= s->contact.seconds;
         s->phase_seconds[PHASE_contact] += s->contact.seconds;
         s->contact.seconds = 0;
@@ -33,7 +33,7 @@ void find_push(struct simulation *s, enum kind kind, double time)
     push->at(push->context, time, &s->kind[kind], push->ax, push->ay);
 }
 
-/* Accelerations from outside count in the bound of the step as the model's own do. */
+/* Accelerations from outside count in the step bound like those of the model. */
 static void push_fluid(struct simulation *s, double time)
 {
     const struct push *const push = &s->push[KIND_FLUID];
@@ -48,15 +48,15 @@ static void push_fluid(struct simulation *s, double time)
     s->fluid.extremes.acceleration2 = top;
 }
 
-/* What the structure was given back or ahead in the last step stands in its force, also where no fluid is
- * near any more and no evaluation writes it anew. */
+/* The force arrays still hold the interface impulse applied in the last step. Particles without
+ * fluid nearby get no new force from an evaluation, so clear them all. */
 static void forget_given(struct particles *p)
 {
     memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
     memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
 }
 
-/* Half a step on, the predictor's state is no gain of its own. */
+/* The predictor's state, half a step ahead, adds nothing to the energy account. */
 static void set_buffers(struct simulation *s, double time)
 {
     const double clock = wall_clock();
@@ -94,7 +94,7 @@ void evaluate_start(struct simulation *s)
     accept_evaluation(s);
 }
 
-/* The extremes of some of the fluid, found without a branch. */
+/* The extremes over a range of fluid particles, without branches. */
 static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
 {
     vdouble low = vset_double(0), high = low, speed2 = low, nan_probe = low;
@@ -147,12 +147,12 @@ void simulation_refresh(struct simulation *s)
         memcpy(seconds, s->phase_seconds, sizeof seconds);
         evaluate_fluid(s, s->state.time);
         s->state.evaluations--;
-        /* A caller's own forces and motions may change between two looks. */
+        /* A caller's own forces and motions may change between two steps. */
         s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
         if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (!(s->effects & FX_SOLID)) return;
-    /* Accelerations of parts would be out of reach after an evaluation of the whole. */
+    /* After an evaluation of the whole, accelerations of parts would not be available. */
     if (s->solid.in_parts) solid_show(&s->solid, &s->kind[KIND_SOLID]);
     solid_stress(&s->solid, &s->kind[KIND_SOLID]);
 }

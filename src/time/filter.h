@@ -5,24 +5,25 @@
 
 #include "time/simulation.h"
 
-/* The acceleration that Eq. 19 feeds back holds oscillations of single particles and acts on the
- * fluid's own force with the delay of a step: as it is, it blew the gate up, with sub-steps
- * within 400 steps and at a single rate within 4000. The fluid cannot follow anything faster than
- * sound crosses h, so it uses the mean over that time, s. */
+/* Time of the mean, s: sound crosses h in it, and the fluid cannot follow anything faster. The
+ * acceleration fed back by Eq. 19 contains oscillations of single particles and acts on the fluid's
+ * force a step late. Without a mean the gate became unstable: within 400 steps with sub-steps,
+ * within 4000 at a single rate. */
 SPHFSI_INLINE double smoothing_lag(const struct simulation *s)
 {
     return s->fluid.k.h / s->fluid.k.c0;
 }
 
-/* Steps by which that acceleration is older than the mean alone would make it: half a step goes
- * by until the end of the step that it is the mean of, and half a step more until the corrector;
- * three quarters more by measurement (docs/theory.md, Sec. 7). */
+/* Age of that acceleration in steps, beyond the age due to the mean. It is the mean over a step,
+ * half a step old at its end, and half a step older at the corrector. Three quarters more are from
+ * measurement (docs/theory.md, Sec. 7). */
 SPHFSI_INLINE double filter_lead(const struct simulation *s)
 {
     return s->scene->top.integrator == INTEGRATOR_SYMPLECTIC ? 1.75 : 1.25;
 }
 
-/* The time of the mean after a step of dt with sub-steps, s: less by that age, at least a quarter. */
+/* The time of the mean after a step of dt with sub-steps, s: reduced by that age, to a quarter at
+ * least. */
 SPHFSI_INLINE double fluid_eval_lag(const struct simulation *s, double dt)
 {
     const double lag = smoothing_lag(s);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Looking at the fluid: at a point, at its surface, at its front, through a line. */
+ * Sampling the fluid: at a point, at its surface, at its front, through a line. */
 #include "time/simulation.h"
 
 #include <math.h>
@@ -7,10 +7,10 @@
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 
-/* Below a tenth of a full neighbourhood a point is as good as dry. */
+/* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1
 
-/* What is done with particle i of a kind at distance r of the point looked at. */
+/* Called for particle i of a kind at distance r from the sampled point. */
 typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
 
 static void each_near(const struct simulation *s, enum kind kind, double x, double y,
@@ -19,7 +19,7 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
     const struct cells *const c = &s->cells;
     const struct cell_list *const list = &c->kind[kind];
     const struct particles *const p = &s->kind[kind];
-    /* Cells that may hold particles within reach: they may have strayed since they were sorted. */
+    /* Cells that may hold particles within reach: these may have moved since they were sorted. */
     const double reach = KERNEL_REACH * s->fluid.k.h + c->skin;
     int first[2], n[2];
     for (int axis = 0; axis < 2; axis++) {
@@ -93,8 +93,8 @@ double simulation_pressure_at(const struct simulation *s, double x, double y)
     return simulation_sample(s, x, y).pressure;
 }
 
-/* How much of what walls and structures leave free the water fills, less a half: positive in the
- * water, negative outside, zero on the surface. */
+/* The water's volume fraction of the space outside walls and structures, minus one half: positive
+ * in the water, negative outside, zero on the surface. */
 static double wetness(const struct simulation *s, double x, double y)
 {
     const struct sample at = simulation_sample(s, x, y);
@@ -130,7 +130,8 @@ static void count_neighbour(const struct simulation *s, enum kind kind, int64_t 
     if (i != crowd->self && r < KERNEL_REACH * s->fluid.k.h) crowd->neighbours++;
 }
 
-/* The thinnest tongue of water is a row of particles, whose first has two others within reach. */
+/* The thinnest tongue of water is a row of particles; the first of them has two others within
+ * reach. */
 static bool belongs_together(const struct simulation *s, int64_t i)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
@@ -161,8 +162,8 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
     const struct particles *const p = &s->kind[KIND_FLUID];
     const double length = hypot(b[0] - a[0], b[1] - a[1]);
     const double tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
-    /* The mean over a strip, weighted by a cosine bell of area 1; with three spacings to either side
-     * its sum over a lattice is exact. */
+    /* The mean over a strip, weighted by a cosine bell of area 1. With three spacings to either
+     * side its sum over a lattice is exact. */
     const double dp = s->scene->top.dp, reach = 3 * dp;
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) {

@@ -8,20 +8,20 @@
 #include "time/simulation.h"
 #include "time/timestep.h"
 
-/* Shares of the limits at which a warning comes first. Speed over c0: beyond it weak compressibility is
- * being lost. Steps over the largest step of the fluid. */
+/* Fractions of the limits at which a warning is given. Speed over c0: above it the fluid is no
+ * longer weakly compressible. Steps over the largest step of the fluid. */
 #define SPEED_WARNING 0.3
 #define DENS_WARNING 0.1
 #define DET_WARNING 0.2
 #define STEP_WARNING 100 /* times the limit */
 
 struct finding {
-    int64_t at; /* -1: nothing found */
+    int64_t at; /* -1: none found */
     const char *quantity;
     double value;
 };
 
-/* The first particle, in order, whose speed or density is beyond its limit or not a number. */
+/* The first particle, in order, whose speed or density exceeds its limit or is not a number. */
 static struct finding gather_clusters(const struct particles *p, double speed_limit,
                                       double dens_limit)
 {
@@ -48,7 +48,7 @@ static enum err complain(const struct simulation *s, enum kind kind, struct find
         p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
 }
 
-/* Whether any speed or density is out of bounds or not a number, by the extremes of the last step. */
+/* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
 static bool fluid_sound(struct simulation *s)
 {
     const struct extremes *const e = &s->extremes;
@@ -63,8 +63,8 @@ static bool fluid_sound(struct simulation *s)
 #define UNSTABLE                                                                                  \
     "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, or a " \
     "wall or light structure presses harder than the fluid can follow"
-/* Molteni's diffusion wears off by how much the density of a front's first particle is above the others',
- * until it lies in the bed that it runs over. */
+/* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
+ * until the particle lies in the bed that the front runs over. */
 #define STRAY                                                                                     \
     "fluid had entered a wall or solid before; wall_repulsion = 0.1 or diffusion_form = antuono " \
     "keeps it out"
@@ -108,13 +108,14 @@ static struct finding smallest_det(const struct particles *p)
     struct finding f = {-1, "det F", (double)INFINITY};
     for (int64_t i = 0; i < p->n; i++) {
         const double det = (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i];
-        if (isnan(det)) return (struct finding){i, "det F", det}; /* nothing compares with it */
+        if (isnan(det))
+            return (struct finding){i, "det F", det}; /* comparisons with it are false */
         if (!(det >= f.value)) f = (struct finding){i, "det F", det};
     }
     return f;
 }
 
-/* The first particle that outruns the mean of its body by ten times the speed of sound. */
+/* The first particle faster than the mean of its body by ten times the speed of sound. */
 static struct finding too_fast(const struct simulation *s, const struct particles *p)
 {
     for (int64_t i = 0; i < p->n;) {
@@ -138,7 +139,7 @@ static struct finding too_fast(const struct simulation *s, const struct particle
     return (struct finding){-1, "", 0};
 }
 
-/* Overlaps in spacings. The law is infinite at 1, which the step does not let pass. */
+/* Overlaps in spacings. The law is infinite at 1, which the step bound excludes. */
 #define OVERLAP_WARNING 0.5
 #define OVERLAP_LIMIT 0.98
 
@@ -208,7 +209,7 @@ static const char *binding_bound(const struct simulation *s)
     return bound_names[least];
 }
 
-/* Steps that shrink, and sub-steps that grow, out of proportion. */
+/* Steps that become too small, and sub-steps that become too many. */
 static enum err check_step(struct simulation *s, struct diag *d)
 {
     const double limit = s->guard.step_limit;
@@ -234,7 +235,8 @@ static enum err check_step(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Walls that are nowhere would be seen by no fluid, and not be missed. */
+/* No fluid would interact with walls at positions that are not numbers, and no message would say
+ * so. */
 static enum err check_motion(const struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < s->wall_motion.n; k++) {
@@ -262,16 +264,18 @@ enum err guards_check(struct simulation *s, struct diag *d)
     return check_step(s, d);
 }
 
-/* Shares of a region's energy in play that it may gain, by T-46. Beyond what it was given in all: the paper's
- * stress law has no stored energy and its account is good to a few percent at large strains. Since it had
- * lost most: what dummies hold while they are pressed counts as lost, and comes back (docs/theory.md). */
+/* Fractions of its energy in play that a region may gain (T-46). Beyond all supplied: the paper's
+ * stress law has no stored energy, and its account is accurate to a few percent at large strains.
+ * Since its dissipation was largest: the energy of compressed dummies counts as dissipated, and
+ * returns (docs/theory.md). */
 #define ENERGY_SLACK 0.05
 #define REGAINED_SLACK 0.2
-/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy, four fifths
- * of which are then a gain, and is stable; a run that is not gets beyond any such share. */
+/* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy
+ * and is stable; four fifths of what it shows count as gain. An unstable run exceeds any such
+ * fraction. */
 #define ENERGY_LIMIT 0.9
 
-/* What makes the steps of a run smaller, and what may help it beside that where it gains energy. */
+/* What makes the steps of a run smaller, and what else may help if the run gains energy. */
 static const char *step_key(const struct simulation *s)
 {
     if (s->scene->numerics.fixed_step > 0) return "fixed_step";
@@ -284,7 +288,7 @@ static const char *atomic_file_step(const struct simulation *s)
     return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
 }
 
-/* Where most of a region's energy in play is. */
+/* Where most of a region's energy in play is now. */
 static const char *most_of(const struct gain *g)
 {
     const double most = max2(max2(g->kinetic, g->internal), max2(g->elastic, g->hourglass));
@@ -326,7 +330,7 @@ enum err guards_energy(struct simulation *s, const struct ledger *row, struct di
     return ERR_OK;
 }
 
-/* Strays that are let go: a share of the fluid, and this many whatever the share. */
+/* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
 #define CROSSING_SHARE 0.01
 enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * LOOK_INTERVAL };
 

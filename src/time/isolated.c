@@ -5,15 +5,15 @@
 
 #include "particles/kernel.h"
 
-/* T-45: ten times the density change that c0 is chosen for, and two thirds of what the guard
- * allows at most. Below it tension is not of the flow. */
+/* T-45: ten times the density change that c0 is chosen for, and two thirds of the guard's limit.
+ * Larger tension is not part of the flow. */
 static double lowest_density(const struct simulation *s)
 {
     const double factor = s->scene->numerics.sound_factor;
     return max2(-10 / square(factor), -2.0 / 3 * s->guard.dens_limit);
 }
 
-/* Particles within reach that are a third of those within the fluid: less than a corner of it has. */
+/* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */
 static int most_of_drop(const struct simulation *s)
 {
     const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;

@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * Leapfrog with one evaluation a step (T-32a, T-32b): velocities live half a step behind the positions, the
- * density follows by the third-order Adams-Bashforth rule, and the evaluation sees the velocity carried
- * on by half a step. Stable to twice and more the step of Eqs. 22-26 for the same work. */
+ * Leapfrog with one evaluation a step (T-32a, T-32b). Velocities are half a step behind the
+ * positions, and the density follows the third-order Adams-Bashforth rule. The evaluation uses the
+ * velocity extrapolated by half a step. Stable up to more than twice the step of Eqs. 22-26 for the
+ * same work. */
 #include <string.h>
 
 #include "time/integrators.h"
 #include "time/timestep.h"
 
-/* T-32b: mean rate over the coming step dt from the rates now, at dt_old before, and at dt_older before
- * that; for equal steps the 23/12, -16/12, 5/12 of Adams and Bashforth. */
+/* T-32b: mean rate over the coming step dt from the present rates, those dt_old earlier, and those
+ * dt_older before these. Equal steps: the 23/12, -16/12, 5/12 of Adams and Bashforth. */
 static double extrapolated_rate(double now, double old, double older, double r, double r_old)
 {
     const double first = now - old, second = first - r_old * (old - older);
@@ -17,8 +18,8 @@ static double extrapolated_rate(double now, double old, double older, double r, 
 
 static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2, dt / dt_old) : 1; }
 
-/* The step that an update is over, s: from half a step behind to half a step ahead, and its ratio to the one
- * before, and that one's. */
+/* The interval of an update, s, from half a step behind to half a step ahead; its ratio to the
+ * previous one, and the previous one's ratio. */
 struct stride {
     double dt, kick, r, r_old;
 };
@@ -46,20 +47,20 @@ static void update_fluid(struct simulation *s, double dt, double dt_old, double 
     struct particles *const p = &s->kind[KIND_FLUID];
     const struct stride by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
                               step_ratio(dt_old, dt_older)};
-    if (!(dt_old > 0)) { /* the first step knows no others */
+    if (!(dt_old > 0)) { /* the first step has no earlier rates */
         memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
         memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
     }
     advance_fluid(s, update_rows, &by);
-    /* The rates grow older by changing arrays; the next evaluation overwrites the oldest. */
+    /* Swaps the arrays of old rates; the next evaluation overwrites the oldest. */
     double *const oldest = p->ddens_older;
     p->ddens_older = p->ddens_old;
     p->ddens_old = p->ddens;
     p->ddens = oldest;
 }
 
-/* The structure feels, over its sub-steps, just the impulse that the fluid was given: the fluid's kick goes
- * from half a step behind to half a step ahead. */
+/* Over its sub-steps the structure gets exactly the impulse given to the fluid: the fluid's kick
+ * goes from half a step behind to half a step ahead. */
 static void weigh_force(struct particles *p, double share)
 {
 #pragma omp parallel for simd schedule(static)

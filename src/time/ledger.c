@@ -7,7 +7,7 @@
 #include "fluid/eos.h"
 #include "time/simulation.h"
 
-/* Sums over the fluid by eights, whose order is the same on every machine. */
+/* Sums over the fluid in groups of eight, so that their order is the same on every machine. */
 enum { ABREAST = 8 };
 struct fluid_sums {
     double speed2[ABREAST], height[ABREAST], energy[ABREAST];
@@ -62,7 +62,7 @@ static void add_solid(const struct simulation *s, struct ledger *row)
         row->momentum_x += b->mass * p->vx[i];
         row->momentum_y += b->mass * p->vy[i];
         row->mass += b->mass;
-        if (!p->interface_impulse_x) continue; /* the fluid has not got that yet (T-35b) */
+        if (!p->interface_impulse_x) continue; /* the fluid has not received that yet (T-35b) */
         row->momentum_x -= p->interface_impulse_x[i];
         row->momentum_y -= p->interface_impulse_y[i];
     }

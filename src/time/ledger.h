@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The bookkeeping of physics: energies, momentum, extremes. */
+ * The ledger: energies, momentum, extremes. */
 #ifndef SPHFSI_TIME_LEDGER_H
 #define SPHFSI_TIME_LEDGER_H
 

@@ -1,23 +1,24 @@
 /* SPDX-License-Identifier: MIT
- * Fluid that has entered a wall or a solid: it stands where the body's own particles are. */
+ * Fluid inside a wall or a solid: fluid particles at the places of the body's own particles. */
 #include <math.h>
 
 #include "time/guards.h"
 #include "time/simulation.h"
 
-/* The shorter way where opposite sides are one. */
+/* The shorter distance where opposite sides are joined. */
 static double nearest(const struct cells *c, int axis, double d)
 {
     const double width = c->side[axis] * (axis ? c->ny : c->nx);
     return c->periodic[axis] ? d - width * rint(d / width) : d;
 }
 
-/* Spacings from a particle of a body within which a fluid particle stands inside. Fluid at rest is one
- * spacing away from those at the surface; pressed hard it comes as close as a half. */
+/* Distance from a particle of a body, in spacings, below which a fluid particle is inside. Fluid at
+ * rest is one spacing from the particles at the surface; under high pressure it comes as close as a
+ * half. */
 #define TAKEN 0.35
 
-/* Whether (x, y) is that close to particle i of a kind, in spacings of its body's reference configuration:
- * the body has turned and stretched since. */
+/* Whether (x, y) is that close to particle i of a kind, in spacings of its body's reference
+ * configuration: the body has rotated and stretched since the start. */
 static bool takes(const struct simulation *s, enum kind kind, int64_t i, double x, double y)
 {
     const struct particles *const p = &s->kind[kind];
@@ -29,7 +30,8 @@ static bool takes(const struct simulation *s, enum kind kind, int64_t i, double 
     return X * X + Y * Y < square(TAKEN * s->solid.body[p->body[i]].dp * (xx * yy - xy * yx));
 }
 
-/* Whether some particle of a wall in the cell can be that close to (x, y): at rest it stands within it. */
+/* Whether a wall particle in the cell can be that close to (x, y). At rest the wall particle is in
+ * it. */
 static bool wall_near(const struct simulation *s, int32_t cell, double x, double y)
 {
     const struct cells *const c = &s->cells;
@@ -38,7 +40,7 @@ static bool wall_near(const struct simulation *s, int32_t cell, double x, double
            fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
 }
 
-/* Whether some wall or solid particle of one cell has (x, y) next to it. */
+/* Whether (x, y) is that close to a wall or solid particle of one cell. */
 static bool taken(const struct simulation *s, int32_t cell, double x, double y)
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {

@@ -13,7 +13,7 @@
 #include "particles/kernel.h"
 #include "time/timestep.h"
 
-/* Points into particles at rest. */
+/* Distances from a point to particles at rest. */
 static enum err fill_kind(struct simulation *s, enum kind kind, int64_t first_id, struct diag *d)
 {
     const struct scene_points *const points = &s->scene->points[kind];
@@ -80,7 +80,7 @@ static void start_solid(struct simulation *s)
     }
 }
 
-/* Sub-steps pay where the solid's step is the smaller one. */
+/* Sub-steps help where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
     if (!(s->effects & FX_COUPLING)) return ERR_OK;
@@ -137,7 +137,8 @@ static double energy_of(const struct simulation *s, const struct particles *p, i
             eos_energy(p->dens[i], k->c0));
 }
 
-/* What gravity along joined sides gives to fluid that comes in again opposite. */
+/* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
+ * one. */
 static void book_crossings(struct simulation *s)
 {
     for (int axis = 0; axis < 2; axis++) {
@@ -156,8 +157,8 @@ static void forget(struct particles *p, int64_t i)
     if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
 }
 
-/* Particles of the structure that have lost touch with the fluid are not visited any more: before the
- * cells change, all that were visited forget it. */
+/* Clears the fluid sums of structure particles. Evaluations skip those without fluid nearby, so
+ * this is done before the cells change. */
 static void forget_touch(struct simulation *s, enum kind kind)
 {
     struct particles *const p = &s->kind[kind];
@@ -170,14 +171,14 @@ static void forget_touch(struct simulation *s, enum kind kind)
     }
 }
 
-/* What a checkpoint brings along is of the last evaluation before it. */
+/* A checkpoint contains the sums of the last evaluation before it. */
 static void forget_all_touch(struct particles *p)
 {
     for (int64_t i = 0; i < p->n; i++) forget(p, i);
 }
 
-/* Room of the cells as last measured. The next evaluation is at the state as it is, the predictor's second
- * one half a step of the present velocities on. */
+/* Sets the cells' skin from a new measurement. The next evaluation uses the present state; the
+ * predictor's second one is half a step of the present velocities later. */
 static void find_skin_left(struct simulation *s)
 {
     const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
@@ -185,7 +186,7 @@ static void find_skin_left(struct simulation *s)
     s->skin_left = cells_skin_left(&s->cells, KERNEL_REACH * s->fluid.k.h + ahead);
 }
 
-/* Sorts fluid, structure and moving walls into cells; fluid outside of the domain is taken out. */
+/* Sorts fluid, structure and moving walls into cells; removes fluid outside the domain. */
 static enum err sort_particles(struct simulation *s, struct diag *d)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
@@ -227,8 +228,9 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Takes off the room what two particles can have gone in the last step: the fluid with the larger of its
- * speeds before and after and half a step of its acceleration, whatever the integrator, and its shift. */
+/* Subtracts the largest distance that two particles can have moved in the last step from the skin.
+ * For the fluid: the larger of its speeds before and after, half a step of its acceleration, and
+ * its shift. */
 static void use_skin_left(struct simulation *s, double speed2_before)
 {
     const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->extremes.speed2)),
@@ -236,8 +238,9 @@ static void use_skin_left(struct simulation *s, double speed2_before)
     s->skin_left -= way + max2(way, s->solid_max_move);
 }
 
-/* Whether a pair may be out of the cells' sight at the next evaluations. Where ways are bounded, the cells
- * need not be measured at every step: the answer would be no. Round-off of the ways is less than the hair. */
+/* Whether the cells may miss a pair at the next evaluations. Where displacements are bounded,
+ * cells need not be measured at every step. Rounding errors of the displacements are below the
+ * tolerance. */
 static bool sorting_due(struct simulation *s)
 {
     if (s->effects & FX_OPEN && open_due(&s->open, &s->kind[KIND_FLUID], s->scene->top.dp))
@@ -306,9 +309,9 @@ static enum err build(struct simulation *s, struct diag *d)
     s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
                             start.hourglass + start.contact;
     account_begin(s, &start);
-    open_forget(&s->open); /* what the buffers were given at the start is there at the start */
+    open_forget(&s->open); /* particles created in the buffers belong to the start */
     s->state.det_low = 1;
-    s->evaluated = false; /* the caller may set the scene up further */
+    s->evaluated = false; /* the caller may add to the scene before the first step */
     return ERR_OK;
 }
 
@@ -340,14 +343,14 @@ enum err simulation_push(struct simulation *s, enum kind kind, push_function *at
 
 void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 
-/* Moves fluid particles to where they are fewer. */
+/* Moves fluid particles towards lower concentration. */
 static double shift_fluid(struct simulation *s, double clock)
 {
     s->shifted = fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
     return phase_add(s, PHASE_shift, clock);
 }
 
-/* Work that moving walls have done on the fluid in the last step. */
+/* Work of moving walls on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
     const struct particles *const walls = &s->kind[KIND_WALL];
@@ -359,7 +362,7 @@ static void add_wall_work(struct simulation *s)
     }
 }
 
-/* The share of a particle in its section's account of T-70. */
+/* Adds a particle's work to the account of its section (T-70). */
 static void book_gravity(struct simulation *s, enum kind kind, const struct particles *p, int64_t i,
                          double mass, const double g[2])
 {
@@ -368,8 +371,8 @@ static void book_gravity(struct simulation *s, enum kind kind, const struct part
         s->state.dt * mass * ((g[0] - start[0]) * p->vx[i] + (g[1] - start[1]) * p->vy[i]);
 }
 
-/* T-70: work of what gravity is beyond its value at t = 0, whose potential energy the ledger has. Over the
- * last step, by gravity in its middle. */
+/* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
+ * ledger has the potential energy of the value at t = 0. */
 static void add_gravity_work(struct simulation *s)
 {
     double g[2], px = 0, py = 0;
@@ -391,7 +394,7 @@ static void add_gravity_work(struct simulation *s)
                                          (g[1] - s->scene->top.gravity[1]) * py);
 }
 
-/* Size of the impulse that fluid and structure have exchanged in the last step. */
+/* Magnitude of the impulse exchanged between fluid and structure in the last step. */
 static void add_exchange(struct simulation *s)
 {
     const struct particles *const p = &s->kind[KIND_SOLID];
@@ -414,7 +417,7 @@ static void take_work(struct simulation *s)
     }
 }
 
-/* Gradients of the solid for those who look at them after this step: the guards, and the search of the
+/* Updates the solid's gradients if the guards or the search for the step read them after this
  * step. */
 static void show_strain(struct simulation *s)
 {
@@ -447,7 +450,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     else
         leapfrog_step(s, t_limit);
     double clock = wall_clock();
-    /* So that the state does not depend on whether anybody looks at it between two steps. */
+    /* Done here so that the state does not depend on output between two steps. */
     if (s->effects & FX_SHIFTING) clock = shift_fluid(s, clock);
     if (s->effects & FX_MOTION) move_walls(s, s->state.time);
     show_strain(s);
@@ -462,7 +465,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     clock = phase_add(s, PHASE_update, clock);
     if (e) return e;
     use_skin_left(s, speed2_before);
-    /* Now, so that the cells are good for whoever looks at the state between two steps. */
+    /* Sorted here so that the cells are valid for output between two steps. */
     if (sorting_due(s)) TRY(sort_particles(s, d));
     clock = phase_add(s, PHASE_sort, clock);
     limit_isolated_tension(s);
@@ -491,7 +494,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     if (s->effects & FX_SOLID) {
         timestep_set_solid(s);
         contact_forget(&s->contact, &s->kind[KIND_WALL]);
-        solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards look at the last gradients */
+        solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards read the last gradients */
     }
     update_extremes(s);
     find_speed(s);

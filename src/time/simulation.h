@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A run in memory: the scene's particles, their neighbours, the models, and what happens in which
- * order. Knows nothing of files or command lines. */
+ * A run in memory: the scene's particles, their neighbours, the models, and the order of a step.
+ * Contains no file names and no command lines. */
 #ifndef SPHFSI_TIME_SIMULATION_H
 #define SPHFSI_TIME_SIMULATION_H
 
@@ -17,13 +17,13 @@
 #include "case/scene.h"
 #include "solid/solid.h"
 
-/* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). What is not a number they may pass over,
- * but nothing of it, times zero, is zero. */
+/* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). The maxima may skip values that
+ * are not numbers; the NaN probe is zero if there are none. */
 struct extremes {
     double dens_low, dens_high, speed2, nan_probe;
 };
 
-/* Accelerations from outside, that a program with the library adds to those of the model. */
+/* Accelerations from outside, added to those of the model by a program that uses the library. */
 typedef void push_function(void *context, double time, const struct particles *p, double *ax,
                            double *ay);
 struct push {
@@ -52,12 +52,11 @@ struct simulation {
     double phase_seconds[PHASE_COUNT];
     struct extremes extremes; /* of the fluid */
     double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
-    double
-        solid_max_move; /* longest way of a solid particle in the last step, m (not by symplectic) */
-    double shifted;     /* longest way that a fluid particle was shifted in it, m; 0: none is */
-    double skin_left;   /* what two particles may go together before a sorting can be due, m */
-    bool evaluated;     /* rates, pressures and the fluid's force belong to the present state */
-    bool crowded;       /* cells hold more than the sweeps can take: nothing is evaluated */
+    double solid_max_move;    /* of a solid particle in the last step, m (not with symplectic) */
+    double shifted;   /* largest shift of a fluid particle in the last step, m; 0: no shifting */
+    double skin_left; /* distance that two particles may move until a sorting is due, m */
+    bool evaluated;   /* rates, pressures and the fluid's force are those of the present state */
+    bool crowded; /* cells hold more particles than the sweeps support: evaluations do nothing */
     bool gravity_varies; /* with time */
     struct {
         int64_t n;
@@ -67,39 +66,40 @@ struct simulation {
     struct push push[KIND_COUNT]; /* of fluid and solid */
 };
 
-/* Lets `at` add accelerations to the particles of a kind (fluid or solid) from the next evaluation on:
- * once for each evaluation of the fluid, held over the sub-steps of the solid. */
+/* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
+ * next evaluation on. It is called once for each evaluation of the fluid; the solid's sub-steps use
+ * the same values. */
 enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
                          struct diag *d) SPHFSI_CHECKED;
 
-/* Builds the state at time zero from a scene (or, with a checkpoint to be loaded, the frame for it).
- * On failure nothing remains to be freed. */
+/* Builds the state at time zero from a scene, or the arrays for it if a checkpoint is to be loaded.
+ * After a failure there is nothing to free. */
 enum err simulation_create(struct simulation *s, const struct scene *scene, struct diag *d)
     SPHFSI_CHECKED;
 void simulation_free(struct simulation *s);
 
-/* Takes one time step, ending no later than t_limit (> time), and exactly there if the step reaches
- * within a step of it. ERR_GUARD: the state is no longer sound; the sentence is in d. */
+/* Advances by one time step, ending no later than t_limit (> time), and exactly at it if the step
+ * comes within a step of it. ERR_GUARD: the state is invalid; d has the message. */
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
 /* After the STATE fields, n of each kind and s->state have been loaded from a checkpoint: rebuilds
  * everything derived. The next step gives the same bits as in the uninterrupted run. */
 enum err simulation_resume(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
-/* Brings DERIVED fields that output shows (pressure of wall and solid; displacement gradient) up to date
- * with the state, without changing the state. */
+/* Brings DERIVED fields that output uses (pressure of wall and solid; displacement gradient) up to
+ * date without changing the state. */
 void simulation_refresh(struct simulation *s);
 
-/* Energy, momentum and extremes now; calls simulation_refresh. */
+/* Present energy, momentum and extremes; calls simulation_refresh. */
 struct ledger simulation_ledger(struct simulation *s);
 
 /* Hash of every STATE field and state scalar; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *s);
 
-/* The fluid at a fixed point, by the kernel over its particles within reach. Positions and densities
- * must be up to date, which they are between two steps. */
+/* The fluid at a fixed point, by the kernel over its particles within reach. Positions and
+ * densities must be up to date, as they are between two steps. */
 struct sample {
-    double fill;     /* sum V W of the fluid: about 1 within it, 0.5 at its surface */
+    double fill;     /* sum V W of the fluid: about 1 inside it, 0.5 at its surface */
     double occupied; /* the same of walls and structures */
     double pressure; /* Pa, mean over the fluid (Shepard); 0 where dry */
     double vx, vy;   /* m/s, likewise */
@@ -112,15 +112,15 @@ int simulation_near(const struct simulation *s, double x, double y);
 /* Fluid pressure at a fixed point: kernel mean over fluid within reach (Shepard), 0 where dry. */
 double simulation_pressure_at(const struct simulation *s, double x, double y);
 
-/* Height of the free surface above (x, y): where the water first ends on the way up; y itself where
+/* Height of the free surface above (x, y): the lowest height at which the water ends. y itself if
  * no water is within reach above it. */
 double simulation_level(const struct simulation *s, double x, double y);
 
-/* Coordinate of the foremost fluid in a direction (enum probe_direction), without single drops of one
- * or two particles, unless there is nothing else. NAN where there is no fluid. */
+/* Coordinate of the foremost fluid in a direction (enum probe_direction). Isolated groups of one or
+ * two particles are ignored unless there is no other fluid. NAN if there is no fluid. */
 double simulation_front(const struct simulation *s, int direction);
 
-/* Fluid through the line from a to b, to the right of that way, m^2/s per depth. */
+/* Flow through the line from a to b, positive to the right of that direction, m^2/s per depth. */
 double simulation_flux(const struct simulation *s, const double a[2], const double b[2]);
 
 #endif

@@ -6,10 +6,10 @@
 #include "time/integrators.h"
 #include "time/timestep.h"
 
-/* Steps of a lone solid that are taken between two looks at its state. */
+/* Steps of a solid without fluid between two checks of its state. */
 enum { SOLID_BATCH = LOOK_INTERVAL };
 
-/* Bounds of a lone solid; returns the one that binds. */
+/* Bounds of a solid without fluid; returns the smallest. */
 static enum bound lone_bounds(struct simulation *s)
 {
     const double fixed = s->scene->numerics.fixed_step;
@@ -34,8 +34,8 @@ static void advance_lone(struct simulation *s, double dt, int n)
     }
 }
 
-/* Where something is near each step is looked at for itself, and may be shorter than planned; returns the
- * time that has gone by, or 0 where all steps were as long as planned. */
+/* When a contact is near, each step is chosen separately and may be shorter than planned. Returns
+ * the time advanced, or 0 if all steps were as long as planned. */
 static double advance_near(struct simulation *s, double dt, int n)
 {
     double gone = 0;
@@ -75,7 +75,8 @@ void solid_only_step(struct simulation *s, double t_limit)
     const bool pushed = s->push[KIND_SOLID].at != NULL;
     if (pushed) find_push(s, KIND_SOLID, st->time);
     const int batch = pushed || s->gravity_varies ? 1 : SOLID_BATCH;
-    /* Equal steps up to the limit, as in timestep_choose; round-off of the times must not add one. */
+    /* Equal steps up to the limit, as in timestep_choose. Rounding of the times must not add a
+     * step. */
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
     const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
     const bool hits = steps <= batch;

@@ -12,20 +12,20 @@ enum { ACCOUNT_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
 
 /* Energies in J/m. */
 struct account {
-    /* Of sections: energy at the start and work from outside since, and the largest work of a step. */
+    /* Of sections: energy at the start, work from outside since then, and the largest work of a
+     * step. */
     double put[ACCOUNT_ENTRIES], step_work[ACCOUNT_ENTRIES];
-    /* Of regions, at their first section: most that has been dissipated so far, and the largest energy in
-     * play since then. */
+    /* Of regions, at their first section: the most that has been dissipated so far, and the largest
+     * energy in play since then. */
     double high[ACCOUNT_ENTRIES], play[ACCOUNT_ENTRIES];
-    double
-        region[ACCOUNT_ENTRIES]; /* first section of the region that a section is in: its entry */
+    double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
 };
 enum { ACCOUNT_NUMBERS = sizeof(struct account) / sizeof(double) };
 
 struct guard {
     double dens_limit;  /* |rho/rho0 - 1| */
-    double speed_limit; /* m/s: at the speed of sound nothing is weakly compressible */
-    double step_limit;  /* s: a step below this has collapsed */
+    double speed_limit; /* m/s: at the speed of sound no flow is weakly compressible */
+    double step_limit;  /* s: a smaller step stops the run */
     bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy,
         warned_contact;
 };

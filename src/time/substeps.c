@@ -18,13 +18,14 @@ double place_solid(struct particles *p)
     return way2;
 }
 
-/* T-35: what the fluid sees of a structure after sub-steps. */
+/* T-35: velocity and acceleration of a structure that the fluid uses after sub-steps. */
 static void update_interface_state(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     const double lag = fluid_eval_lag(s, dt), per_dt = 1 / dt, newest = dt / (dt + lag);
-    /* The mean acceleration is that of half a step and the lag ago, the mean velocity that of half a step:
-     * between that and now the acceleration is, at the middle, a quarter of a step old. */
+    /* The mean acceleration is centred half a step plus the lag ago, the mean velocity half a
+     * step ago. Midway between then and now, the acceleration is a quarter of a step older than
+     * the lag. */
     const double half = 0.5 * dt, since = lag + 0.25 * dt;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {

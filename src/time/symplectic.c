@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Symplectic predictor-corrector (Eqs. 22-24), as the paper has it: two evaluations a step. With solid
- * sub-steps the predictor carries the structure on (T-35), and the corrector's force is what both sides
- * feel over the whole step. */
+ * Symplectic predictor-corrector (Eqs. 22-24) of the paper: two evaluations a step. With solid
+ * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
+ * sides over the whole step. */
 #include "time/filter.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
@@ -45,7 +45,7 @@ static void rates_of_solid(struct simulation *s)
     s->state.solid_evaluations++;
 }
 
-/* The solid takes the same two stages as the fluid. */
+/* The solid has the same two stages as the fluid. */
 static void predict_solid(struct particles *p, double half)
 {
 #pragma omp parallel for simd schedule(static)
@@ -72,7 +72,8 @@ static void correct_solid(struct particles *p, double dt)
     }
 }
 
-/* Single rate: place and velocity as the fluid sees them, and its acceleration with the given weight. */
+/* Single rate: position and velocity that the fluid uses, and acceleration with the given
+ * weight. */
 static void show_solid(struct particles *p, double newest)
 {
     place_solid(p);
@@ -85,11 +86,12 @@ static void show_solid(struct particles *p, double newest)
     }
 }
 
-/* Sub-steps: position and velocity of the structure as the fluid sees them half a step on (T-35). */
+/* Sub-steps: position and velocity of the structure that the fluid uses half a step ahead
+ * (T-35). */
 static void carry_solid(struct simulation *s, double half)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    /* How old the acceleration is that it has on the way there. */
+    /* Age of its acceleration at that time. */
     const double since = fluid_eval_lag(s, s->state.dt) + 0.5 * s->state.dt + 0.5 * half;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* What a bound follows from: the scene, and the fluid's extremes `now`, which are zero at rest. */
+/* The data of a bound: the scene, and the fluid's extremes `now`, which are zero at rest. */
 typedef double bound_function(const struct simulation *s, const struct fluid_extremes *now);
 
 /* Eq. 28a. */
@@ -34,7 +34,7 @@ static double bound_diffusion(const struct simulation *s, const struct fluid_ext
     return bound_decay(s, s->effects & FX_LEAPFROG ? 6.0 / 11 : 2, 6.5 * s->fluid.k.delta);
 }
 
-/* Leapfrog's velocity, which is seen half a step late, to 1. */
+/* Leapfrog's velocity, used half a step late, to 1. */
 static double bound_artificial(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
@@ -70,7 +70,7 @@ static double bound_solid(const struct simulation *s, const struct fluid_extreme
     return s->solid.contact ? s->dt_lone_solid : s->dt_solid;
 }
 
-/* With sub-steps only that nothing passes within the step. */
+/* Only with sub-steps: nothing passes within the step. */
 static double bound_contact(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
@@ -78,8 +78,8 @@ static double bound_contact(const struct simulation *s, const struct fluid_extre
     return s->effects & FX_MULTIRATE ? s->contact.approach : s->dt_solid;
 }
 
-/* Largest added mass over a particle's own, for a body of the fluid's density (T-35d): by
- * measurement, and as good from 1.5 to 2.75 (docs/theory.md). */
+/* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).
+ * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */
 #define ADDED_MASS 2
 
 double timestep_added_mass(const struct simulation *s, int *lightest)
@@ -99,7 +99,7 @@ static double bound_added_mass(const struct simulation *s, const struct fluid_ex
     return timestep_added_mass(s, &lightest);
 }
 
-/* Found below, where the time that is left is known. */
+/* Set below, where the remaining time is known. */
 static double bound_output(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)s, (void)now;
@@ -160,9 +160,9 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
         s->dt_bound[k] = bound_at(s, k, &s->fluid.extremes);
         dt = min2(dt, s->dt_bound[k]);
     }
-    /* Equal steps up to the limit rather than full ones and a rest: steps that change in a
-     * pattern feed oscillations near the bound that each of them alone would keep
-     * (docs/theory.md). Round-off of the time makes no step of its own. */
+    /* Equal steps up to the limit, not full ones and a remainder: steps that change in a pattern
+     * excite oscillations near the bound that are stable with each step alone (docs/theory.md).
+     * Rounding of the time adds no step. */
     const double left = t_limit - s->state.time, steps = ceil(left / dt * (1 - 1e-9));
     *hits = steps <= 1;
     if (steps > EQUAL_STEPS || (*hits && left == dt)) return *hits ? left : dt;
@@ -171,9 +171,9 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
     return equal;
 }
 
-/* T-34c: no fewer sub-steps before the solid's viscosity has taken as much energy as an
- * oscillation at the bound can gain by fewer and more again. It acts on approaching pairs only,
- * so half of the time. */
+/* T-34c: the number of sub-steps goes down only after the solid's viscosity has dissipated enough.
+ * An oscillation at the bound can gain that energy by fewer and then more sub-steps. Viscosity acts
+ * on approaching pairs, half of the time. */
 static bool fewer_is_safe(const struct simulation *s, double fewer)
 {
     const struct state *const st = &s->state;
@@ -187,7 +187,7 @@ int timestep_substeps(struct simulation *s, double dt)
 {
     struct state *const st = &s->state;
     if (!(s->effects & FX_MULTIRATE)) return 1;
-    /* Enough for the longest step so far: shorter ones do not change the number. */
+    /* Enough for the longest step so far: shorter steps do not change the number. */
     const double most = ceil(max2(st->dt_max, dt) / s->dt_solid * (1 - 1e-9));
     const double needed = max2(1, min2(most, 1e9)), held = (double)st->substeps_held;
     if (needed >= held) st->substeps_needed = st->time;
@@ -199,13 +199,13 @@ int timestep_substeps(struct simulation *s, double dt)
 void timestep_set_solid(struct simulation *s)
 {
     const double step = s->solid.stable_step * s->state.solid_slowing;
-    /* A body that is clamped all over has no bound, and something may yet be driven into it. */
+    /* A fully clamped body has no bound, but a moving body may hit it. */
     const bool bounded = s->effects & FX_FLUID || isfinite(step);
     s->dt_solid = s->dt_lone_solid =
         s->scene->numerics.solid_safety * (bounded ? step : s->solid.paper_step);
 }
 
-/* T-62a: eigenvalues of a sum are no larger than the sum of the largest. */
+/* T-62a: eigenvalues of a sum are at most the sum of the largest ones. */
 static double step_in_contact(const struct simulation *s)
 {
     const struct contact *const c = &s->contact;
@@ -230,9 +230,8 @@ bool timestep_watch_contact(struct simulation *s, double time, int steps)
     return near;
 }
 
-/* A stiffness that grows by a factor k makes the step shorter by no more than sqrt(k). 1.15 uses
- * up what the default solid_safety of 0.9 leaves: 0.9 sqrt(1.15) = 0.965. A softer solid is not
- * urgent. */
+/* A stiffness larger by a factor k shortens the step by sqrt(k) at most. 1.15 uses the margin of
+ * the default solid_safety of 0.9: 0.9 sqrt(1.15) = 0.965. A softer solid is not urgent. */
 #define STIFFER 1.15
 #define SOFTER 0.6
 
@@ -244,7 +243,7 @@ void timestep_recheck_solid(struct simulation *s)
     if (now <= STIFFER * st->solid_stiffening && now >= SOFTER * st->solid_stiffening) return;
     double omega, damping;
     const double step = solid_stable_step(&s->solid, &s->kind[KIND_SOLID], &omega, &damping);
-    if (!(step > 0)) return; /* not a number: the guards will say why */
+    if (!(step > 0)) return; /* not a number: the guards report the cause */
     st->solid_stiffening = now;
     st->solid_slowing = step / s->solid.stable_step;
     timestep_set_solid(s);

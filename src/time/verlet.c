@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-/* Eq. 25, or Eq. 26 where `euler`. For steps that change, the 2 dt of Eq. 25 is the time since the
- * previous state, dt_old + dt: printed as it is, a free fall would lose g (dt_old - dt). */
+/* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
+ * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
 struct stride {
     double dt, dt_old;
     bool euler;
@@ -33,8 +33,8 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
     }
 }
 
-/* One component of T-36a: the force, and its mean, which begins with the first force and ends where it has
- * become less than any force that is felt, N/m. */
+/* One component of T-36a: the force and its mean. The mean starts with the first force and ends
+ * when it is below any significant force, N/m. */
 SPHFSI_INLINE double carried(double *mean, double force, double per_time, double newest)
 {
     const double least = 1e-30, old = *mean != 0 ? *mean : force;
@@ -43,8 +43,8 @@ SPHFSI_INLINE double carried(double *mean, double force, double per_time, double
     return force + per_time * (force - old);
 }
 
-/* T-36a: the force that is held over sub-steps is that of their beginning; `ahead`: the time from there to
- * the middle of their kicks. */
+/* T-36a: the constant force over the sub-steps is that at their start; `ahead`: the time from there
+ * to the middle of their kicks. */
 static void carry_force(struct simulation *s, double ahead)
 {
     struct particles *const p = &s->kind[KIND_SOLID];

@@ -6,7 +6,7 @@
 #include "case/case.h"
 #include "time/timestep.h"
 
-/* Contact that a scene may expect and does not have. */
+/* Contact that a scene may need and that is not simulated. */
 static void warn_of_contact(const struct simulation *s, struct diag *d)
 {
     const struct scene *const c = s->scene;
@@ -16,7 +16,7 @@ static void warn_of_contact(const struct simulation *s, struct diag *d)
               "each other and through walls; periodic = none simulates it");
 }
 
-/* A body that nothing holds moves away, which is seldom what a case with gravity or a load means. */
+/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load. */
 static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < s->scene->n_solid; k++) {
@@ -45,7 +45,7 @@ void simulation_warn_of_scene(const struct simulation *s, struct diag *d)
     warn_of_loose_bodies(s, d);
 }
 
-/* How long the steps are, as the case gives it. */
+/* The step length as given by the case. */
 static void text_of_step(const struct simulation *s, char text[64])
 {
     const struct scene_numerics *const n = &s->scene->numerics;
@@ -56,8 +56,8 @@ static void text_of_step(const struct simulation *s, char text[64])
         snprintf(text, 64, "numerics.cfl = %g", n->cfl);
 }
 
-/* Up to these a column of water that falls together (tests/stability/column.cfg) was found stable; for
- * leapfrog the analysis of docs/theory.md says the same. */
+/* Up to these, a falling column of water (tests/stability/column.cfg) was found stable; for
+ * leapfrog the analysis of docs/theory.md gives the same. */
 static void warn_of_cfl(const struct simulation *s, struct diag *d)
 {
     static const double largest[] = {0.4, 0.2, 0.6};
@@ -71,7 +71,7 @@ static void warn_of_cfl(const struct simulation *s, struct diag *d)
                   given, limit);
 }
 
-/* fixed_step is taken as it is, also where it must end in a blow-up. */
+/* fixed_step is used unchanged, even if the run then becomes unstable. */
 static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
 {
     const double fixed = s->scene->numerics.fixed_step;
