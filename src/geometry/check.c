@@ -99,13 +99,12 @@ static enum err check_area(struct sampler *g, const struct region *region)
     g->scene->off_lattice = true;
     char place[LOCATION_TEXT];
     scene_location(g->scene, region->line, place);
-    diag_warn(g->diag,
-              "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2: in "
-              "bending a thin body would be about %.2g %% too %s; a finer dp or another "
-              "lattice_angle would mend it",
-              place, (long long)region->n, region->name, 100 * fabs(ratio - 1),
-              ratio > 1 ? "more" : "less", area, 100 * fabs(stiff - 1),
-              ratio > 1 ? "stiff" : "soft");
+    diag_warn(
+        g->diag,
+        "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2: a thin "
+        "body is then about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
+        place, (long long)region->n, region->name, 100 * fabs(ratio - 1),
+        ratio > 1 ? "more" : "less", area, 100 * fabs(stiff - 1), ratio > 1 ? "stiff" : "soft");
     return ERR_OK;
 }
 
@@ -142,8 +141,8 @@ static void warn_see_through(struct sampler *g, const struct region *region, int
     char place[LOCATION_TEXT];
     scene_location(s, line, place);
     diag_warn(g->diag,
-              "%s: [%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid "
-              "would feel other fluid behind it; %s would mend it",
+              "%s: [%s %s] is %g m thick, less than the kernel's reach 2 h = %g m: fluid interacts "
+              "with the fluid behind it; %s prevents that",
               place, kind_names[region->kind], region->name, thick, 2 * s->h,
               directly ? "a finer dp" : "numerics.sides = one");
 }

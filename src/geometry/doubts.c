@@ -82,9 +82,8 @@ static enum err warn_of_missing_floor(struct sampler *g)
     char place[LOCATION_TEXT];
     scene_location(s, s->fluid[p->body[first]].common.line, place);
     diag_warn(g->diag,
-              "%s: %lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall and no "
-              "body below "
-              "them: they fall out of the domain and are lost; a [wall] below holds them",
+              "%s: %lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall or body "
+              "below them and fall out of the domain; a [wall] below holds them",
               place, (long long)falling, (long long)p->n, p->x[first], p->y[first]);
     return ERR_OK;
 }

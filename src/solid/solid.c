@@ -113,12 +113,11 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     const char *const name = needs_double(s, scene, p);
     if (!name) return &solid_sweeps_mixed;
     if (choice == SOLID_PRECISION_AUTO) return &solid_sweeps_double;
-    diag_warn(
-        d,
-        "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
-        "artificial_viscosity below %g: its stress may be off by 1e-6 of Young's modulus, and "
-        "energy may come from nowhere; auto would take double",
-        name, DAMPED);
+    diag_warn(d,
+              "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
+              "artificial_viscosity below %g: its stress may have an error of 1e-6 of Young's "
+              "modulus, and it may gain energy; take auto",
+              name, DAMPED);
     return &solid_sweeps_mixed;
 }
 

@@ -62,7 +62,8 @@ static bool fluid_sound(struct simulation *s)
 
 #define UNSTABLE                                                                                  \
     "the fluid is unstable (a smaller cfl may help), sound_speed is too low for this flow, or a " \
-    "wall or light structure presses harder than the fluid can follow"
+    "wall or light structure presses too hard on it"
+
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
  * until the particle lies in the bed that the front runs over. */
 #define STRAY                                                                                     \
@@ -80,17 +81,16 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's speed %.4g m/s is beyond %g of the speed of sound %.4g "
-                  "m/s, where "
-                  "weak compressibility is lost; a higher sound_speed would mend it",
+                  "t = %.6g s: the fluid's speed %.4g m/s is above %g of the speed of sound %.4g "
+                  "m/s: the fluid is no longer weakly compressible; a higher sound_speed helps",
                   s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
     }
     const double dens = max2(s->state.dens_high, -s->state.dens_low);
     if (!s->guard.warned_dens && dens > DENS_WARNING) {
         s->guard.warned_dens = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's density is off by %.3g of its reference, where a "
-                  "hundredth is usual and %g stops the run; a higher sound_speed would mend it",
+                  "t = %.6g s: the fluid's density is off by %.3g of its reference; usual is 0.01, "
+                  "and the run stops at %g; a higher sound_speed helps",
                   s->state.time, dens, s->guard.dens_limit);
     }
     return ERR_OK;
@@ -158,14 +158,13 @@ static enum err check_contact(struct simulation *s, struct diag *d)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
-            "m, the most that contact can carry: what presses them is stronger than the softer "
-            "one; a larger stiffness in [contact], a stiffer body or a slower motion may help",
+            "m, the limit of contact; a larger stiffness in [contact], a stiffer body or a slower "
+            "motion may help",
             s->state.time, (long long)s->state.steps, one, other, at->overlap, at->x, at->y);
     s->guard.warned_contact = true;
     diag_warn(d,
-              "t = %.6g s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: the "
-              "pressure there exceeds Young's modulus times the stiffness in [contact]; a larger "
-              "stiffness or a smaller dp lessens it, and at 1 the run stops",
+              "t = %.6g s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
+              "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
               s->state.time, one, other, at->overlap, at->x, at->y);
     return ERR_OK;
 }
@@ -175,28 +174,25 @@ static enum err check_solid(struct simulation *s, struct diag *d)
     const struct particles *const p = &s->kind[KIND_SOLID];
     const struct finding fast = too_fast(s, p);
     if (fast.at >= 0)
-        return complain(
-            s, KIND_SOLID, fast,
-            "beside its body it is faster than ten times the speed of sound: the solid is "
-            "unstable (a smaller solid_safety may help), or far too soft for its load",
-            d);
+        return complain(s, KIND_SOLID, fast,
+                        "it is faster than its body by ten times the speed of sound: the solid is "
+                        "unstable (a smaller solid_safety may help) or far too soft for its load",
+                        d);
     if (s->solid.contact) TRY(check_contact(s, d));
     if (!guards_strain_due(s)) return ERR_OK;
     const struct finding det = smallest_det(p);
     s->state.det_low = min2(s->state.det_low, det.value);
     if (!(det.value > 0))
-        return complain(
-            s, KIND_SOLID, det,
-            "the material has turned inside out; finer particles, more hourglass control or a "
-            "stiffer law may help",
-            d);
+        return complain(s, KIND_SOLID, det,
+                        "the material is inverted; finer particles, more hourglass control or a "
+                        "stiffer law may help",
+                        d);
     if (!s->guard.warned_det && det.value < DET_WARNING) {
         s->guard.warned_det = true;
-        diag_warn(
-            d,
-            "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is pressed to det F = %.3g; at "
-            "0 the material turns inside out and the run stops",
-            s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+        diag_warn(d,
+                  "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is pressed to det F = %.3g; "
+                  "at 0 the material is inverted and the run stops",
+                  s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
     }
     return ERR_OK;
 }
@@ -345,18 +341,16 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
     if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, "
-            "among them %lld at (%.6g, %.6g) m with speed = %.4g m/s: it is too thin, or "
-            "the fluid hits it too hard; wall_repulsion = 0.1, three particles across or a "
-            "higher sound_speed help",
+            "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, the first "
+            "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; wall_repulsion = 0.1, a thickness of "
+            "three particles or a higher sound_speed helps",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;
     s->guard.warned_crossing = true;
-    diag_warn(
-        d,
-        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; "
-        "wall_repulsion = 0.1 keeps it out; the run stops when more than 1 %% of the fluid has",
-        s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
+    diag_warn(d,
+              "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
+              "run stops when more than 1 %% of the fluid has; wall_repulsion = 0.1 keeps it out",
+              s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
     return ERR_OK;
 }

@@ -86,11 +86,11 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (!(s->effects & FX_COUPLING)) return ERR_OK;
     const double ratio = timestep_fluid_limit(s) / s->dt_solid;
     if (!(ratio <= SUBSTEPS_MOST))
-        return diag_fail(
-            d, ERR_INPUT,
-            "the solid's stable step, %.3g s, goes %.3g times into the fluid's, and at most %d are "
-            "taken: young is too high or density too low beside the fluid's sound_speed",
-            s->dt_solid, ratio, SUBSTEPS_MOST);
+        return diag_fail(d, ERR_INPUT,
+                         "the solid's stable step, %.3g s, needs %.3g sub-steps in a step of the "
+                         "fluid, and at most %d are possible: young is too high or density too low "
+                         "for the fluid's sound_speed",
+                         s->dt_solid, ratio, SUBSTEPS_MOST);
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
@@ -214,11 +214,10 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     s->crowded = crowd > CELL_CAPACITY;
     find_skin_left(s);
     if (s->crowded && s->state.steps == 0)
-        return diag_fail(
-            d, ERR_INPUT,
-            "%d particles start in one cell of %.3g m, which has room for %d: a smaller "
-            "numerics.h_over_dp or a solid's dp nearer to the fluid's would mend it",
-            crowd, s->cells.side[0], CELL_CAPACITY);
+        return diag_fail(d, ERR_INPUT,
+                         "%d particles start in one cell of %.3g m, which has room for %d: a "
+                         "smaller numerics.h_over_dp or a solid's dp nearer to the fluid's helps",
+                         crowd, s->cells.side[0], CELL_CAPACITY);
     if (s->crowded)
         return diag_fail(
             d, ERR_GUARD,

@@ -327,7 +327,7 @@ static const struct {
     {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
      "bad.cfg:7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET "
      ""
-     "(called for by `integrator` in line 3): its two-step form takes friction in the middle"},
+     "(called for by `integrator` in line 3): its two-step form is unstable with friction"},
     {TOP FLUID "density_diffusion = 0\n", "w.diffusion_form=fourtakas",
      "--set: [fluid w] diffusion_form does nothing without DIFFUSION: leave it out, or call for "
      "that by fluid.density_diffusion > 0"},

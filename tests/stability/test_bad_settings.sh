@@ -29,7 +29,7 @@ says 0 'numerics.cfl = 0.5 is beyond 0.4' column.cfg integrator=symplectic numer
 says 0 'numerics.cfl = 0.7 is beyond 0.6' column.cfg integrator=leapfrog numerics.cfl=0.7
 says 0 'is clamped nowhere, and a .load. acts on it' free.cfg
 says 0 'is clamped nowhere, and gravity acts on it' wedge.cfg
-says 0 'than the kernel.s reach .* numerics.sides = one would mend it' gate.cfg numerics.h_over_dp=2 \
+says 0 'than the kernel.s reach .* numerics.sides = one prevents that' gate.cfg numerics.h_over_dp=2 \
     'thickness=15 mm'
 "$sphfsi" tests/stability/gate.cfg --set numerics.h_over_dp=2 --set 'thickness=15 mm' \
     --set numerics.sides=one --explain >"$dir/output" 2>&1
@@ -38,7 +38,7 @@ if grep -q 'than the kernel.s reach' "$dir/output"; then
     failures=$((failures + 1))
 fi
 says 1 'gap = 0.05 m is more than 4 spacings of 0.01 m' settle.cfg bed.gap=5*dp
-says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp would mend it' \
+says 0 'solid gate. is 0.01 m thick, less than the kernel.s reach .* a finer dp prevents that' \
     gate.cfg numerics.h_over_dp=2 'thickness=10 mm'
 says 0 'shifting_speed = largest under gravity lifts a free surface' column.cfg water.shifting=2 \
     water.shifting_speed=largest
