@@ -9,17 +9,18 @@ SPHFSI_INLINE void extrapolated_pressure(const struct fluid *f, const struct nei
                                          const double *ay, double pressure[GROUPS])
 {
     vreal sum_w[PARTS] = {{0}}, sum_p[PARTS] = {{0}}, sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    EACH_SEEN(neighbours, k, part) {
-        const uint32_t code = neighbours->code[k];
-        const real *const b = candidates(neighbours, code, part);
-        const struct separation d = separation_from(s, code, b);
-        const vreal w = kernel_of(d.length);
-        const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
-        sum_w[part] = sum_w[part] + w;
-        sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
-        sum_x[part] = vfma(mass, d.x, sum_x[part]);
-        sum_y[part] = vfma(mass, d.y, sum_y[part]);
-    }
+    for (int k = 0; k < neighbours->n; k++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[k];
+            const real *const b = candidates(neighbours, code, part);
+            const struct separation d = separation_from(s, code, b);
+            const vreal w = kernel_of(d.length);
+            const vreal mass = w * (vset(1) + lane(b, PACKED_DENS));
+            sum_w[part] = sum_w[part] + w;
+            sum_p[part] = vfma(w, lane(b, PACKED_P), sum_p[part]);
+            sum_x[part] = vfma(mass, d.x, sum_x[part]);
+            sum_y[part] = vfma(mass, d.y, sum_y[part]);
+        }
     real weight[GROUPS], p[GROUPS], x[GROUPS], y[GROUPS];
     total(sum_w, weight);
     total(sum_p, p);
@@ -43,15 +44,16 @@ static void mirrored_velocity(const struct neighbours *neighbours, const struct 
                               double *u, double *v)
 {
     vreal sum_w[PARTS] = {{0}}, sum_u[PARTS] = {{0}}, sum_v[PARTS] = {{0}};
-    EACH_SEEN(neighbours, k, part) {
-        const uint32_t code = neighbours->code[k];
-        const real *const b = candidates(neighbours, code, part);
-        const struct separation d = separation_from(s, code, b);
-        const vreal w = kernel_of(d.length);
-        sum_w[part] = sum_w[part] + w;
-        sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
-        sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
-    }
+    for (int k = 0; k < neighbours->n; k++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[k];
+            const real *const b = candidates(neighbours, code, part);
+            const struct separation d = separation_from(s, code, b);
+            const vreal w = kernel_of(d.length);
+            sum_w[part] = sum_w[part] + w;
+            sum_u[part] = vfma(w, lane(b, PACKED_U), sum_u[part]);
+            sum_v[part] = vfma(w, lane(b, PACKED_V), sum_v[part]);
+        }
     real weight[GROUPS], fluid_u[GROUPS], fluid_v[GROUPS];
     total(sum_w, weight);
     total(sum_u, fluid_u);
@@ -83,13 +85,14 @@ static void drag_force(const struct fluid *f, const struct neighbours *neighbour
                        const struct vector_constants *k, double *fx, double *fy)
 {
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    EACH_SEEN(neighbours, m, part) {
-        const uint32_t code = neighbours->code[m];
-        const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
-        const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
-        sum_x[part] = vfma(weight, q.u, sum_x[part]);
-        sum_y[part] = vfma(weight, q.v, sum_y[part]);
-    }
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
+            const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
+            sum_x[part] = vfma(weight, q.u, sum_x[part]);
+            sum_y[part] = vfma(weight, q.v, sum_y[part]);
+        }
     add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
 }
 
@@ -105,23 +108,25 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
     const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
     const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
     vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
-    EACH_SEEN(neighbours, m, part) {
-        const uint32_t code = neighbours->code[m];
-        const real *const b = candidates(neighbours, code, part);
-        struct pair q = pair_load(s, code, b);
-        q.p = lane(b, PACKED_P);
-        vreal stress = fx_pressure(s, &q);
-        if (effects & FX_ONE_SIDED)
-            stress = q.p + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
-        if (effects & FX_REPULSION)
-            stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
-        const vreal g = q.slope * stress;
-        sum_x[part] = vfma(g, q.x, sum_x[part]);
-        sum_y[part] = vfma(g, q.y, sum_y[part]);
-        if (!(effects & FX_IMPEDANCE)) continue;
-        wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
-        wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
-    }
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const real *const b = candidates(neighbours, code, part);
+            struct pair q = pair_load(s, code, b);
+            q.p = lane(b, PACKED_P);
+            vreal stress = fx_pressure(s, &q);
+            if (effects & FX_ONE_SIDED)
+                stress =
+                    q.p + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+            if (effects & FX_REPULSION)
+                stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+            const vreal g = q.slope * stress;
+            sum_x[part] = vfma(g, q.x, sum_x[part]);
+            sum_y[part] = vfma(g, q.y, sum_y[part]);
+            if (!(effects & FX_IMPEDANCE)) continue;
+            wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
+            wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
+        }
     add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
     if (effects & FX_IMPEDANCE)
         add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);

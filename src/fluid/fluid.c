@@ -81,7 +81,7 @@ static enum err neighbour_scratch_create(struct fluid *f, struct arena *a, int64
         places * (size_t)pair_sums(f->effects) * CLUSTER * CLUSTER * f->sweeps->packed_item_size;
     f->thread_bytes = size + sizeof *f->neighbour_scratch;
     f->neighbour_scratch =
-        arena_alloc(a, (size_t)f->threads, sizeof *f->neighbour_scratch, "clusters in sight", d);
+        arena_alloc(a, (size_t)f->threads, sizeof *f->neighbour_scratch, "neighbour clusters", d);
     unsigned char *const deferred = arena_alloc(a, (size_t)f->threads, size, "sums over pairs", d);
     if (!f->neighbour_scratch || !deferred) return ERR_MEMORY;
     for (int t = 0; t < f->threads; t++)

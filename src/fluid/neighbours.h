@@ -22,11 +22,6 @@ struct neighbours {
     int n; /* clusters */
 };
 
-/* For each neighbour cluster, and each of its parts. */
-#define EACH_SEEN(neighbours, k, part)        \
-    for (int k = 0; k < (neighbours)->n; k++) \
-        for (int part = 0; part < PARTS; part++)
-
 /* The candidates in a part of a cluster. */
 SPHFSI_INLINE const real *candidates(const struct neighbours *neighbours, uint32_t code, int part)
 {

@@ -116,19 +116,20 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
 {
     vreal xx[PARTS] = {{0}}, xy[PARTS] = {{0}}, yy[PARTS] = {{0}}, dx[PARTS] = {{0}},
           dy[PARTS] = {{0}};
-    EACH_SEEN(neighbours, k, part) {
-        const uint32_t code = neighbours->code[k];
-        const real *const b = candidates(neighbours, code, part);
-        const struct separation r = separation_from(a, code, b);
-        const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r.length, vset(1)));
-        const vreal w = lane(b, PACKED_VOLUME) * (t * t * t);
-        const vreal step = w * (a->dens - lane(b, PACKED_DENS));
-        xx[part] = vfma(w * r.x, r.x, xx[part]);
-        xy[part] = vfma(w * r.x, r.y, xy[part]);
-        yy[part] = vfma(w * r.y, r.y, yy[part]);
-        dx[part] = vfma(step, r.x, dx[part]);
-        dy[part] = vfma(step, r.y, dy[part]);
-    }
+    for (int k = 0; k < neighbours->n; k++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[k];
+            const real *const b = candidates(neighbours, code, part);
+            const struct separation r = separation_from(a, code, b);
+            const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r.length, vset(1)));
+            const vreal w = lane(b, PACKED_VOLUME) * (t * t * t);
+            const vreal step = w * (a->dens - lane(b, PACKED_DENS));
+            xx[part] = vfma(w * r.x, r.x, xx[part]);
+            xy[part] = vfma(w * r.x, r.y, xy[part]);
+            yy[part] = vfma(w * r.y, r.y, yy[part]);
+            dx[part] = vfma(step, r.x, dx[part]);
+            dy[part] = vfma(step, r.y, dy[part]);
+        }
     real A[GROUPS], B[GROUPS], C[GROUPS], U[GROUPS], V[GROUPS];
     total(xx, A);
     total(xy, B);

@@ -112,17 +112,19 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
                              const struct vector_constants *k, effect_set fx,
                              const struct chunk *chunk, struct cluster_sums *sums)
 {
-    EACH_SEEN(neighbours, m, part) {
-        const uint32_t code = neighbours->code[m];
-        const real *const b = candidates(neighbours, code, part);
-        const size_t place = deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
-        real *const at = chunk->deferred + place * deferred_stride(fx) + part * LANES;
-        for (int row = 0; row < ROWS; row++) {
-            const struct exchange e = pair_of_fluid(&a[row], code, b, k, fx, &sums->approach);
-            add_exchange(sums, row, part, &e, fx);
-            defer_sum(at + row * GROUPS * CLUSTER, &e, fx);
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const real *const b = candidates(neighbours, code, part);
+            const size_t place =
+                deferred_slot(chunk, neighbour_number(code)) * neighbour_is_half(code);
+            real *const at = chunk->deferred + place * deferred_stride(fx) + part * LANES;
+            for (int row = 0; row < ROWS; row++) {
+                const struct exchange e = pair_of_fluid(&a[row], code, b, k, fx, &sums->approach);
+                add_exchange(sums, row, part, &e, fx);
+                defer_sum(at + row * GROUPS * CLUSTER, &e, fx);
+            }
         }
-    }
 }
 
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
@@ -158,14 +160,15 @@ SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct
                                const struct vector_constants *k, effect_set fx,
                                struct cluster_sums *sums)
 {
-    EACH_SEEN(neighbours, m, part) {
-        const uint32_t code = neighbours->code[m];
-        const real *const b = candidates(neighbours, code, part);
-        for (int row = 0; row < ROWS; row++) {
-            const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
-            add_exchange(sums, row, part, &e, fx & ~(effect_set)FX_DIFFUSION);
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const real *const b = candidates(neighbours, code, part);
+            for (int row = 0; row < ROWS; row++) {
+                const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
+                add_exchange(sums, row, part, &e, fx & ~(effect_set)FX_DIFFUSION);
+            }
         }
-    }
 }
 
 /* A sum of the particles of a cluster as receivers. */

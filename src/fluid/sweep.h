@@ -53,7 +53,7 @@ SPHFSI_INLINE bool has_fluid_near(real weight) { return (double)weight > 1e-12; 
 /* A range of the fluid that a thread processes at a time. */
 struct chunk {
     struct cluster_range range;
-    real *deferred; /* sight.left */
+    real *deferred; /* scratch of the thread */
 };
 
 /* Largest values over a chunk: reduced over the SIMD lanes once. */

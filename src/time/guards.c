@@ -22,8 +22,7 @@ struct finding {
 };
 
 /* The first particle, in order, whose speed or density exceeds its limit or is not a number. */
-static struct finding gather_clusters(const struct particles *p, double speed_limit,
-                                      double dens_limit)
+static struct finding find_invalid(const struct particles *p, double speed_limit, double dens_limit)
 {
     for (int64_t i = 0; i < p->n; i++) {
         const double speed = sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
@@ -74,7 +73,7 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
 {
     if (!fluid_sound(s)) {
         const struct finding f =
-            gather_clusters(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
+            find_invalid(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
         if (f.at >= 0)
             return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
     }
@@ -277,7 +276,7 @@ static const char *step_key(const struct simulation *s)
     if (s->scene->numerics.fixed_step > 0) return "fixed_step";
     return s->effects & FX_FLUID ? "cfl" : "solid_safety";
 }
-static const char *atomic_file_step(const struct simulation *s)
+static const char *step_remedy(const struct simulation *s)
 {
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
@@ -317,12 +316,12 @@ enum err guards_energy(struct simulation *s, const struct ledger *row, struct di
     text_of_gain(s, &g, text);
     if (share > ENERGY_LIMIT)
         return diag_fail(d, ERR_GUARD, "%s: the run is unstable; a smaller %s%s may help", text,
-                         step_key(s), atomic_file_step(s));
+                         step_key(s), step_remedy(s));
     const bool sound = share <= REGAINED_SLACK && g.net <= ENERGY_SLACK * g.play;
     if (s->guard.warned_energy || sound) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(d, "%s: the run is not sound; a smaller %s%s may help", text, step_key(s),
-              atomic_file_step(s));
+              step_remedy(s));
     return ERR_OK;
 }
 

@@ -233,8 +233,9 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
 static void use_skin_left(struct simulation *s, double speed2_before)
 {
     const double dt = s->state.dt, speed = sqrt(max2(speed2_before, s->extremes.speed2)),
-                 way = dt * (speed + 0.5 * dt * sqrt(s->fluid.extremes.acceleration2)) + s->shifted;
-    s->skin_left -= way + max2(way, s->solid_max_move);
+                 moved =
+                     dt * (speed + 0.5 * dt * sqrt(s->fluid.extremes.acceleration2)) + s->shifted;
+    s->skin_left -= moved + max2(moved, s->solid_max_move);
 }
 
 /* Whether the cells may miss a pair at the next evaluations. Where displacements are bounded,
@@ -246,8 +247,8 @@ static bool sorting_due(struct simulation *s)
         return true;
     const bool bounded =
         s->scene->top.integrator != INTEGRATOR_SYMPLECTIC && !(s->effects & FX_MOTION);
-    const double hair = 1e-6 * s->fluid.k.h;
-    if (bounded && s->skin_left > hair) return false;
+    const double tolerance = 1e-6 * s->fluid.k.h;
+    if (bounded && s->skin_left > tolerance) return false;
     for (int kind = 0; kind < KIND_COUNT; kind++)
         if (s->cells.kind[kind].n_active && (kind != KIND_WALL || s->wall_motion.moved))
             cells_measure_overhang(&s->cells, (enum kind)kind, &s->kind[kind]);

@@ -207,13 +207,13 @@ static void twin(const char *integrator, bool centred)
     for (int f = 0; f < FIELDS; f++) memcpy(end[f], field[f], bytes);
     for (int f = 0; f < FIELDS; f++) memcpy(field[f], start[f], bytes);
     advance_solid(&rig.sim, 5 * dt, 5, centred);
-    double owed = 0;
+    double impulse = 0;
     for (int64_t i = 0; i < solid->n; i++) {
         for (int f = 0; f < FIELDS; f++)
             assert_near(1e-13 * (f < 2 ? 1e-3 : 1), end[f][i], field[f][i], "a field");
-        owed = fmax(owed, fabs(solid->interface_impulse_x[i]));
+        impulse = fmax(impulse, fabs(solid->interface_impulse_x[i]));
     }
-    TEST_ASSERT_TRUE(owed > 1e-9);
+    TEST_ASSERT_TRUE(impulse > 1e-9);
     rig_close(&rig);
 }
 
@@ -249,13 +249,13 @@ static void test_momentum_closes(void)
     const double start = momentum(&size);
     rig_steps(&rig, 200, 1);
     const double end = momentum(&size);
-    double owed = 0;
-    for (int64_t i = 0; i < solid->n; i++) owed += fabs(solid->interface_impulse_x[i]);
-    TEST_ASSERT_TRUE(owed > 1e-6 * size);
+    double impulse = 0;
+    for (int64_t i = 0; i < solid->n; i++) impulse += fabs(solid->interface_impulse_x[i]);
+    TEST_ASSERT_TRUE(impulse > 1e-6 * size);
     assert_near(1e-11 * size, start, end, "momentum");
 }
 
-/* Water that leaves a light wall takes nothing of what is owed along: once a particle is dry, its
+/* Water that leaves a light wall takes nothing of what is impulse along: once a particle is dry, its
  * force is what it is given back, which fades. */
 static void test_dry_particles_owe_less_and_less(void)
 {
@@ -268,14 +268,15 @@ static void test_dry_particles_owe_less_and_less(void)
              NULL);
     solid = &rig.sim.kind[KIND_SOLID];
     rig_run(&rig, 0.02);
-    double owed = 0;
-    for (int64_t i = 0; i < solid->n; i++) owed = fmax(owed, fabs(solid->interface_impulse_x[i]));
+    double impulse = 0;
+    for (int64_t i = 0; i < solid->n; i++)
+        impulse = fmax(impulse, fabs(solid->interface_impulse_x[i]));
     rig_run(&rig, 0.2);
-    TEST_ASSERT_TRUE(owed > 0);
-    const double kept = owed * pow(0.98, 300);
+    TEST_ASSERT_TRUE(impulse > 0);
+    const double kept = impulse * pow(0.98, 300);
     for (int64_t i = 0; i < solid->n; i++) {
         TEST_ASSERT_TRUE(solid->wet_x[i] == 0);
-        assert_at_most(kept, fabs(solid->interface_impulse_x[i]), "owed");
+        assert_at_most(kept, fabs(solid->interface_impulse_x[i]), "impulse");
         assert_at_most(0.02 * kept / rig.sim.state.dt, fabs(solid->fx[i]),
                        "force of what is given back");
     }
@@ -297,11 +298,11 @@ static void test_moving_clamps_owe_nothing(void)
     rig_steps(&rig, 20, 1);
     double most = 0, wet = 0;
     for (int64_t i = 0; i < solid->n; i++) {
-        const double owed = hypot(solid->interface_impulse_x[i], solid->interface_impulse_y[i]);
-        most = fmax(most, owed);
+        const double impulse = hypot(solid->interface_impulse_x[i], solid->interface_impulse_y[i]);
+        most = fmax(most, impulse);
         if (solid->X[i] > 0.1) continue;
         wet = fmax(wet, hypot(solid->wet_x[i], solid->wet_y[i]));
-        TEST_ASSERT_TRUE(owed == 0);
+        TEST_ASSERT_TRUE(impulse == 0);
     }
     TEST_ASSERT_TRUE(most > 0 && wet > 0);
 }
