@@ -98,11 +98,10 @@ def draw_stability():
 
 
 def gate(elastic):
-    """The text of the gate case; without its elastic body where that is not wanted."""
-    text = (ROOT / "cases/gate.cfg").read_text()
-    if not elastic:
-        text = re.sub(r"^\[(?:solid|probe|reference) [^\n]*\n(?:(?!\[)[^\n]*\n)*", "", text, flags=re.M)
-    return text
+    """The text of the gate case without probes; without its elastic body where that is not wanted."""
+    words = "probe|reference" if elastic else "probe|reference|solid|contact|load"
+    return re.sub(rf"^\[(?:{words}) [^\n]*\n(?:(?!\[)[^\n]*\n)*", "",
+                  (ROOT / "cases/gate.cfg").read_text(), flags=re.M)
 
 
 def measure(program, repeats=5):
