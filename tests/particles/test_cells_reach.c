@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A sorting is called outgrown before any pair within reach can be out of sight, and not while all the
- * fluid travels together. */
+ * A sorting is called outgrown before any pair within reach leaves the cells that are searched. It is not
+ * while all the fluid travels together. */
 #include "rig.h"
 #include "particles/kernel.h"
 #include "unity.h"

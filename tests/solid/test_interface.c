@@ -241,7 +241,7 @@ static double momentum(double *size)
     return sum;
 }
 
-/* Fluid, structure and what the structure owes the fluid: nothing is lost. */
+/* Momentum of fluid, structure and interface impulse together is conserved. */
 static void test_momentum_closes(void)
 {
     open("integrator=symplectic", NULL);
@@ -282,7 +282,7 @@ static void test_dry_particles_owe_less_and_less(void)
     }
 }
 
-/* What is clamped to a motion answers to its clamp: it owes the fluid nothing, its neighbours do. */
+/* Particles of a moving clamp have no interface impulse; their neighbours have. */
 static void test_moving_clamps_owe_nothing(void)
 {
     rig_open(
