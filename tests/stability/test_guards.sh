@@ -28,7 +28,7 @@ shape = polyline thickness -0.04: 0, 0.3; 0, 0; 0.2, 0; 0.2, 0.3
 '
 
 # Speed: far too low a speed of sound for a fall. The warning comes first.
-stopped speed 'weak compressibility is lost' \
+stopped speed 'no longer weakly compressible' \
     't = .*fluid particle [0-9]* at (.*) m has \(speed\|rho\)' <<CASE
 dp = 1 cm
 end_time = 1
