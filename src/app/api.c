@@ -276,8 +276,8 @@ static enum err compute(struct sphfsi_simulation *s, enum kind kind, const char 
 {
     struct simulation *const sim = &s->session.simulation;
     double **const to = &s->computed[kind][what];
-    const size_t room = (size_t)sim->kind[kind].capacity * (size_t)width;
-    if (!*to) *to = arena_alloc(&sim->arena, room, sizeof **to, name, d);
+    const size_t capacity = (size_t)sim->kind[kind].capacity * (size_t)width;
+    if (!*to) *to = arena_alloc(&sim->arena, capacity, sizeof **to, name, d);
     if (!*to) return ERR_MEMORY;
     simulation_refresh(sim);
     for (int64_t i = 0; i < sim->kind[kind].n; i++)

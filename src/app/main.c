@@ -372,7 +372,7 @@ static int execute(struct command *c)
 }
 
 /* A result file must not get the number of a standard stream that the caller has closed: messages would
- * be written into it. The placeholder is opened for reading, so that writing to the stream still fails. */
+ * be written into it. /dev/null is opened for reading, so that writing to the stream still fails. */
 static void fill_standard_streams(void)
 {
     int fd;

@@ -165,9 +165,9 @@ enum err case_split(struct reader *r, const char *text)
     for (const char *c = text; *c; c++) n_lines += *c == '\n';
     if (n_lines > CASE_MAX_LINES)
         return bad_line(r, CASE_MAX_LINES, "the case file has more than %d lines", CASE_MAX_LINES);
-    const size_t room = (size_t)n_lines + 1;
-    r->entries = arena_alloc(&r->temp, room, sizeof *r->entries, "case file", r->diag);
-    r->sections = arena_alloc(&r->temp, room, sizeof *r->sections, "case file", r->diag);
+    const size_t capacity = (size_t)n_lines + 1;
+    r->entries = arena_alloc(&r->temp, capacity, sizeof *r->entries, "case file", r->diag);
+    r->sections = arena_alloc(&r->temp, capacity, sizeof *r->sections, "case file", r->diag);
     const size_t bytes = strlen(text) + 1;
     char *copy = arena_alloc(&r->temp, bytes, 1, "case file", r->diag);
     if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
@@ -306,9 +306,9 @@ static enum err apply_set(struct reader *r, const char *set)
 enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
 {
     if (n_sets <= 0) return ERR_OK;
-    const size_t room = (size_t)r->n_entries + (size_t)n_sets;
+    const size_t capacity = (size_t)r->n_entries + (size_t)n_sets;
     const size_t sections = (size_t)r->n_sections + SECTION_COUNT;
-    struct entry *entries = arena_alloc(&r->temp, room, sizeof *entries, "case file", r->diag);
+    struct entry *entries = arena_alloc(&r->temp, capacity, sizeof *entries, "case file", r->diag);
     struct case_section *more = arena_alloc(&r->temp, sections, sizeof *more, "case file", r->diag);
     if (!entries || !more) return ERR_MEMORY;
     memcpy(entries, r->entries, (size_t)r->n_entries * sizeof *entries);

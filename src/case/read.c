@@ -281,18 +281,18 @@ enum err scene_parse(struct scene *s, const char *text, const char *path, int n_
 
 static enum err read_file(FILE *file, const char *path, char **text, struct diag *d)
 {
-    size_t room = 1 << 16, n = 0;
+    size_t capacity = 1 << 16, n = 0;
     *text = NULL;
     for (;;) {
-        char *more = realloc(*text, room + 1);
+        char *more = realloc(*text, capacity + 1);
         if (!more) return diag_fail(d, ERR_MEMORY, "%s: no memory to read it", path);
         *text = more;
-        n += fread(*text + n, 1, room - n, file);
-        if (n < room) break;
-        if (room >= CASE_MAX_BYTES)
+        n += fread(*text + n, 1, capacity - n, file);
+        if (n < capacity) break;
+        if (capacity >= CASE_MAX_BYTES)
             return diag_fail(d, ERR_INPUT, "%s: longer than %d bytes; is it a case file?", path,
                              CASE_MAX_BYTES);
-        room *= 2;
+        capacity *= 2;
     }
     if (ferror(file))
         return diag_fail(d, ERR_INPUT, "%s: cannot be read: %s", path, strerror(errno));

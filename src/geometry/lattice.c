@@ -108,10 +108,11 @@ static bool covered(const double *from, int n, double x, double tolerance)
 /* Ends of the body on a line, except those inside its clamps, and ends of clamps inside the body:
  * the boundary of the part that is free to move. Appends them, and returns their number. */
 static int free_ends(const struct outlines *body, const struct outlines *minus,
-                     const struct outlines *clamp, double y, double dp, double *buffer, int room,
-                     struct crossing *to)
+                     const struct outlines *clamp, double y, double dp, double *buffer,
+                     int capacity, struct crossing *to)
 {
-    double *const inside = buffer, *const held = buffer + room, *const scratch = held + room;
+    double *const inside = buffer, *const held = buffer + capacity,
+                  *const scratch = held + capacity;
     const int n = outlines_union(body, minus, y, inside, scratch);
     const int n_held = clamp ? outlines_union(clamp, NULL, y, held, scratch) : 0;
     int count = 0;
@@ -186,26 +187,23 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
         low = min2(low, body.item[k].low[1]);
         high = max2(high, body.item[k].high[1]);
     }
-    const int room = outlines_ends(&body) + outlines_ends(&minus) + outlines_ends(&clamp) + 4;
+    const int capacity = outlines_ends(&body) + outlines_ends(&minus) + outlines_ends(&clamp) + 4;
     const double wanted = ceil(LINES_PER_DP * (high - low) / dp);
     const int lines = wanted < 1 ? 1 : wanted > MAX_LINES ? MAX_LINES : (int)wanted;
     const double step = (high - low) / lines;
     double *const buffer =
-        arena_alloc(&g->temp, 3 * (size_t)room, sizeof *buffer, "sampling", g->diag);
+        arena_alloc(&g->temp, 3 * (size_t)capacity, sizeof *buffer, "sampling", g->diag);
     struct crossing *const two_lines =
-        arena_alloc(&g->temp, 4 * (size_t)room, sizeof *two_lines, "sampling", g->diag);
+        arena_alloc(&g->temp, 4 * (size_t)capacity, sizeof *two_lines, "sampling", g->diag);
     if (!buffer || !two_lines) return ERR_MEMORY;
     int64_t total = 0;
     for (int pass = 0; pass < 2; pass++) {
         int before = 0;
         for (int k = 0; k < lines; k++) {
-            struct crossing *const line = two_lines + (k % 2 ? 2 * room : 0), *const last =
-                                                                                  two_lines +
-                                                                                  (k % 2
-                                                                                       ? 0
-                                                                                       : 2 * room);
+            struct crossing *const line = two_lines + (k % 2 ? 2 * capacity : 0),
+                                   *const last = two_lines + (k % 2 ? 0 : 2 * capacity);
             const int found = free_ends(&body, &minus, clamp.n ? &clamp : NULL,
-                                        low + (k + 0.5) * step, dp, buffer, room, line);
+                                        low + (k + 0.5) * step, dp, buffer, capacity, line);
             if (pass == 0) total += found;
             for (int j = 0; pass == 1 && j < found; j++)
                 if (goes_on(last, before, &line[j], dp))

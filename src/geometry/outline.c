@@ -141,9 +141,9 @@ enum err outlines_of(struct outlines *o, const struct scene *s, const struct sha
 
 int outlines_capacity(const struct outlines *o)
 {
-    int room = 2;
-    for (int k = 0; k < o->n; k++) room = o->item[k].n > room ? o->item[k].n : room;
-    return room;
+    int capacity = 2;
+    for (int k = 0; k < o->n; k++) capacity = o->item[k].n > capacity ? o->item[k].n : capacity;
+    return capacity;
 }
 
 static int ascending(const void *a, const void *b)
@@ -291,9 +291,9 @@ static int add_heights(const struct outlines *o, double *to)
 enum err outlines_area(const struct outlines *add, const struct outlines *minus, double step,
                        double *area, struct arena *a, struct diag *d)
 {
-    const size_t room = (size_t)(outlines_ends(add) + outlines_ends(minus)) + 4;
-    double *const height = arena_alloc(a, room, sizeof *height, "area of shapes", d);
-    double *const line = arena_alloc(a, 2 * room, sizeof *line, "area of shapes", d);
+    const size_t capacity = (size_t)(outlines_ends(add) + outlines_ends(minus)) + 4;
+    double *const height = arena_alloc(a, capacity, sizeof *height, "area of shapes", d);
+    double *const line = arena_alloc(a, 2 * capacity, sizeof *line, "area of shapes", d);
     if (!height || !line) return ERR_MEMORY;
     int n = add_heights(add, height);
     n += add_heights(minus, height + n);
@@ -305,7 +305,7 @@ enum err outlines_area(const struct outlines *add, const struct outlines *minus,
         for (int j = 0; j < 2 * parts; j++) {
             const double part = high / parts, gauss = 0.5 + (j % 2 ? 0.5 : -0.5) / sqrt(3);
             const double y = height[k] + (j / 2 + gauss) * part;
-            const int ends = outlines_union(add, minus, y, line, line + room);
+            const int ends = outlines_union(add, minus, y, line, line + capacity);
             for (int e = 0; e + 1 < ends; e += 2) *area += 0.5 * part * (line[e + 1] - line[e]);
         }
     }

@@ -72,8 +72,8 @@ static void test_beam_on_beam(void)
     assert_at_most(0.02 * row.elastic, fabs(row.dissipated), "missing energy");
 }
 
-/* At the coarse spacing of the water until it has passed both posts: the soft one gives way first and
- * further, none of the two fluid's and bodies' energy comes from nowhere, nothing is lost. */
+/* At the coarse spacing of the water until it has passed both posts: the soft one bends first and
+ * further, the energy of fluid and bodies does not grow, nothing is lost. */
 static void test_two_posts(void)
 {
     const char *const sets[] = {"dp=5 mm"};
@@ -84,7 +84,7 @@ static void test_two_posts(void)
     TEST_ASSERT_TRUE(soft > 2e-3);
     TEST_ASSERT_TRUE(fabs(stiff) < 0.1 * soft);
     const struct ledger row = simulation_ledger(&sim);
-    assert_at_most(0.01 * row.kinetic, -row.dissipated, "energy from nowhere");
+    assert_at_most(0.01 * row.kinetic, -row.dissipated, "spurious energy");
     TEST_ASSERT_EQUAL_INT64(0, sim.state.lost);
 }
 
@@ -153,7 +153,7 @@ static void test_rotating_patch(void)
         const struct ledger row = simulation_ledger(&sim);
         assert_near(1e-12 * fabs(start), start, angular_momentum(0.5, 0.5), "angular momentum");
         assert_near(1e-12 * fabs(start), 0, row.momentum_x + row.momentum_y, "momentum");
-        assert_at_most(0, -row.dissipated, "energy from nowhere");
+        assert_at_most(0, -row.dissipated, "spurious energy");
         printf("rotating patch, tension %d: clumped %.3f\n", with, clumped());
         if (with)
             assert_at_most(0, clumped(), "clumped");
@@ -224,7 +224,7 @@ static void test_rolling_tank(void)
         tip[k] = displacement(0, 0, 0.0574, false);
         momentum[k] = row.momentum_x;
         work[k] = sim.state.wall_work;
-        assert_at_most(1e-6 * fabs(work[k]), -least, "energy from nowhere");
+        assert_at_most(1e-6 * fabs(work[k]), -least, "spurious energy");
         TEST_ASSERT_EQUAL_INT64(0, sim.state.lost);
         assert_near(1e-12 * mass, mass, row.mass, "mass");
         assert_at_most(0.03, fmax(-sim.state.dens_low, sim.state.dens_high), "density");

@@ -108,7 +108,7 @@ static void test_pressure_within_two_percent(void)
 }
 
 /* Let go without pressure the water bounces like a spring and comes to rest: a hundredth of the
- * kinetic energy after 1.8 s; none of it appears from nowhere. */
+ * kinetic energy after 1.8 s; none of it is spurious. */
 static void test_kinetic_energy_decays(void)
 {
     rig_open(&rig, tank, NULL);

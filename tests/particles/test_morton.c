@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Morton keys: the bits of both coordinates in turn. */
+ * Morton keys: the interleaved bits of both coordinates. */
 #include "particles/morton.h"
 
 #include "unity.h"

@@ -145,7 +145,7 @@ static void test_wall_on_a_beam(void)
         if (p->X[i] > 0.13 && p->Y[i] > 0.015) assert_at_most(-0.024, p->uy[i], "end of the beam");
 }
 
-/* A wall that is driven into what cannot give way stops the run, by name. */
+/* A wall that is driven into a body that cannot move stops the run, by name. */
 static void test_wall_into_a_clamp(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall ram]\nshape = box 0, 0.03, 0.04, 0.05\n"

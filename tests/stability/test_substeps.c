@@ -49,7 +49,7 @@ static double growth(const int *count, int rounds, double z, bool centred)
     return pow(root > 0 ? fabs(half) + root : sqrt(det), 1.0 / rounds);
 }
 
-/* One, one and two sub-steps in turn, each stable by itself. */
+/* The sequence one, one, two sub-steps, each stable by itself. */
 static void test_alternation_grows(void)
 {
     static const int mixed[] = {1, 1, 2}, held[] = {2, 2, 2};
