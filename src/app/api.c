@@ -381,7 +381,8 @@ static enum err set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind, sp
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     s->force[kind] = (struct user_function){.of = s, .force = force, .context = context};
-    return simulation_push(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind], d);
+    return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind],
+                               d);
 }
 
 enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind,

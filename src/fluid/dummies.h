@@ -146,21 +146,21 @@ struct dummies {
 };
 
 /* Copies a field of the particles of a cluster, or zeros if it is NULL. */
-SPHFSI_INLINE void take(const struct dummies *d, const double *field, double out[CLUSTER])
+SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double out[CLUSTER])
 {
     for (int r = 0; r < CLUSTER; r++) out[r] = r < d->count && field ? field[d->at[r]] : 0;
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
-SPHFSI_INLINE void take_velocity(const struct fluid *f, const struct dummies *d,
-                                 const struct particles *p, double u[CLUSTER], double v[CLUSTER])
+SPHFSI_INLINE void gather_velocity(const struct fluid *f, const struct dummies *d,
+                                   const struct particles *p, double u[CLUSTER], double v[CLUSTER])
 {
     const bool moves = f->effects & FX_MOTION;
-    take(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
-    take(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
+    gather(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
+    gather(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
 }
 
-SPHFSI_INLINE void put(const struct dummies *d, const double in[CLUSTER], double *field)
+SPHFSI_INLINE void scatter(const struct dummies *d, const double in[CLUSTER], double *field)
 {
     for (int r = 0; r < d->count; r++) field[d->at[r]] = in[r];
 }
@@ -192,8 +192,8 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct parti
                                        const struct dummies *d, effect_set fx)
 {
     double ax[CLUSTER], ay[CLUSTER];
-    take(d, p->ax, ax);
-    take(d, p->ay, ay);
+    gather(d, p->ax, ax);
+    gather(d, p->ay, ay);
     for (int r = 0; r < d->count; r++) {
         real *const own = d->packed + r;
         if (fx & FX_ONE_SIDED) {
@@ -231,19 +231,19 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
         for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
         drag_force(f, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
     }
-    put(d, force_x, p->fx);
-    put(d, force_y, p->fy);
+    scatter(d, force_x, p->fx);
+    scatter(d, force_y, p->fy);
     if (!(fx & FX_IMPEDANCE)) return;
-    put(d, wet_x, p->wet_x);
-    put(d, wet_y, p->wet_y);
+    scatter(d, wet_x, p->wet_x);
+    scatter(d, wet_y, p->wet_y);
 }
 
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. */
-static void stick(const struct fluid *f, const struct particles *p, const struct dummies *d,
-                  const struct neighbours *neighbours, const struct cell_sides *sides)
+static void no_slip(const struct fluid *f, const struct particles *p, const struct dummies *d,
+                    const struct neighbours *neighbours, const struct cell_sides *sides)
 {
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
-    take_velocity(f, d, p, u, v);
+    gather_velocity(f, d, p, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
@@ -278,8 +278,8 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particle
                                     const struct cell_sides *sides, double pressure[CLUSTER])
 {
     double ax[CLUSTER], ay[CLUSTER];
-    take(d, p->ax, ax);
-    take(d, p->ay, ay);
+    gather(d, p->ax, ax);
+    gather(d, p->ay, ay);
     for (int r = 0; r < CLUSTER; r++) pressure[r] = 0;
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
         const struct receiver s = receiver_at(sides, d->packed + r);
@@ -295,11 +295,11 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
 {
     const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
     double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0};
-    take_velocity(f, d, p, u, v);
+    gather_velocity(f, d, p, u, v);
     for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
     for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
-    put(d, pressure, p->p);
-    put(d, dens, p->dens);
+    scatter(d, pressure, p->p);
+    scatter(d, dens, p->dens);
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
@@ -335,7 +335,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
         if (!p->fx && !(fx & SURFACE_EFFECTS)) continue;
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (fx & FX_NO_SLIP) stick(f, p, &d, &neighbours, &sides);
+        if (fx & FX_NO_SLIP) no_slip(f, p, &d, &neighbours, &sides);
         if (fx & SURFACE_EFFECTS) pack_surface_fields(f, p, &d, fx);
         if (p->fx) dummies_forces(f, p, &d, &neighbours, &sides, &k, fx);
     }

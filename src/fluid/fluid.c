@@ -96,7 +96,7 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     memset(f, 0, sizeof *f);
     f->k = constants_of(s);
     f->effects = effects;
-    f->idle_is_work = s->test.work_on_idle;
+    f->never_skip = s->test.never_skip;
     choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
                   s->test.generic_kernel);
     f->threads = thread_count();
@@ -172,14 +172,14 @@ void fluid_find_near(struct fluid *f, const struct cells *c)
         const struct cell_list *list = &c->kind[kind];
         int32_t n = 0;
         for (int32_t k = 0; k < list->n_active; k++)
-            if (mark_around(f, c, list->active[k]) || f->idle_is_work)
+            if (mark_around(f, c, list->active[k]) || f->never_skip)
                 f->near_fluid[kind][n++] = list->active[k];
         f->n_near_fluid[kind] = n;
     }
     f->walls_placed = false;
 }
 
-int32_t fluid_crowding(const struct cells *c)
+int32_t fluid_fullest_cell(const struct cells *c)
 {
     int32_t most = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++)
@@ -203,7 +203,7 @@ static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const
 {
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         if (f->n_near_fluid[kind]) f->sweeps->dummies(f, kinds, c, (enum kind)kind);
-    f->walls_placed = !(f->effects & FX_MOTION) && !f->idle_is_work;
+    f->walls_placed = !(f->effects & FX_MOTION) && !f->never_skip;
 }
 
 static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)

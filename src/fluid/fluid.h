@@ -136,7 +136,7 @@ struct neighbour_scratch {
 struct fluid {
     struct fluid_constants k;
     effect_set effects;
-    bool idle_is_work;                 /* visit dry walls, place resting ones; set by tests */
+    bool never_skip;                   /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];        /* [sections] of a resting dummy over a fluid particle's */
     const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
     struct packed_fields packed[KIND_COUNT];
@@ -165,7 +165,7 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt);
 void fluid_find_near(struct fluid *f, const struct cells *c);
 
 /* Most particles of any kind in one cell. */
-int32_t fluid_crowding(const struct cells *c);
+int32_t fluid_fullest_cell(const struct cells *c);
 
 /* One evaluation: pressures, dummies, rates. The cells must have skin left (cells_skin_left). The
  * time of each pass is added to phase_seconds. */

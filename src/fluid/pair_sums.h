@@ -64,9 +64,9 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
         inv = vset(1) / (q.r2 + k->eta2);
     }
     if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
-    const vreal push = q.slope * stress;
-    e.ax = push * q.x;
-    e.ay = push * q.y;
+    const vreal radial = q.slope * stress;
+    e.ax = radial * q.x;
+    e.ay = radial * q.y;
     if (fx & FX_LAMINAR) {
         const vreal weight = fx_laminar(&q, inv, k);
         e.ax = e.ax - weight * q.u;
@@ -141,9 +141,9 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
         stress = a->p + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
                                      lane(b, PACKED_LIFT_Y), k);
     if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
-    const vreal push = q.slope * stress;
-    e.ax = push * q.x;
-    e.ay = push * q.y;
+    const vreal radial = q.slope * stress;
+    e.ax = radial * q.x;
+    e.ay = radial * q.y;
     if (fx & FX_NO_SLIP) {
         const vreal weight = lane(b, PACKED_STICKS) * fx_laminar(&q, inv, k);
         e.ax = e.ax - weight * (a->u - lane(b, PACKED_MIRROR_U));

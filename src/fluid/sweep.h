@@ -82,18 +82,18 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     const struct fluid_constants *const k = &f->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
     const double mix = 2 * k->delta * k->c0;
-    four_double full = 1 + FOUR(p->dens, i), push = slope / k->rho0 + 0 * full;
+    four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
     if (f->effects & FX_MASSES) { /* all sums contain the volume of the particle itself */
-        push = push / FOUR(p->m, i);
+        factor = factor / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
     if (f->effects & FX_DAMPER)
         store_four(p->swell_new + i, -slope * full * (rate / (1 + FOUR(p->dens, i))), count);
     const four_double ax =
-        push * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
+        factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
     const four_double ay =
-        push * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
+        factor * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
     if (fx & FX_DIFFUSION)
         rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
     store_four(p->ax + i, ax, count);
@@ -206,7 +206,7 @@ typedef void SWEEP(chunk)(const struct fluid *f, struct particles *p, const stru
                           struct fluid_extremes *top);
 
 #define VARIANT(variant, set)                                                             \
-    static void SWEEP(share_##variant)(const struct fluid *f, struct particles *p,        \
+    static void SWEEP(chunk_##variant)(const struct fluid *f, struct particles *p,        \
                                        const struct cells *c, int32_t first, int32_t end, \
                                        const struct vector_constants *k,                  \
                                        struct fluid_extremes *top)                        \
@@ -244,7 +244,7 @@ static void all_chunks(struct fluid *f, struct particles kinds[KIND_COUNT], cons
     static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT], \
                                        const struct cells *c)                                \
     {                                                                                        \
-        all_chunks(f, kinds, c, SWEEP(share_##variant));                                     \
+        all_chunks(f, kinds, c, SWEEP(chunk_##variant));                                     \
     }
 #include "fluid/variants.def"
 VARIANT(any, ANY_EFFECTS)

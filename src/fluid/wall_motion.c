@@ -14,7 +14,7 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
                             const struct particles *walls, struct diag *d)
 {
     memset(m, 0, sizeof *m);
-    m->idle_is_work = s->test.work_on_idle;
+    m->never_skip = s->test.never_skip;
     m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
     if (!m->body) return ERR_MEMORY;
     for (int k = 0; k < s->n_wall; k++) {
@@ -52,7 +52,7 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct part
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
         const struct motion_state now = motion_at(s, b->motion, time);
-        if (b->known && same_place(&now, &b->placed) && !m->idle_is_work) continue;
+        if (b->known && same_place(&now, &b->placed) && !m->never_skip) continue;
         b->placed = now;
         b->known = true;
         b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;
@@ -63,7 +63,7 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct part
 
 void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls)
 {
-    if (m->idle_is_work || m->moved) cells_sort(c, KIND_WALL, walls);
+    if (m->never_skip || m->moved) cells_sort(c, KIND_WALL, walls);
     m->moved = false;
 }
 

@@ -19,8 +19,8 @@ struct moving_wall {
 struct wall_motion {
     int n;
     struct moving_wall *body;
-    bool moved;        /* any wall, since the last sorting */
-    bool idle_is_work; /* nothing is skipped; set by tests */
+    bool moved;      /* any wall, since the last sorting */
+    bool never_skip; /* nothing is skipped; set by tests */
 };
 
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,

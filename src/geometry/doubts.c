@@ -16,7 +16,7 @@ static void warn(const struct scene *s, int line, struct diag *d, const char *te
 
 /* For each strip of width dp along gravity: the coordinate along gravity of the last wall or body
  * particle in it. */
-struct floors {
+struct supports {
     double along[2], across[2]; /* unit vectors: of gravity, and to its left */
     double low;                 /* coordinate across of the first strip, m */
     int64_t n;
@@ -25,12 +25,12 @@ struct floors {
 
 static double dot(const double a[2], double x, double y) { return a[0] * x + a[1] * y; }
 
-static int64_t strip_of(const struct floors *f, double dp, double x, double y)
+static int64_t strip_of(const struct supports *f, double dp, double x, double y)
 {
     return (int64_t)floor((dot(f->across, x, y) - f->low) / dp);
 }
 
-static enum err find_floors(struct floors *f, const struct sampler *g, struct arena *a)
+static enum err find_supports(struct supports *f, const struct sampler *g, struct arena *a)
 {
     const struct scene *const s = g->scene;
     const double dp = s->top.dp, size = hypot(s->top.gravity[0], s->top.gravity[1]);
@@ -67,8 +67,8 @@ static enum err warn_of_missing_floor(struct sampler *g)
     const struct scene_points *const p = &s->points[KIND_FLUID];
     if (p->n == 0 || (s->top.gravity[0] == 0 && s->top.gravity[1] == 0)) return ERR_OK;
     if (s->domain.periodic != PERIODIC_NONE) return ERR_OK; /* it may enter again */
-    struct floors f;
-    TRY(find_floors(&f, g, &g->temp));
+    struct supports f;
+    TRY(find_supports(&f, g, &g->temp));
     int64_t falling = 0, first = -1;
     for (int64_t k = 0; k < p->n; k++) {
         const int64_t strip = strip_of(&f, s->top.dp, p->x[k], p->y[k]);

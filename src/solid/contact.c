@@ -56,11 +56,11 @@ static double touch_energy(const struct pair *q, double r)
 }
 
 /* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
-static double touch_push(const struct pair *q, double r)
+static double elastic_force(const struct pair *q, double r)
 {
     return q->stiffness * q->reach * (q->reach / r - 1);
 }
-static double touch_stiffness(const struct pair *q, double r)
+static double elastic_stiffness(const struct pair *q, double r)
 {
     return q->stiffness * square(q->reach / min2(r, q->reach));
 }
@@ -68,30 +68,30 @@ static double touch_stiffness(const struct pair *q, double r)
 /* T-62 for a point at (x, y) from its foot on an edge, at distance r and relative velocity (vx,
  * vy). The dashpot may reduce the repulsion but not turn it into attraction. Friction is Coulomb's,
  * and below the onset of sliding proportional to the speed. */
-static void touch_force(const struct pair *q, const double way[2], double r, const double v[2],
+static void point_force(const struct pair *q, const double offset[2], double r, const double v[2],
                         double f[2])
 {
     f[0] = f[1] = 0;
     if (!(r < q->reach) || r == 0) return;
-    const double x = way[0] / r, y = way[1] / r, along = v[0] * x + v[1] * y;
-    const double push = max2(0, touch_push(q, r) - q->damping * along);
-    f[0] = push * x;
-    f[1] = push * y;
+    const double x = offset[0] / r, y = offset[1] / r, along = v[0] * x + v[1] * y;
+    const double normal = max2(0, elastic_force(q, r) - q->damping * along);
+    f[0] = normal * x;
+    f[1] = normal * y;
     if (!(q->friction > 0)) return;
     const double sx = v[0] - along * x, sy = v[1] - along * y, slip = sqrt(sx * sx + sy * sy);
     if (!(slip > 0)) return;
-    const double drag = min2(q->friction * push, q->grip * slip) / slip;
-    f[0] -= drag * sx;
-    f[1] -= drag * sy;
+    const double tangential = min2(q->friction * normal, q->grip * slip) / slip;
+    f[0] -= tangential * sx;
+    f[1] -= tangential * sy;
 }
 
 /* The same for one of the points. */
-static void touch_end(const struct contact *c, const struct pair *q, int32_t point, int32_t end,
+static void end_force(const struct contact *c, const struct pair *q, int32_t point, int32_t end,
                       double f[2])
 {
-    const double way[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
+    const double offset[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
     const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
-    touch_force(q, way, sqrt(way[0] * way[0] + way[1] * way[1]), v, f);
+    point_force(q, offset, sqrt(offset[0] * offset[0] + offset[1] * offset[1]), v, f);
 }
 
 /* Velocity of a point relative to the nearest place on an edge. */
@@ -113,12 +113,12 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     if (!law.on || !(foot.distance < law.reach)) return false;
     const struct pair q = pair_of(c, &law, point, edge);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
-    const double s = foot.at, way[2] = {foot.x, foot.y};
+    const double s = foot.at, offset[2] = {foot.x, foot.y};
     double v[2], f[2], fa[2], fb[2];
     relative_velocity(c, point, edge, s, v);
-    touch_force(&q, way, foot.distance, v, f);
-    touch_end(c, &q, point, a, fa);
-    touch_end(c, &q, point, b, fb);
+    point_force(&q, offset, foot.distance, v, f);
+    end_force(c, &q, point, a, fa);
+    end_force(c, &q, point, b, fb);
     for (int k = 0; k < 2; k++) {
         const double ga = c->share[a] * fa[k], gb = c->share[b] * fb[k];
         out->p[k] = f[k] - ga - gb;
@@ -292,7 +292,7 @@ static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
     const double own = s == 0 ? 1 - c->share[e->a] : s == 1 ? 1 - c->share[e->b] : 1;
     const double both =
         moves_freely(c, p, k) + (1 - s) * moves_freely(c, p, e->a) + s * moves_freely(c, p, e->b);
-    const double stiffness = own * both * touch_stiffness(q, r);
+    const double stiffness = own * both * elastic_stiffness(q, r);
     const double damping = own * both * max2(q->damping, q->grip);
     add_row(c, p, k, 1, stiffness, damping);
     add_row(c, p, e->a, 1 - s, stiffness, damping);

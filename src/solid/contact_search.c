@@ -169,7 +169,7 @@ static void keep_pair(void *context, int32_t edge)
     const double margin = c->margin[contact_with(c, l->point, edge)];
     if (!(contact_foot(c, l->point, edge).distance < law.reach + margin)) return;
     if (c->n_pairs == c->most_pairs && !grow(c)) {
-        c->crowded = true;
+        c->list_full = true;
         return;
     }
     int64_t at = c->n_pairs++;

@@ -287,10 +287,10 @@ void solid_part_store(const struct solid_part *part, const struct particles *who
     give(part, from, to, COUNT_OF(from));
 }
 
-void solid_part_show(struct solid_part *part, const struct particles *whole)
+void solid_part_results(struct solid_part *part, const struct particles *whole)
 {
     double *const from[] = {SHOWN_FIELDS(&part->p)}, *const to[] = {SHOWN_FIELDS(whole)};
-    part->solid.sweeps->show(&part->solid, &part->p, 0, part->solid.n_packs);
+    part->solid.sweeps->write_stress(&part->solid, &part->p, 0, part->solid.n_packs);
     give(part, from, to, COUNT_OF(from));
 }
 

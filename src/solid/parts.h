@@ -9,7 +9,7 @@
 #include "solid/types.h"
 
 /* The fields of a halo exchange. */
-enum hand {
+enum halo_fields {
     HALO_POSITION = 1, /* displacement and velocity */
     HALO_GRADIENT = 2, /* displacement gradient */
     HALO_STRESS = 4
@@ -24,7 +24,7 @@ enum err solid_parts_create(struct solid *s, struct arena *a, const struct parti
  * their last evaluation: gradients, stresses and accelerations. */
 void solid_part_load(struct solid_part *part, const struct particles *whole);
 void solid_part_store(const struct solid_part *part, const struct particles *whole);
-void solid_part_show(struct solid_part *part, const struct particles *whole);
+void solid_part_results(struct solid_part *part, const struct particles *whole);
 
 /* Sends the halo fields that others need from this part, and waits for those that it needs. All
  * parts make the same calls in the same order. */

@@ -222,9 +222,9 @@ static void add_own_forces(const struct solid *s, struct particles *p, int64_t f
                 ax += p->fx[i] * per_mass;
                 ay += p->fy[i] * per_mass;
             }
-            if (s->push[0]) {
-                ax += s->push[0][i];
-                ay += s->push[1][i];
+            if (s->external[0]) {
+                ax += s->external[0][i];
+                ay += s->external[1][i];
             }
             p->sx[i] = (ax + body->gravity[0]) * p->free[i];
             p->sy[i] = (ay + body->gravity[1]) * p->free[i];
@@ -288,9 +288,9 @@ static int64_t first_of(const struct chunk *own)
 }
 
 /* Packs new positions and velocities for the sweeps immediately. */
-static void look(const struct chunk *own)
+static void pack_motion(const struct chunk *own)
 {
-    sweep(own, own->s->sweeps->look);
+    sweep(own, own->s->sweeps->pack_motion);
     together(own, HALO_POSITION);
 }
 
@@ -307,7 +307,7 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }
-    look(own);
+    pack_motion(own);
 }
 
 static void move(const struct chunk *own, double kick, double drift)
@@ -326,10 +326,10 @@ void solid_stress(struct solid *s, struct particles *p)
 #pragma omp parallel num_threads(s->threads)
     {
         const struct chunk own = chunk_of(s, p);
-        sweep(&own, s->sweeps->look);
+        sweep(&own, s->sweeps->pack_motion);
         together(&own, HALO_POSITION);
         stress_sweeps(&own);
-        sweep(&own, s->sweeps->show);
+        sweep(&own, s->sweeps->write_stress);
     }
 }
 
@@ -366,7 +366,7 @@ static void place_clamps(const struct chunk *own, double time)
     if (!s->loads) return;
 #pragma omp single
     loads_place_clamps(s->loads, own->p, time);
-    look(own);
+    pack_motion(own);
 }
 
 static void book_work(struct solid *s, const struct particles *p, double dt)
@@ -403,7 +403,7 @@ static bool steps_parts(const struct solid *s, int n)
 {
     enum { WORTH_COPYING = 4 };
     return s->part && n >= WORTH_COPYING && !s->contact && !s->loads && !s->gravity &&
-           !s->push[0] && thread_team() == s->threads;
+           !s->external[0] && thread_team() == s->threads;
 }
 
 /* By all threads together. */
@@ -447,8 +447,8 @@ void solid_show(const struct solid *s, struct particles *p)
 #pragma omp parallel num_threads(s->threads)
     {
         const struct chunk own = chunk_of(s, p);
-        if (!s->in_parts) sweep(&own, s->sweeps->show);
+        if (!s->in_parts) sweep(&own, s->sweeps->write_stress);
 #pragma omp for schedule(static)
-        for (int k = 0; k < (s->in_parts ? s->threads : 0); k++) solid_part_show(&s->part[k], p);
+        for (int k = 0; k < (s->in_parts ? s->threads : 0); k++) solid_part_results(&s->part[k], p);
     }
 }

@@ -124,7 +124,7 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     bare.contact = NULL;
     bare.loads = NULL;
     bare.gravity = NULL;
-    bare.push[0] = bare.push[1] = NULL;
+    bare.external[0] = bare.external[1] = NULL;
 
     const size_t bytes = (size_t)p->n * sizeof *p->vx;
     double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};

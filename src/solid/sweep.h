@@ -41,7 +41,7 @@ SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pa
     for (int64_t j; offset < end && (j = (pack)->i + *offset, true); offset++, slot += SLOT_SIZE)
 
 /* In double precision the packed fields are the particle fields. */
-static void look(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void pack_motion(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     if (!SPLIT || first == last) return;
     real *const ux = s->lane[S_UX], *const uy = s->lane[S_UY], *const low_x = s->lane[S_LOW_X],
@@ -239,7 +239,7 @@ static void forces(const struct solid *s, struct particles *p, int64_t first, in
 }
 
 /* In double precision the packed fields are the particle fields. */
-static void show(const struct solid *s, struct particles *p, int64_t first, int64_t last)
+static void write_stress(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     if (!SPLIT) return;
     double *const to[] = {p->Uxx, p->Uxy, p->Uyx, p->Uyy, p->Pxx, p->Pxy, p->Pyx, p->Pyy};
@@ -278,11 +278,11 @@ const struct solid_sweeps SWEEP(solid_sweeps) = {
     .name = SWEEP_LABEL,
     .lanes = LANES,
     .size = sizeof(real),
-    .look = look,
+    .pack_motion = pack_motion,
     .stress = stress,
     .pairs = pairs,
     .damping = damping,
     .forces = forces,
-    .show = show,
+    .write_stress = write_stress,
     .hourglass = hourglass,
 };

@@ -82,14 +82,14 @@ typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t fir
  * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */
 struct solid_sweeps {
     const char *name;
-    int lanes;            /* particles of a full pack */
-    size_t size;          /* bytes of a number */
-    solid_sweep *look;    /* packs displacement and velocity of p */
-    solid_sweep *stress;  /* gradient, and stress except of variational bodies */
-    solid_sweep *pairs;   /* forces of pairs, and stress of variational bodies */
-    solid_sweep *damping; /* adds the Kelvin-Voigt stress */
-    solid_sweep *forces;  /* acceleration by neighbours to sx, sy of p */
-    solid_sweep *show;    /* gradient and stress to p */
+    int lanes;                 /* particles of a full pack */
+    size_t size;               /* bytes of a number */
+    solid_sweep *pack_motion;  /* packs displacement and velocity of p */
+    solid_sweep *stress;       /* gradient, and stress except of variational bodies */
+    solid_sweep *pairs;        /* forces of pairs, and stress of variational bodies */
+    solid_sweep *damping;      /* adds the Kelvin-Voigt stress */
+    solid_sweep *forces;       /* acceleration by neighbours to sx, sy of p */
+    solid_sweep *write_stress; /* gradient and stress to p */
     /* Energy of the hourglass force of each particle of a pack, J/m, [lanes]. */
     void (*hourglass)(const struct solid *s, const struct solid_pack *pack, double *energy);
 };
@@ -123,7 +123,7 @@ struct solid {
     struct loads *loads;
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
     const struct scene *gravity; /* varies in time: its change since t = 0 */
-    const double *push[2];       /* accelerations, x and y, m/s^2 */
+    const double *external[2];   /* accelerations, x and y, m/s^2 */
     double
         impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
     double work;   /* of walls, clamps and loads on the solid since the last query, J/m */
@@ -208,7 +208,7 @@ struct contact {
     struct contact_mean *mean;   /* [n_groups] */
     struct motion_state *motion; /* [n_walls] now */
     int stale;                   /* some point has moved by half of the margin */
-    bool crowded;                /* no memory for a longer list */
+    bool list_full;              /* no memory for a longer list */
     double power;                /* of moving walls at the last call of contact_forces, W/m */
     /* What the next step must respect, from contact_watch. */
     bool near;              /* some surfaces may touch */

@@ -24,25 +24,25 @@ void move_walls(struct simulation *s, double time)
     wall_motion_apply(&s->wall_motion, s->scene, &s->kind[KIND_WALL], time);
 }
 
-void find_push(struct simulation *s, enum kind kind, double time)
+void find_external(struct simulation *s, enum kind kind, double time)
 {
-    struct push *const push = &s->push[kind];
-    const size_t bytes = (size_t)s->kind[kind].n * sizeof *push->ax;
-    memset(push->ax, 0, bytes);
-    memset(push->ay, 0, bytes);
-    push->at(push->context, time, &s->kind[kind], push->ax, push->ay);
+    struct external *const external = &s->external[kind];
+    const size_t bytes = (size_t)s->kind[kind].n * sizeof *external->ax;
+    memset(external->ax, 0, bytes);
+    memset(external->ay, 0, bytes);
+    external->at(external->context, time, &s->kind[kind], external->ax, external->ay);
 }
 
 /* Accelerations from outside count in the step bound like those of the model. */
-static void push_fluid(struct simulation *s, double time)
+static void add_external(struct simulation *s, double time)
 {
-    const struct push *const push = &s->push[KIND_FLUID];
+    const struct external *const external = &s->external[KIND_FLUID];
     struct particles *const p = &s->kind[KIND_FLUID];
-    find_push(s, KIND_FLUID, time);
+    find_external(s, KIND_FLUID, time);
     double top = s->fluid.extremes.acceleration2;
     for (int64_t i = 0; i < p->n; i++) {
-        p->ax[i] += push->ax[i];
-        p->ay[i] += push->ay[i];
+        p->ax[i] += external->ax[i];
+        p->ay[i] += external->ay[i];
         top = max2(top, square(p->ax[i]) + square(p->ay[i]));
     }
     s->fluid.extremes.acceleration2 = top;
@@ -50,7 +50,7 @@ static void push_fluid(struct simulation *s, double time)
 
 /* The force arrays still hold the interface impulse applied in the last step. Particles without
  * fluid nearby get no new force from an evaluation, so clear them all. */
-static void forget_given(struct particles *p)
+static void clear_applied_impulse(struct particles *p)
 {
     memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
     memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
@@ -70,12 +70,12 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
-    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) forget_given(&s->kind[KIND_SOLID]);
+    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) clear_applied_impulse(&s->kind[KIND_SOLID]);
     if (s->effects & FX_OPEN) set_buffers(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
-    if (s->push[KIND_FLUID].at) push_fluid(s, time);
-    if (s->push[KIND_SOLID].at) find_push(s, KIND_SOLID, time);
+    if (s->external[KIND_FLUID].at) add_external(s, time);
+    if (s->external[KIND_SOLID].at) find_external(s, KIND_SOLID, time);
 }
 
 void accept_evaluation(struct simulation *s)
@@ -142,13 +142,14 @@ void update_extremes(struct simulation *s) { advance_fluid(s, NULL, NULL); }
 
 void simulation_refresh(struct simulation *s)
 {
-    if ((s->effects & FX_FLUID) && !s->crowded) {
+    if ((s->effects & FX_FLUID) && !s->cells_overfull) {
         double seconds[PHASE_COUNT];
         memcpy(seconds, s->phase_seconds, sizeof seconds);
         evaluate_fluid(s, s->state.time);
         s->state.evaluations--;
         /* A caller's own forces and motions may change between two steps. */
-        s->evaluated = !s->push[KIND_FLUID].at && !s->push[KIND_SOLID].at && !s->scene->motion_hook;
+        s->evaluated =
+            !s->external[KIND_FLUID].at && !s->external[KIND_SOLID].at && !s->scene->motion_hook;
         if (!s->evaluated) memcpy(s->phase_seconds, seconds, sizeof seconds);
     }
     if (!(s->effects & FX_SOLID)) return;

@@ -117,7 +117,7 @@ double simulation_level(const struct simulation *s, double x, double y)
     return wet ? top : y;
 }
 
-struct crowd {
+struct neighbour_count {
     int64_t self;
     int neighbours;
 };
@@ -125,9 +125,9 @@ struct crowd {
 static void count_neighbour(const struct simulation *s, enum kind kind, int64_t i, double r,
                             void *sums)
 {
-    struct crowd *const crowd = sums;
+    struct neighbour_count *const count = sums;
     (void)kind;
-    if (i != crowd->self && r < KERNEL_REACH * s->fluid.k.h) crowd->neighbours++;
+    if (i != count->self && r < KERNEL_REACH * s->fluid.k.h) count->neighbours++;
 }
 
 /* The thinnest tongue of water is a row of particles; the first of them has two others within
@@ -135,9 +135,9 @@ static void count_neighbour(const struct simulation *s, enum kind kind, int64_t 
 static bool belongs_together(const struct simulation *s, int64_t i)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
-    struct crowd crowd = {i, 0};
-    each_near(s, KIND_FLUID, p->x[i], p->y[i], count_neighbour, &crowd);
-    return crowd.neighbours >= 2;
+    struct neighbour_count count = {i, 0};
+    each_near(s, KIND_FLUID, p->x[i], p->y[i], count_neighbour, &count);
+    return count.neighbours >= 2;
 }
 
 double simulation_front(const struct simulation *s, int direction)

@@ -146,7 +146,7 @@ static enum err check_contact(struct simulation *s, struct diag *d)
 {
     const struct contact_depth *const at = &s->contact.deepest;
     char one[CONTACT_NAME], other[CONTACT_NAME];
-    if (s->contact.crowded)
+    if (s->contact.list_full)
         return diag_fail(d, ERR_MEMORY, "t = %.6g s: no memory for all pairs in contact",
                          s->state.time);
     if (at->overlap < OVERLAP_WARNING || (s->guard.warned_contact && at->overlap < OVERLAP_LIMIT))

@@ -41,7 +41,7 @@ void update_extremes(struct simulation *s);
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
-void find_push(struct simulation *s, enum kind kind, double time);
+void find_external(struct simulation *s, enum kind kind, double time);
 
 /* Sets position, velocity and acceleration of moving walls at a time. */
 void move_walls(struct simulation *s, double time);

@@ -210,20 +210,20 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     if (s->effects & FX_COUPLING) cells_sort(&s->cells, KIND_SOLID, solid);
     fluid_find_near(&s->fluid, &s->cells);
     s->state.sorts++;
-    const int32_t crowd = fluid_crowding(&s->cells);
-    s->crowded = crowd > CELL_CAPACITY;
+    const int32_t fullest = fluid_fullest_cell(&s->cells);
+    s->cells_overfull = fullest > CELL_CAPACITY;
     find_skin_left(s);
-    if (s->crowded && s->state.steps == 0)
+    if (s->cells_overfull && s->state.steps == 0)
         return diag_fail(d, ERR_INPUT,
                          "%d particles start in one cell of %.3g m, which has room for %d: a "
                          "smaller numerics.h_over_dp or a solid's dp nearer to the fluid's helps",
-                         crowd, s->cells.side[0], CELL_CAPACITY);
-    if (s->crowded)
+                         fullest, s->cells.side[0], CELL_CAPACITY);
+    if (s->cells_overfull)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some twenty "
             "belong: the run is unstable; a smaller cfl or another sound_speed may help",
-            s->state.time, crowd, s->cells.side[0]);
+            s->state.time, fullest, s->cells.side[0]);
     return ERR_OK;
 }
 
@@ -325,19 +325,21 @@ enum err simulation_create(struct simulation *s, const struct scene *scene, stru
     return e;
 }
 
-enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
-                         struct diag *d)
+enum err simulation_external(struct simulation *s, enum kind kind, external_function *at,
+                             void *context, struct diag *d)
 {
-    struct push *const push = &s->push[kind];
+    struct external *const external = &s->external[kind];
     const size_t n = (size_t)s->kind[kind].capacity;
-    if (!push->ax) push->ax = arena_alloc(&s->arena, n, sizeof *push->ax, "accelerations", d);
-    if (!push->ay) push->ay = arena_alloc(&s->arena, n, sizeof *push->ay, "accelerations", d);
-    if (!push->ax || !push->ay) return ERR_MEMORY;
-    push->at = at;
-    push->context = context;
+    if (!external->ax)
+        external->ax = arena_alloc(&s->arena, n, sizeof *external->ax, "accelerations", d);
+    if (!external->ay)
+        external->ay = arena_alloc(&s->arena, n, sizeof *external->ay, "accelerations", d);
+    if (!external->ax || !external->ay) return ERR_MEMORY;
+    external->at = at;
+    external->context = context;
     s->evaluated = false; /* without it */
-    if (kind == KIND_SOLID) s->solid.push[0] = at ? push->ax : NULL;
-    if (kind == KIND_SOLID) s->solid.push[1] = at ? push->ay : NULL;
+    if (kind == KIND_SOLID) s->solid.external[0] = at ? external->ax : NULL;
+    if (kind == KIND_SOLID) s->solid.external[1] = at ? external->ay : NULL;
     return ERR_OK;
 }
 
@@ -487,7 +489,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
         find_skin_left(s);
         if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
         if (s->effects & FX_WALL) forget_all_touch(&s->kind[KIND_WALL]);
-        if (fluid_crowding(&s->cells) > CELL_CAPACITY)
+        if (fluid_fullest_cell(&s->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
                              CELL_CAPACITY);
     }

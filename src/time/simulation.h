@@ -24,10 +24,10 @@ struct extremes {
 };
 
 /* Accelerations from outside, added to those of the model by a program that uses the library. */
-typedef void push_function(void *context, double time, const struct particles *p, double *ax,
-                           double *ay);
-struct push {
-    push_function *at; /* NULL: none */
+typedef void external_function(void *context, double time, const struct particles *p, double *ax,
+                               double *ay);
+struct external {
+    external_function *at; /* NULL: none */
     void *context;
     double *ax, *ay; /* m/s^2 */
 };
@@ -56,21 +56,22 @@ struct simulation {
     double shifted;   /* largest shift of a fluid particle in the last step, m; 0: no shifting */
     double skin_left; /* distance that two particles may move until a sorting is due, m */
     bool evaluated;   /* rates, pressures and the fluid's force are those of the present state */
-    bool crowded; /* cells hold more particles than the sweeps support: evaluations do nothing */
+    bool
+        cells_overfull; /* cells hold more particles than the sweeps support: evaluations do nothing */
     bool gravity_varies; /* with time */
     struct {
         int64_t n;
         double *value;
     } carried; /* by probes from step to step (output/probes.h): checkpointed, not hashed */
     struct guard guard;
-    struct push push[KIND_COUNT]; /* of fluid and solid */
+    struct external external[KIND_COUNT]; /* of fluid and solid */
 };
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
  * next evaluation on. It is called once for each evaluation of the fluid; the solid's sub-steps use
  * the same values. */
-enum err simulation_push(struct simulation *s, enum kind kind, push_function *at, void *context,
-                         struct diag *d) SPHFSI_CHECKED;
+enum err simulation_external(struct simulation *s, enum kind kind, external_function *at,
+                             void *context, struct diag *d) SPHFSI_CHECKED;
 
 /* Builds the state at time zero from a scene, or the arrays for it if a checkpoint is to be loaded.
  * After a failure there is nothing to free. */

@@ -72,9 +72,9 @@ void solid_only_step(struct simulation *s, double t_limit)
     const bool near = timestep_watch_contact(s, st->time, SOLID_BATCH);
     const enum bound binding = lone_bounds(s);
     const double bound = s->dt_bound[binding];
-    const bool pushed = s->push[KIND_SOLID].at != NULL;
-    if (pushed) find_push(s, KIND_SOLID, st->time);
-    const int batch = pushed || s->gravity_varies ? 1 : SOLID_BATCH;
+    const bool external = s->external[KIND_SOLID].at != NULL;
+    if (external) find_external(s, KIND_SOLID, st->time);
+    const int batch = external || s->gravity_varies ? 1 : SOLID_BATCH;
     /* Equal steps up to the limit, as in timestep_choose. Rounding of the times must not add a
      * step. */
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));

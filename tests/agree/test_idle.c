@@ -23,11 +23,11 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-static uint64_t run(bool work_on_idle, const char *integrator, double time)
+static uint64_t run(bool never_skip, const char *integrator, double time)
 {
-    rig_switches.work_on_idle = work_on_idle;
+    rig_switches.never_skip = never_skip;
     rig_open(&rig, scene, integrator, NULL);
-    rig_switches.work_on_idle = false;
+    rig_switches.never_skip = false;
     rig_run(&rig, time);
     return simulation_hash(&rig.sim);
 }

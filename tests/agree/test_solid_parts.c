@@ -127,11 +127,11 @@ static uint64_t change_over(int threads)
         TEST_ASSERT_TRUE(s->in_parts == (threads > 1));
         solid_advance(s, p, rig.sim.dt_solid, 2, round % 2);
         TEST_ASSERT_FALSE(s->in_parts);
-        s->push[0] = push[0];
-        s->push[1] = push[1];
+        s->external[0] = push[0];
+        s->external[1] = push[1];
         solid_advance(s, p, rig.sim.dt_solid, 5, round % 2);
         TEST_ASSERT_FALSE(s->in_parts);
-        s->push[0] = s->push[1] = NULL;
+        s->external[0] = s->external[1] = NULL;
         if (round == 2) simulation_hash(&rig.sim);
     }
     solid_advance(s, p, rig.sim.dt_solid, 7, false);

@@ -313,7 +313,7 @@ static void see_substeps(const char *integrator, double ahead, double less)
 {
     open(integrator, "numerics.multirate=on");
     rig.sim.dt_solid = 0.3e-5;
-    TEST_ASSERT_EQUAL(ERR_OK, simulation_push(&rig.sim, KIND_SOLID, look, NULL, &rig.diag));
+    TEST_ASSERT_EQUAL(ERR_OK, simulation_external(&rig.sim, KIND_SOLID, look, NULL, &rig.diag));
     static double a[2][MOST], j[2][MOST], w[2][MOST];
     memset(a, 0, sizeof a);
     memset(j, 0, sizeof j);
