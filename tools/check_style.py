@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import layers
+import prose
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -68,6 +69,18 @@ def check_programs(path, lines):
         call = PROGRAMS.search(line)
         if call and path.suffix in (".c", ".h", ".def"):
             report(path, number, f"{call[1]}() starts another program")
+
+
+REPORTS = ["accuracy.md", "fluid_verification.md", "mutants.md", "performance.md", "reliability.md",
+           "stability.md", "turek_hron.md", "validation.md"]
+
+
+def check_sentences(path):
+    """Reports that a tool writes and dated notes are left out."""
+    if path.name in REPORTS or "notes" in path.parts:
+        return
+    for line, count, sentence in prose.long_sentences(path):
+        report(path, line, f"a sentence of {count} words, more than {prose.LIMIT}: {sentence[:60]}")
 
 
 def check_flags():
@@ -153,6 +166,10 @@ def main():
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
     build = args.library[0].resolve().parent if args.library else None
+    for path in sorted([p for p in ROOT.rglob("*.md") if "build" not in p.parts] + code):
+        if path.suffix == ".md" or path.parts[len(ROOT.parts)] in ("src", "include", "bench"):
+            if path.suffix in prose.READERS:
+                check_sentences(path)
     for where, line, text in layers.findings(ROOT, build):
         report(where, line, text)
     check_flags()
