@@ -17,8 +17,8 @@
  * go to the message callback.
  *
  * NULL: a pointer must not be NULL unless its description allows it; the function then returns SPHFSI_INPUT.
- * Without a simulation sphfsi_time, sphfsi_end_time and sphfsi_time_step return NaN; sphfsi_steps,
- * sphfsi_count and sphfsi_hash return 0.
+ * Without a simulation sphfsi_time, sphfsi_end_time, sphfsi_time_step and sphfsi_next_output return NaN;
+ * sphfsi_steps, sphfsi_count and sphfsi_hash return 0.
  *
  * Threads: different simulations may be used from different threads at the same time; one simulation only
  * by one thread at a time, not always the same one. A second call into a simulation during a call returns
@@ -163,6 +163,10 @@ SPHFSI_API double sphfsi_time(const struct sphfsi_simulation *s);
 SPHFSI_API double sphfsi_end_time(const struct sphfsi_simulation *s);
 SPHFSI_API double sphfsi_time_step(const struct sphfsi_simulation *s);
 
+/** Time (s) of the next output that sphfsi_run would write of this case, at most the end time. Steps that end
+ * at these times have the bits of the program's run. */
+SPHFSI_API double sphfsi_next_output(const struct sphfsi_simulation *s);
+
 /** Number of steps taken, and of particles of a kind. */
 SPHFSI_API int64_t sphfsi_steps(const struct sphfsi_simulation *s);
 SPHFSI_API int64_t sphfsi_count(const struct sphfsi_simulation *s, enum sphfsi_kind kind);
@@ -187,6 +191,11 @@ enum { SPHFSI_PROBE_COLUMNS = 5 };
 SPHFSI_API enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                                            double values[SPHFSI_PROBE_COLUMNS]);
 
+/** Name of the k-th probe of the case (from 0), and of the c-th of its columns, such as M1_dx_m; NULL behind
+ * the last. */
+SPHFSI_API const char *sphfsi_probe_name(const struct sphfsi_simulation *s, int k);
+SPHFSI_API const char *sphfsi_probe_column(struct sphfsi_simulation *s, int k, int c);
+
 /** The particles, for a user's force; n items each, read only, valid during the call. */
 struct sphfsi_particles {
     double time; /**< s */
@@ -199,7 +208,8 @@ struct sphfsi_particles {
 
 /** A user's force: adds its accelerations (m/s^2) to ax and ay, which are zero before; n may be 0. It is
  * called at every evaluation of the rates, once or twice a step, and also when pressure is read. So it
- * should depend on its arguments only. The energy ledger does not contain its work. */
+ * should depend on its arguments only. The energy ledger does not contain its work, so the guard that stops a
+ * simulation which gains energy ends with the first force. */
 typedef void sphfsi_force(void *context, const struct sphfsi_particles *p, double *ax, double *ay);
 
 /** Sets the force on fluid or solid; NULL removes it. Clamped particles do not move. */

@@ -131,6 +131,11 @@ class Simulation:
         return lib.sphfsi_time_step(self._handle)
 
     @property
+    def next_output(self) -> float:
+        """Time of the next output of a run of the case, s. Steps that end at these times have its bits."""
+        return lib.sphfsi_next_output(self._handle)
+
+    @property
     def steps(self) -> int:
         """Number of steps taken."""
         return lib.sphfsi_steps(self._handle)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a simulation that the calling program steps. */
 #include "app/call.h"
+#include "app/due.h"
 #include "output/probes.h"
 #include "app/session.h"
-#include "output/snapshot.h"
+#include "output/point_data.h"
+#include "time/guards.h"
 
 #include <math.h>
 #include <stdatomic.h>
@@ -33,9 +35,12 @@ struct sphfsi_simulation {
     struct user_function force[KIND_COUNT];
     struct user_function *motion;          /* [n_motion]; NULL: none */
     double *computed[KIND_COUNT][D_COUNT]; /* fields that are computed when they are asked for */
+    char column[PROBE_COLUMN_TEXT];        /* that was asked for last */
     int threads;                           /* of its parallel regions */
     struct host host;                      /* what the call that is going on gives back */
     atomic_bool busy;                      /* a call is going on */
+    struct due energy;                     /* when the energy is looked at: a run's ledger */
+    bool pushed;                           /* a force has added energy that no account has */
     bool stopped;                          /* by a guard */
 };
 
@@ -63,16 +68,29 @@ static enum sphfsi_status end(struct sphfsi_simulation *s, const struct diag *d,
     return call_result(d, e);
 }
 
+/* At the times of the ledger, as a run does. */
+static enum err look_at_energy(struct sphfsi_simulation *s, struct diag *d)
+{
+    struct simulation *const sim = &s->session.simulation;
+    const double time = sim->state.time;
+    if (s->pushed || !due_now(&s->energy, time, time >= s->session.scene.top.end_time))
+        return ERR_OK;
+    due_pass(&s->energy, time);
+    const struct ledger now = simulation_ledger(sim);
+    return guards_energy(sim, &now, d);
+}
+
 static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi_options *o,
                                 struct diag *d)
 {
     TRY(session_open(&s->session, o, d));
     struct simulation *const sim = &s->session.simulation;
-    const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
-    if (e)
-        session_close(&s->session);
-    else
-        probes_follow(&s->probes, sim);
+    enum err e = probes_create(&s->probes, sim, &sim->arena, d);
+    if (!e) probes_follow(&s->probes, sim);
+    s->energy.written = -1;
+    due_begin(&s->energy, s->session.scene.output.ledger_interval, 0, false);
+    if (!e) e = look_at_energy(s, d);
+    if (e) session_close(&s->session);
     s->threads = thread_count();
     return e;
 }
@@ -119,8 +137,9 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
         return diag_fail(d, ERR_INPUT,
                          "step: the limit %.17g s is not later than the simulated time %.17g s",
                          limit, sim->state.time);
-    const enum err e = simulation_step(sim, limit, d);
+    enum err e = simulation_step(sim, limit, d);
     if (!e) probes_follow(&s->probes, sim);
+    if (!e) e = look_at_energy(s, d);
     s->stopped = e == ERR_GUARD;
     return e;
 }
@@ -160,6 +179,30 @@ double sphfsi_end_time(const struct sphfsi_simulation *s)
 double sphfsi_time_step(const struct sphfsi_simulation *s)
 {
     return s ? s->session.simulation.state.dt : (double)NAN;
+}
+
+/* The first multiple of an interval after the time, as a run finds it. */
+static double output_after(double interval, double time)
+{
+    struct due u = {.written = time};
+    due_begin(&u, interval, time, true);
+    while (due_time(&u) <= time) u.k++;
+    return due_time(&u);
+}
+
+double sphfsi_next_output(const struct sphfsi_simulation *s)
+{
+    if (!s) return (double)NAN;
+    const struct scene_output *const out = &s->session.scene.output;
+    const double interval[] = {out->ledger_interval, out->snapshot_interval,
+                               out->checkpoint_interval};
+    const double time = s->session.simulation.state.time;
+    double next = s->session.scene.top.end_time;
+    for (size_t k = 0; k < COUNT_OF(interval); k++)
+        next = min2(next, output_after(interval[k], time));
+    for (int k = 0; k < s->probes.n_files; k++)
+        next = min2(next, output_after(s->probes.file[k].interval, time));
+    return next;
 }
 
 int64_t sphfsi_steps(const struct sphfsi_simulation *s)
@@ -361,6 +404,19 @@ enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
     return end(s, &d, e);
 }
 
+const char *sphfsi_probe_name(const struct sphfsi_simulation *s, int k)
+{
+    if (!s || k < 0 || k >= s->session.scene.n_probe) return NULL;
+    return s->session.scene.probe[k].common.name;
+}
+
+const char *sphfsi_probe_column(struct sphfsi_simulation *s, int k, int c)
+{
+    if (!sphfsi_probe_name(s, k) || c < 0) return NULL;
+    const struct scene_probe *const sp = &s->session.scene.probe[k];
+    return probe_column(sp, c, s->column, sizeof s->column) ? s->column : NULL;
+}
+
 /* --- forces and motions of the program --- */
 
 static void add_user_force(void *context, double time, const struct particles *p, double *ax,
@@ -381,6 +437,7 @@ static enum err set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind, sp
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     s->force[kind] = (struct user_function){.of = s, .force = force, .context = context};
+    s->pushed |= force != NULL;
     return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind],
                                d);
 }

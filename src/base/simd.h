@@ -23,6 +23,10 @@
 #include <arm_neon.h>
 #define SIMD_NEON 1
 #define SIMD_BYTES 16
+#elif defined __wasm_relaxed_simd__
+#include <wasm_simd128.h>
+#define SIMD_WASM 1
+#define SIMD_BYTES 16
 #else
 #define SIMD_BYTES 16
 #endif
@@ -179,6 +183,37 @@ SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)vabsq_f32((float32x4_
 SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)vabsq_f64((float64x2_t)a); }
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
+#elif defined SIMD_WASM
+/* relaxed_madd rounds once or twice, as the machine does: a program tests that before it relies on it
+ * (web/exports.c). pmin(b, a) = a < b ? a : b. */
+SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
+{
+    return (vfloat)wasm_f32x4_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);
+}
+SPHFSI_INLINE vdouble vfma_double(vdouble a, vdouble b, vdouble c)
+{
+    return (vdouble)wasm_f64x2_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);
+}
+SPHFSI_INLINE vfloat vmin_float(vfloat a, vfloat b)
+{
+    return (vfloat)wasm_f32x4_pmin((v128_t)b, (v128_t)a);
+}
+SPHFSI_INLINE vdouble vmin_double(vdouble a, vdouble b)
+{
+    return (vdouble)wasm_f64x2_pmin((v128_t)b, (v128_t)a);
+}
+SPHFSI_INLINE vfloat vmax_float(vfloat a, vfloat b)
+{
+    return (vfloat)wasm_f32x4_pmax((v128_t)b, (v128_t)a);
+}
+SPHFSI_INLINE vdouble vmax_double(vdouble a, vdouble b)
+{
+    return (vdouble)wasm_f64x2_pmax((v128_t)b, (v128_t)a);
+}
+SPHFSI_INLINE vfloat vabs_float(vfloat a) { return (vfloat)wasm_f32x4_abs((v128_t)a); }
+SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)wasm_f64x2_abs((v128_t)a); }
+SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)wasm_f32x4_sqrt((v128_t)a); }
+SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)wasm_f64x2_sqrt((v128_t)a); }
 #else
 #define SIMD_LANEWISE(type, name, lanes, value)          \
     type result = {0};                                   \

@@ -187,14 +187,24 @@ static enum err create_means(struct probes *p, struct simulation *s, struct aren
 
 /* --- files --- */
 
-/* Appends ",<probe>_<ending>" for each column of a probe. */
-static size_t name_columns(char *header, size_t size, size_t at, const char *name, int quantity)
+bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size)
 {
-    for (const char *ending = endings[quantity]; *ending;) {
-        const int length = (int)strcspn(ending, ",");
-        at += (size_t)snprintf(header + at, size - at, ",%s_%.*s", name, length, ending);
-        ending += length + (ending[length] == ',');
+    const char *ending = endings[sp->quantity];
+    for (; column > 0 && *ending; column--) {
+        ending += strcspn(ending, ",");
+        ending += *ending == ',';
     }
+    const int length = (int)strcspn(ending, ",");
+    snprintf(name, size, "%s_%.*s", sp->common.name, length, ending);
+    return length > 0;
+}
+
+/* Appends the columns of a probe, each after a comma. */
+static size_t name_columns(char *header, size_t size, size_t at, const struct scene_probe *sp)
+{
+    char name[PROBE_COLUMN_TEXT];
+    for (int c = 0; probe_column(sp, c, name, sizeof name); c++)
+        at += (size_t)snprintf(header + at, size - at, ",%s", name);
     return at;
 }
 
@@ -203,7 +213,7 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
                             struct diag *d)
 {
     struct probe_file *const f = &p->file[p->n_files];
-    const size_t size = 8 + (size_t)p->n * 5 * (SCENE_NAME + 24);
+    const size_t size = 8 + (size_t)p->n * PROBE_MAX_COLUMNS * PROBE_COLUMN_TEXT;
     char *const header = arena_alloc(a, size, 1, "header of probes.csv", d);
     if (!header) return ERR_MEMORY;
     size_t at = (size_t)snprintf(header, size, "time_s");
@@ -212,7 +222,7 @@ static enum err create_file(struct probes *p, const struct scene *scene, int onl
         const struct scene_probe *const sp = &scene->probe[k];
         if (only >= 0 ? k != only : sp->interval > 0) continue;
         p->probe[k].file = p->n_files;
-        at = name_columns(header, size, at, sp->common.name, sp->quantity);
+        at = name_columns(header, size, at, sp);
         f->columns += p->probe[k].columns;
         f->refresh |= needs_refresh(sp->quantity);
         f->interval = sp->interval > 0 ? sp->interval : scene->output.probe_interval;

@@ -52,7 +52,7 @@ struct probes {
     struct probe_file *file;
 };
 
-enum { PROBE_MAX_COLUMNS = 5 };
+enum { PROBE_MAX_COLUMNS = 5, PROBE_COLUMN_TEXT = SCENE_NAME + 24 };
 
 /* Finds the particles and weights of each probe, and the columns of each file; the arena owns the memory.
  * ERR_INPUT: a probe is too far from its body. */
@@ -64,6 +64,9 @@ void probes_follow(const struct probes *p, struct simulation *s);
 
 /* One row of a file: the time, then the values of its probes. */
 void probes_sample(const struct probes *p, struct simulation *s, int file, double *row);
+
+/* Name of a column of a probe, <probe>_<quantity>_<unit>; false: it has no such column. */
+bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size);
 
 /* The values of one probe now, as many as it has columns. */
 void probes_values(const struct probes *p, struct simulation *s, int probe, double *row);

@@ -19,10 +19,6 @@ struct snapshots {
     struct publishing publishing;
 };
 
-/* Value of one particle in a floating dataset; simulation_refresh comes first. */
-double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
-                      int column);
-
 /* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or
  * -1. */
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,

@@ -4,30 +4,9 @@
 #define SPHFSI_OUTPUT_SNAPSHOT_FILE_H
 
 #include "case/scene.h"
+#include "output/point_data.h"
 
 #include <hdf5.h>
-
-/* The datasets below /VTKHDF, in the order of the table in output/snapshot_file.c. */
-enum data {
-    D_POINTS_COUNT,
-    D_CELLS_COUNT,
-    D_IDS_COUNT,
-    D_TIME,
-    D_PARTS_BEFORE,
-    D_PARTS,
-    D_POINTS_BEFORE,
-    D_CELLS_BEFORE,
-    D_IDS_BEFORE,
-    D_POINTS,
-    D_CONNECTIVITY,
-    D_OFFSETS,
-    D_TYPES,
-#define POINTDATA(NAME, name, item, width, choice) D_##NAME,
-#include "case/pointdata.def"
-#undef POINTDATA
-    D_COUNT,
-    D_FIRST_POINTDATA = D_TYPES + 1
-};
 
 /* The datasets of a scene's file, and their precision and compression. */
 struct snapshot_layout {

@@ -4,6 +4,7 @@
 #include "tiny.h"
 #include "unity.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -162,6 +163,51 @@ static void a_run_writes_its_files(void)
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
 }
 
+/* The hash that a run's summary has, as its 16 digits. */
+static void hash_of_run(const char *folder, char hash[17])
+{
+    char path[600], text[8192] = "";
+    snprintf(path, sizeof path, "%s/summary.json", folder);
+    FILE *const file = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    const char *const at = strstr(text, "\"state_hash\"");
+    TEST_ASSERT_NOT_NULL(at);
+    TEST_ASSERT_EQUAL_INT(1, sscanf(at, "\"state_hash\": \"%16[0-9a-f]\"", hash));
+}
+
+static void steps_to_the_outputs_have_the_bits_of_a_run(void)
+{
+    struct sphfsi_options o = tiny_options();
+    char of_run[17] = "", here[17];
+    o.out = tiny_path("bits");
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
+    hash_of_run(o.out, of_run);
+    while (sphfsi_time(s) < sphfsi_end_time(s)) {
+        const double next = sphfsi_next_output(s);
+        TEST_ASSERT_TRUE(next > sphfsi_time(s) && next <= sphfsi_end_time(s));
+        TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_advance(s, next));
+    }
+    snprintf(here, sizeof here, "%016llx", (unsigned long long)sphfsi_hash(s));
+    TEST_ASSERT_EQUAL_STRING(of_run, here);
+}
+
+static void probes_have_names(void)
+{
+    TEST_ASSERT_EQUAL_STRING("M1", sphfsi_probe_name(s, 0));
+    TEST_ASSERT_EQUAL_STRING("M1_dx_m", sphfsi_probe_column(s, 0, 0));
+    TEST_ASSERT_EQUAL_STRING("M1_dy_m", sphfsi_probe_column(s, 0, 1));
+    TEST_ASSERT_NULL(sphfsi_probe_column(s, 0, 2));
+    TEST_ASSERT_NULL(sphfsi_probe_column(s, 0, -1));
+    TEST_ASSERT_EQUAL_STRING("P_p_Pa", sphfsi_probe_column(s, 2, 0));
+    TEST_ASSERT_NULL(sphfsi_probe_name(s, -1));
+    TEST_ASSERT_NULL(sphfsi_probe_name(s, 1000));
+    TEST_ASSERT_NULL(sphfsi_probe_column(s, 1000, 0));
+    TEST_ASSERT_NULL(sphfsi_probe_name(NULL, 0));
+    TEST_ASSERT_NULL(sphfsi_probe_column(NULL, 0, 0));
+}
+
 static void a_request_stops_a_run(void)
 {
     struct sphfsi_requests requests = {.stop = 15};
@@ -195,6 +241,8 @@ int main(void)
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);
     RUN_TEST(a_run_writes_its_files);
+    RUN_TEST(steps_to_the_outputs_have_the_bits_of_a_run);
+    RUN_TEST(probes_have_names);
     RUN_TEST(a_request_stops_a_run);
     RUN_TEST(nearest_names);
     return UNITY_END();

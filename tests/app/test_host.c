@@ -432,7 +432,7 @@ static void what_is_out_of_range_has_an_answer(void)
     TEST_ASSERT_NULL(sphfsi_nearest("a", NULL, 1));
     TEST_ASSERT_NULL(sphfsi_nearest("a", one, 1));
     TEST_ASSERT_TRUE(isnan(sphfsi_time(NULL)) && isnan(sphfsi_end_time(NULL)) &&
-                     isnan(sphfsi_time_step(NULL)));
+                     isnan(sphfsi_time_step(NULL)) && isnan(sphfsi_next_output(NULL)));
     TEST_ASSERT_TRUE(sphfsi_steps(NULL) == 0 && sphfsi_count(NULL, SPHFSI_FLUID) == 0 &&
                      sphfsi_hash(NULL) == 0);
     TEST_ASSERT_NULL(sphfsi_field_name(NULL, SPHFSI_FLUID, 0));

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+#include "output/point_data.h"
+
+#include "fluid/eos.h"
+
+/* Cauchy stress, in the order of the file: xx yy zz xy yz xz. */
+static double stress_value(const double sigma[4], int column)
+{
+    static const int order[] = {0, 1, 3, 2};
+    return column < (int)COUNT_OF(order) ? sigma[order[column]] : 0;
+}
+
+static double vector_value(double x, double y, int column)
+{
+    return column == 0 ? x : column == 1 ? y : 0;
+}
+
+double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+                      int column)
+{
+    const struct particles *p = &s->kind[kind];
+    double sigma[4] = {0}, det = 1;
+    const bool solid = kind == KIND_SOLID;
+    if (solid && (what == D_STRESS || what == D_VON_MISES || what == D_DET_F || what == D_DENSITY))
+        solid_cauchy(&s->solid, p, i, sigma, &det);
+    switch (what) {
+    case D_POINTS: return vector_value(p->x[i], p->y[i], column);
+    case D_VELOCITY: return vector_value(p->vx[i], p->vy[i], column);
+    case D_PRESSURE:
+        if (kind == KIND_FLUID) return eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
+        return p->p ? p->p[i] : 0;
+    case D_VON_MISES: return solid_von_mises(sigma);
+    case D_DET_F: return det;
+    case D_DENSITY:
+        if (solid) return s->solid.body[p->body[i]].density / det;
+        return p->dens ? s->scene->rho0 * (1 + p->dens[i]) : 0;
+    case D_STRESS: return stress_value(sigma, column);
+    case D_DISPLACEMENT:
+        if (solid) return vector_value(p->ux[i], p->uy[i], column);
+        return p->X ? vector_value(p->x[i] - p->X[i], p->y[i] - p->Y[i], column) : 0;
+    default: return 0;
+    }
+}

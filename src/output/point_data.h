@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ * What fields.vtkhdf says of a particle. Here and not in snapshot.h, so that programs that only read fields
+ * build without HDF5. */
+#ifndef SPHFSI_OUTPUT_POINT_DATA_H
+#define SPHFSI_OUTPUT_POINT_DATA_H
+
+#include "time/simulation.h"
+
+/* The datasets below /VTKHDF, in the order of the table in output/snapshot_file.c. */
+enum data {
+    D_POINTS_COUNT,
+    D_CELLS_COUNT,
+    D_IDS_COUNT,
+    D_TIME,
+    D_PARTS_BEFORE,
+    D_PARTS,
+    D_POINTS_BEFORE,
+    D_CELLS_BEFORE,
+    D_IDS_BEFORE,
+    D_POINTS,
+    D_CONNECTIVITY,
+    D_OFFSETS,
+    D_TYPES,
+#define POINTDATA(NAME, name, item, width, choice) D_##NAME,
+#include "case/pointdata.def"
+#undef POINTDATA
+    D_COUNT,
+    D_FIRST_POINTDATA = D_TYPES + 1
+};
+
+/* Value of one particle in a floating dataset; simulation_refresh comes first. */
+double snapshot_value(enum data what, const struct simulation *s, enum kind kind, int64_t i,
+                      int column);
+
+#endif
