@@ -12,6 +12,7 @@
 #   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
 #   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
 #   make mutants         put small faults into the sources and count those that tests find: docs/mutants.md
+#   make random-cases    1000 random scenes in every build, killed, restarted and forked: the same bits
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
@@ -67,7 +68,7 @@ OPT-release  := -O3 -DNDEBUG
 OPT-serial   := -O3 -DNDEBUG
 OPT-debug    := -O0 -g
 OPT-memcheck := -O1 -g
-OPT-mutant   := -O1
+OPT-mutant   := -O1 -DNDEBUG
 OPT-coverage := -O0 -g --coverage
 OPT-thread   := -O1 -g -fno-omit-frame-pointer -fsanitize=thread
 OPT-sanitize := -O1 -g -fno-omit-frame-pointer -fsanitize=address,undefined \
@@ -78,8 +79,9 @@ ifneq ($(filter true 1,$(CI) $(WERROR)),)
   WARN += -Werror
 endif
 # clang, unlike gcc, minds the float constants INFINITY and NAN in expressions of doubles, and loops of
-# `omp simd` that it leaves alone without optimisation.
-WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion -Wno-pass-failed)
+# `omp simd` that it leaves alone without optimisation, and fields that a designated initialiser leaves out.
+WARN += $(if $(findstring clang,$(shell $(CC) --version 2>/dev/null)),-Wno-double-promotion -Wno-pass-failed \
+          -Wno-missing-field-initializers)
 # -fopenmp-simd keeps `omp simd`, and with it the bits of the threaded build.
 OMP := $(if $(filter serial,$(CONFIG)),-fopenmp-simd -Wno-unknown-pragmas,-fopenmp)
 # Older clang on AArch64 knows -mcpu=native only.
@@ -229,6 +231,10 @@ fuzz:
 .PHONY: mutants
 mutants:
 	@$(PROJECT_PYTHON) tools/mutants.py $(ARGS)
+
+.PHONY: random-cases
+random-cases: $(PROGRAM)
+	@$(PROJECT_PYTHON) tools/random_cases.py --all-builds $(ARGS)
 
 verify-fluid: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_fluid.py $(ARGS)

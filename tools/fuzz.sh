@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fuzzes the readers with libFuzzer, ASan and UBSan: tools/fuzz.sh [SECONDS for each target] [TARGET...]
-# Targets: case expr motion checkpoint. Needs clang with its runtime (Debian: clang libclang-rt-14-dev).
+# Targets: case expr motion reference series checkpoint. Needs clang with its runtime (Debian: clang
+# libclang-rt-14-dev).
 # What was run is appended to tests/fuzz/counts.txt, from the fuzzer's own log; failing inputs land in
 # build/fuzz/found. Found inputs grow in build/fuzz/; KEEP=1 adds those that reach new code to the corpus.
 set -eu
@@ -8,7 +9,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 shift || true
 targets=("$@")
-[ $# -gt 0 ] || targets=(case expr motion checkpoint)
+[ $# -gt 0 ] || targets=(case expr motion reference series checkpoint)
 build=build/fuzz
 counts=tests/fuzz/counts.txt
 mkdir -p $build/found
@@ -42,10 +43,10 @@ compiler=clang-$(clang -dumpversion)
 status=0
 for target in "${targets[@]}"; do
     program=$build/fuzz_$target
+    length=4096 mutator=()
+    [ "$target" != checkpoint ] || length=8192 mutator=(tests/fuzz/mutate.c)
     clang "${flags[@]}" -fsanitize=$sanitize,fuzzer -DTARGET="fuzz_$target" \
-        -Wl,--wrap=scene_sample -o "$program" tests/fuzz/entry.c "${objects[@]}" $libs -lm
-    length=4096
-    [ "$target" != checkpoint ] || length=8192
+        -Wl,--wrap=scene_sample -o "$program" tests/fuzz/entry.c "${mutator[@]}" "${objects[@]}" $libs -lm
     mkdir -p "$build/work-$target"
     result=0
     "$program" -max_total_time="$seconds" -max_len=$length -timeout=20 -rss_limit_mb=2048 \

@@ -2,16 +2,18 @@
 # SPDX-License-Identifier: MIT
 """Measures the tests: puts small faults into the sources, one at a time, and counts those that a test finds.
 
-    tools/mutants.py --count 400        400 faults drawn with a seed, results into docs/mutants.md (hours)
+    tools/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md (hours)
     tools/mutants.py --files src/solid  faults of one folder or file only
+    tools/mutants.py --again            judges anew what was not found, for instance by new tests
+    tools/mutants.py --report           writes docs/mutants.md from what is kept
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or inverts a
-condition. For each, the C tests that run the changed line (by gcov) are run, the shortest first. A fault
-whose object code is that of the program is equivalent. Results are kept in build/mutants/results.json, and
-a run that was interrupted goes on from there.
+condition. The objects that hold the changed line are compiled, and the tests that run it (by gcov,
+tools/coverage.py) are linked and run, the shortest first, until one finds it or their time is used up. A
+fault whose object code is that of the program is equivalent. So are those that tests/mutants/equivalent.txt
+explains. Results are kept in tests/mutants/results.json; a run that was interrupted goes on from there.
 """
 import argparse
-import hashlib
 import json
 import os
 import random
@@ -19,14 +21,22 @@ import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
-from collections import Counter, defaultdict
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+import coverage
+from coverage import ROOT, all_tests, run_test
+
+BUILD = ROOT / "build" / "mutant"
 WORK = ROOT / "build" / "mutants"
-TREE = WORK / "tree"
-ENV = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive"}
+KEPT = ROOT / "tests" / "mutants" / "results.json"
+EXPLAINED = ROOT / "tests" / "mutants" / "equivalent.txt"
+SKIPPED = 77
+LONGEST = 8  # seconds of the processor: tests that take longer are not run with faults
+LOCK = threading.Lock()
 # kind: (pattern, replacement); each match on a line of code is a candidate.
 RULES = [
     ("sign", r"(?<=[\w)\]]) \+ (?=[\w(*])", " - "), ("sign", r"(?<=[\w)\]]) - (?=[\w(*])", " + "),
@@ -44,10 +54,6 @@ RULES = [
                           r"[\w.>\-\[\]]+ (?:=|\+=|-=|\*=) .*;$", r"\1;"),
     ("missing statement", r"^( +)(?!return|sizeof)\w+\([^;{}]*\);$", r"\1;"),
 ]
-
-
-def run(words, **more):
-    return subprocess.run(words, cwd=TREE, env=ENV, capture_output=True, text=True, **more)
 
 
 def code_lines(text):
@@ -81,164 +87,278 @@ def draw(paths, count, seed):
     for path, faults in sorted(found.items()):
         n = min(len(faults), max(1, round(count * len(faults) / total)))
         chosen += dice.sample(faults, n)
+    dice.shuffle(chosen)
     return chosen
 
 
-def copy_tree():
-    WORK.mkdir(parents=True, exist_ok=True)
-    TREE.mkdir(exist_ok=True)
-    for name in ("src", "include", "tests", "cases", "bench", "tools", "data"):
-        if (ROOT / name).is_dir():
-            shutil.copytree(ROOT / name, TREE / name, dirs_exist_ok=True)
-    for name in ("Makefile", ".clang-format"):
-        shutil.copy2(ROOT / name, TREE)
-    (TREE / "build").mkdir(exist_ok=True)
-    for path in (ROOT / "build").iterdir():
-        if path.is_file():
-            shutil.copy2(path, TREE / "build")
-    if (ROOT / "build/deps").is_dir():
-        shutil.copytree(ROOT / "build/deps", TREE / "build/deps", dirs_exist_ok=True)
+class Program:
+    """The build without faults: how its objects are compiled and linked, and how long its tests take."""
+
+    def __init__(self, jobs):
+        goals = [f"build/mutant/{t.removesuffix('.c')}" for t in all_tests() if t.endswith(".c")]
+        subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=mutant", "all", *goals], cwd=ROOT,
+                       check=True)
+        info = subprocess.run(["make", "-s", "SETUP=no", "CONFIG=mutant", "info"], cwd=ROOT, check=True,
+                              capture_output=True, text=True).stdout
+        self.compile = re.search(r"^compile +(.*)", info, re.M)[1].split()
+        self.libraries = re.search(r"^link +(.*)", info, re.M)[1].split()
+        self.uses = {}  # header or source: objects
+        for path in BUILD.glob("src/*/*.d"):
+            for name in re.findall(r"src/[\w./]+", path.read_text().split("\n\n")[0]):
+                self.uses.setdefault(name, set()).add(path.with_suffix(".o"))
+        self.support = sorted(map(str, BUILD.glob("tests/support/*.o"))) + [str(BUILD / "unity.o")]
+        self.seconds = self.baseline(jobs)
+        self.tests = coverage.collect([t for t, s in self.seconds.items() if s <= LONGEST], jobs)
+        self.taken = {name: one["files"] for name, one in self.tests.items()}
+
+    def baseline(self, jobs):
+        """{test: seconds of the processor}, of those that pass on the build without faults."""
+        kept, seconds = WORK / "baseline.json", {}
+        key = coverage.digest_of(coverage.sources())
+        if kept.exists() and (old := json.loads(kept.read_text()))["key"] == key:
+            seconds = old["seconds"]
+        def measure(test):
+            name = f"{test} {coverage.digest_of([ROOT / test])}"
+            if name not in seconds:
+                status, used = run_test(test, BUILD, BUILD / "sphfsi", 120)
+                with LOCK:
+                    seconds[name] = used if status == 0 else None
+                    kept.write_text(json.dumps({"key": key, "seconds": seconds}))
+                print(f"{test}: {used:.1f} s, exit status {status}", flush=True)
+            return test, seconds[name]
+
+        with ThreadPoolExecutor(jobs) as pool:
+            return {test: used for test, used in pool.map(measure, all_tests()) if used is not None}
+
+    def covering(self, fault):
+        """The tests that run the line, the shortest first; those of its own folder count as shorter."""
+        folder = fault["file"].split("/")[1]
+        lines = {t: files.get(fault["file"], {"lines": {}})["lines"] for t, files in self.taken.items()}
+        # A statement of several lines counts on its first, or on some of them.
+        known = {int(line) for one in lines.values() for line in one if int(line) <= fault["line"]}
+        line = str(max(known, default=0))
+        names = [test for test, one in lines.items() if test in self.seconds and one.get(line)]
+        return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
 
 
-def make(config, goals, timeout=1200):
-    return run(["make", "-s", "-j2", "SETUP=no", f"CONFIG={config}", *goals], timeout=timeout)
-
-
-def tests():
-    return sorted(path for path in (TREE / "tests").glob("*/test_*.c"))
-
-
-def goal(config, test):
-    return f"build/{config}/tests/{test.parent.name}/{test.stem}"
-
-
-def coverage():
-    """{test: {"seconds": s, "lines": {file: [numbers]}}}, by a build with gcov."""
-    kept = WORK / "coverage.json"
-    if kept.exists():
-        return json.loads(kept.read_text())
-    built = make("coverage", [goal("coverage", test) for test in tests()], timeout=3600)
-    if built.returncode:
-        sys.exit(f"the coverage build fails:\n{built.stderr[-2000:]}")
-    result = {}
-    for test in tests():
-        for old in (TREE / "build/coverage").rglob("*.gcda"):
-            old.unlink()
-        start = time.time()
-        try:
-            passed = run([goal("coverage", test)], timeout=600).returncode == 0
-        except subprocess.TimeoutExpired:
-            passed = False
-        if not passed:
-            print(f"{test.stem}: left out, it fails or takes too long in the coverage build", flush=True)
-            continue
-        seconds, lines = time.time() - start, defaultdict(set)
-        data = sorted(map(str, (TREE / "build/coverage/src").rglob("*.gcda")))
-        for line in run(["gcov", "--json-format", "--stdout", *data]).stdout.splitlines():
-            for file in json.loads(line)["files"]:
-                name = file["file"]
-                name = str(Path(name).relative_to(TREE)) if name.startswith("/") else name
-                lines[name] |= {row["line_number"] for row in file["lines"] if row["count"]}
-        result[f"{test.parent.name}/{test.stem}"] = {"seconds": seconds, "lines": {
-            name: sorted(numbers) for name, numbers in lines.items() if name.startswith("src/")}}
-        print(f"{test.stem}: {seconds:.1f} s", flush=True)
-    kept.write_text(json.dumps(result))
-    return result
-
-
-def objects():
-    """Digest of all object code of the library, without debugging information."""
-    digest = hashlib.sha256()
-    for path in sorted((TREE / "build/mutant/src").rglob("*.o")):
-        stripped = WORK / "stripped.o"
-        subprocess.run(["strip", "--strip-debug", "-o", stripped, path], check=True)
-        digest.update(stripped.read_bytes())
-    return digest.hexdigest()
-
-
-def judge(fault, covered, original, time_of):
-    """found (by which test), not found, not run by any C test, equivalent, or does not compile."""
-    path = TREE / fault["file"]
-    text = path.read_text()
-    lines = text.split("\n")
+def build(program, fault, folder):
+    """The objects that the fault changes; None: it does not compile."""
+    source = folder / "tree" / fault["file"]
+    source.parent.mkdir(parents=True)
+    lines = (ROOT / fault["file"]).read_text().split("\n")
     lines[fault["line"] - 1] = fault["text"]
-    path.write_text("\n".join(lines))
+    source.write_text("\n".join(lines))
+    objects, version = [], f'-DSPHFSI_VERSION="{(BUILD / "version").read_text().strip()}"'
+    for old in sorted(program.uses.get(fault["file"], ())):
+        name = str(old.relative_to(BUILD).with_suffix(".c"))
+        path = source if name == fault["file"] else ROOT / name
+        new = folder / str(old.relative_to(BUILD)).replace("/", "_")
+        first = [program.compile[0], f"-I{folder}/tree/src"]
+        made = subprocess.run([*first, *program.compile[1:], "-w", version, "-c", "-o", new, path], cwd=ROOT,
+                              capture_output=True)
+        if made.returncode:
+            return None
+        if new.read_bytes() != old.read_bytes():
+            objects.append(str(new))
+    return objects
+
+
+def link(program, test, objects, folder):
+    """The test, or for a script the program, with the objects in front of those without the fault."""
+    if test.endswith(".c"):
+        out = folder / test.removesuffix(".c")
+        parts = [str(BUILD / test).replace(".c", ".o"), *program.support]
+    else:
+        out, parts = folder / "sphfsi", [str(BUILD / "src/app/main.o")]
+    if out.exists():
+        return
+    out.parent.mkdir(parents=True, exist_ok=True)
+    wrap = ["-Wl," + ",".join(f"--wrap={name}" for name in "malloc calloc realloc aligned_alloc free fopen "
+                              "fdopen opendir".split())] if test.endswith("/test_alloc.c") else []
+    parts = [part for part in parts if not any(o.endswith("src_app_main.o") for o in objects)
+             or not part.endswith("main.o")]
+    core = str(BUILD / "core.a")
+    subprocess.run([*program.compile, "-w", *wrap, "-o", out, *parts, *objects, core, *program.libraries],
+                   cwd=ROOT, check=True)
+    if "/python/" in test:
+        rest = [str(o) for o in BUILD.glob("src/*/*.o") if o.name != "main.o"
+                and not any(x.endswith(str(o.relative_to(BUILD)).replace("/", "_")) for x in objects)]
+        subprocess.run([*program.compile, "-w", "-shared", "-o", folder / "libsphfsi.so", *rest,
+                        *[o for o in objects if not o.endswith("main.o")], *program.libraries],
+                       cwd=ROOT, check=True)
+
+
+def judge(program, fault, seconds):
+    """(found, not found, not run, equivalent or does not compile; by what)"""
+    folder = WORK / f"fault-{threading.get_ident()}"
+    shutil.rmtree(folder, ignore_errors=True)
     try:
-        names = sorted((name for name, one in covered.items()
-                        if fault["line"] in one["lines"].get(fault["file"], ())), key=time_of.get)
-        if make("mutant", ["build/mutant/libsphfsi.a"]).returncode:
+        objects = build(program, fault, folder)
+        if objects is None:
             return "does not compile", ""
-        if objects() == original:
+        if not objects:
             return "equivalent", "same object code"
-        for name in names:
-            if make("mutant", [f"build/mutant/tests/{name}"]).returncode:
-                return "found", "compiler"
+        used, tried = 0, []
+        for test in program.covering(fault):
+            usual = program.seconds[test]
+            if tried and used + usual > seconds:
+                break
             try:
-                if run([f"build/mutant/tests/{name}"], timeout=10 + 10 * time_of[name]).returncode:
-                    return "found", name
-            except subprocess.TimeoutExpired:
-                return "found", f"{name} (time limit)"
-        return ("not found", ", ".join(names[:3])) if names else ("not run", "")
+                link(program, test, objects, folder)
+            except subprocess.CalledProcessError:
+                return "found", "linker"
+            status, own = run_test(test, folder, folder / "sphfsi", int(5 + 5 * usual))
+            used += own
+            tried.append(test)
+            if status not in (0, SKIPPED):
+                return "found", test
+        return ("not found", ", ".join(tried)) if tried else ("not run", "")
     finally:
-        path.write_text(text)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
-def report(results, args):
-    count = Counter(result["verdict"] for result in results)
-    real = count["found"] + count["not found"] + count["not run"]
-    share = 100 * count["found"] / real if real else 0
-    lines = ["# Faults that the tests find", "",
-             f"Of {real} faults that change the program, the C tests find {count['found']}: {share:.1f} %. "
-             f"{count['not found']} lie on lines that a test runs and are not found; {count['not run']} lie "
-             f"on lines that no C test runs. {count['equivalent']} further ones change no object code.", "",
-             f"Written by `make mutants` (seed {args.seed}); scripts under tests/ are not run here.", "",
-             "| folder | found | not found | not run |", "|---|---|---|---|"]
-    for folder in sorted({result["file"].split("/")[1] for result in results}):
-        own = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
-        lines.append(f"| {folder} | {own['found']} | {own['not found']} | {own['not run']} |")
-    lines += ["", "## Not found", "", "| where | kind | before | after |", "|---|---|---|---|"]
+def key(fault):
+    return fault["file"], fault["before"], fault["after"]
+
+
+def explained():
+    """{fault: reason}: groups of four lines, file, before, after and reason, with a blank line between."""
+    groups = EXPLAINED.read_text().strip().split("\n\n") if EXPLAINED.exists() else []
+    rows = [[line.strip() for line in group.split("\n")] for group in groups]
+    return {(file, before, after): " ".join(reason) for file, before, after, *reason in rows}
+
+
+def standing(fault):
+    """The fault on the line where its text stands in the present source; None: the line is gone."""
+    path = ROOT / fault["file"]
+    lines = path.read_text().split("\n") if path.exists() else []
+    numbers = [k for k, line in enumerate(lines, 1) if line.strip() == fault["before"]]
+    if not numbers:
+        return None
+    number = min(numbers, key=lambda k: abs(k - fault["line"]))
+    indent = len(lines[number - 1]) - len(lines[number - 1].lstrip())
+    return {**fault, "line": number, "text": " " * indent + fault["after"]}
+
+
+def table(rows, *heads):
+    return ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads),
+            *("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows), ""]
+
+
+def listed(results):
     for r in results:
-        if r["verdict"] in ("not found", "not run"):
-            before, after = (r[k].replace("|", "\\|") for k in ("before", "after"))
-            where, what = f"{r['file']}:{r['line']}", f"{r['kind']}, {r['verdict']}"
-            lines.append(f"| {where} | {what} | `{before}` | `{after}` |")
-    (ROOT / "docs/mutants.md").write_text("\n".join(lines) + "\n")
-    print("\n".join(lines[:12]))
+        before, after = (r[name].replace("|", "\\|") for name in ("before", "after"))
+        yield f"{r['file']}:{r['line']}", r["kind"], f"`{before}`", f"`{after}`", r.get("by", "")
+
+
+def report(results, tests):
+    """docs/mutants.md"""
+    reasons = explained()
+    results = [r for r in map(lambda r: {**r, **(standing(r) or {"verdict": "line deleted"})}, results)]
+    for r in results:
+        if r["verdict"] in ("not found", "not run") and key(r) in reasons:
+            r.update(verdict="equivalent", by=reasons[key(r)])
+    results.sort(key=lambda r: (r["file"], r["line"]))
+    count = Counter(r["verdict"] for r in results)
+    real = count["found"] + count["not found"] + count["not run"]
+    total = coverage.total_of(tests)
+    lines, all_lines, branches, all_branches = coverage.shares(total)
+    own = [r for r in results if r["verdict"] == "equivalent" and r["by"] != "same object code"]
+    text = [
+        "# What the tests find", "",
+        f"Of {real} small faults put into the sources, the tests find {count['found']}: "
+        f"{100 * count['found'] / max(1, real):.1f} %. The tests run {100 * lines / all_lines:.2f} % of the "
+        f"{all_lines} lines of `src/` and take {100 * branches / all_branches:.2f} % of the {all_branches} "
+        "branches.", "",
+        f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
+        f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} give the "
+        f"same object code, {len(own)} are explained below. {count['does not compile']} do not compile. "
+        f"{count['line deleted']} stood on lines that have since been changed or deleted.", "",
+        "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "
+        "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in the "
+        "unoptimised build (gcov).", "", "## By folder", ""]
+    rows = []
+    for folder in sorted({r["file"].split("/")[1] for r in results}):
+        c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
+        share = coverage.shares({n: f for n, f in total.items() if n.split("/")[1] == folder})
+        rows.append((folder, c["found"], c["not found"], c["not run"], c["equivalent"],
+                     f"{100 * share[0] / share[1]:.2f} %", f"{100 * share[2] / max(1, share[3]):.2f} %"))
+    text += table(rows, "folder", "found", "not found", "on no line that tests run", "equivalent", "lines",
+                  "branches")
+    text += ["## By kind of fault", ""]
+    rows = [(kind, sum(r["kind"] == kind and r["verdict"] == "found" for r in results),
+             sum(r["kind"] == kind and r["verdict"].startswith("not") for r in results))
+            for kind in sorted({r["kind"] for r in results})]
+    text += table(rows, "kind", "found", "not found")
+    text += ["## Not found", "", *table(listed(r for r in results if r["verdict"].startswith("not ")),
+                                       "where", "kind", "before", "after", "tests that were run")]
+    text += ["## Equivalent", "", *table(listed(own), "where", "kind", "before", "after", "why"),
+             *left_over(total)]
+    (ROOT / "docs/mutants.md").write_text("\n".join(text).rstrip() + "\n")
+    print("\n".join(text[:6]))
+
+
+def left_over(total):
+    """The lines that no test runs, with the reason that tests/mutants/uncovered.txt gives for their text."""
+    path = ROOT / "tests" / "mutants" / "uncovered.txt"
+    groups = path.read_text().strip().split("\n\n") if path.exists() else []
+    reasons = {}
+    for file, *rest in ([line.strip() for line in group.split("\n")] for group in groups):
+        reasons |= {(file, line): rest[-1] for line in rest[:-1]}
+    rows = []
+    for file, line, what in coverage.missing(total):
+        if what == "line":
+            source = (ROOT / file).read_text().split("\n")[line - 1].strip()
+            shown = source.replace("|", "\\|")
+            rows.append((f"{file}:{line}", f"`{shown}`", reasons.get((file, source), "")))
+    return ["## Lines that no test runs", "", *table(rows, "where", "line", "why")]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], epilog=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--count", type=int, default=400)
+    parser.add_argument("--count", type=int, default=440)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--files", default="src", help="folder or file of src/")
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long, and write the report")
+    parser.add_argument("--seconds", type=float, default=40, help="of the processor, for one fault's tests")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--again", action="store_true", help="judge anew what was not found")
+    parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
     args = parser.parse_args()
-    under = ROOT / args.files
-    paths = [under] if under.is_file() else sorted(p for p in under.rglob("*") if p.suffix in (".c", ".h"))
-    faults = draw(paths, args.count, args.seed)
-    copy_tree()
-    covered = coverage()
-    time_of = {name: one["seconds"] for name, one in covered.items()}
-    if make("mutant", ["build/mutant/libsphfsi.a"]).returncode:
-        sys.exit("the program does not build")
-    original = objects()
-    kept = WORK / "results.json"
-    results = json.loads(kept.read_text()) if kept.exists() else []
-    done = {(r["file"], r["before"], r["after"]) for r in results}
+    results = json.loads(KEPT.read_text()) if KEPT.exists() else []
+    if args.report:
+        report(results, coverage.collect(all_tests(), args.jobs))
+        return 0
+    WORK.mkdir(parents=True, exist_ok=True)
+    KEPT.parent.mkdir(exist_ok=True)
+    program = Program(args.jobs)
+    if args.again:
+        reasons = explained()
+        old = [r for r in results if r["verdict"].startswith("not ") and key(r) not in reasons]
+        faults = [fault for r in old if (fault := standing(r))]
+        results = [r for r in results if r not in old or not standing(r)]
+    else:
+        under = ROOT / args.files
+        paths = [under] if under.is_file() else \
+            sorted(p for p in under.rglob("*") if p.suffix in (".c", ".h"))
+        done = {key(r) for r in results}
+        faults = [f for f in draw(paths, args.count, args.seed) if key(f) not in done]
     start = time.time()
-    random.Random(args.seed).shuffle(faults)
-    for k, fault in enumerate(faults):
-        if (fault["file"], fault["before"], fault["after"]) in done:
-            continue
+
+    def one(fault):
         if time.time() - start > 60 * args.minutes:
-            break
-        verdict, by = judge(fault, covered, original, time_of)
-        results.append({**fault, "verdict": verdict, "by": by})
-        kept.write_text(json.dumps(results))
-        where = f"{fault['file']}:{fault['line']}"
-        print(f"{k + 1}/{len(faults)} {where} {fault['kind']}: {verdict} {by}", flush=True)
-    report(sorted(results, key=lambda r: (r["file"], r["line"])), args)
+            return
+        verdict, by = judge(program, fault, args.seconds)
+        with LOCK:
+            results.append({**fault, "verdict": verdict, "by": by})
+            KEPT.write_text(json.dumps(results, indent=1) + "\n")
+            where = f"{fault['file']}:{fault['line']}"
+            print(f"{len(results)} {where} {fault['kind']}: {verdict} {by}", flush=True)
+
+    with ThreadPoolExecutor(args.jobs) as pool:
+        list(pool.map(one, faults))
+    report(results, program.tests)
     return 0
 
 

@@ -57,6 +57,8 @@ FUZZED = {
     "case": "case reader (without sampling of shapes wider than 40 dp)",
     "expr": "expressions",
     "motion": "motion tables",
+    "reference": "reference curves, and the probes compared with them",
+    "series": "rows of a run that is continued",
     "checkpoint": "checkpoint reader: every input as it is, then with corrected checksums, loaded and "
     "advanced by one step",
 }

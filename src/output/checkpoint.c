@@ -462,7 +462,7 @@ static enum err load_particles(const struct image *m, struct particles *p, enum 
     return ERR_OK;
 }
 
-static enum err check_cells(const struct simulation *s, enum kind kind, struct diag *d)
+static enum err check_kind(const struct simulation *s, enum kind kind, struct diag *d)
 {
     const struct particles *p = &s->kind[kind];
     const int64_t cells = (int64_t)s->cells.nx * s->cells.ny;
@@ -480,6 +480,12 @@ static enum err check_cells(const struct simulation *s, enum kind kind, struct d
                              " at (%.6g, %.6g) m is too far from its cell, %d",
                              kind_names[kind], i, p->x[i], p->y[i], cell);
     }
+    return ERR_OK;
+}
+
+enum err checkpoint_check_cells(const struct simulation *s, struct diag *d)
+{
+    for (int k = 0; k < KIND_COUNT; k++) TRY(check_kind(s, (enum kind)k, d));
     return ERR_OK;
 }
 
@@ -516,8 +522,7 @@ enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork,
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
 {
     TRY(checkpoint_load(m, s, false, d));
-    if (s->effects & FX_FLUID)
-        for (int k = 0; k < KIND_COUNT; k++) TRY(check_cells(s, (enum kind)k, d));
+    if (s->effects & FX_FLUID) TRY(checkpoint_check_cells(s, d));
     return simulation_resume(s, d);
 }
 

@@ -69,12 +69,16 @@ enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct dia
 enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
     SPHFSI_CHECKED;
 
+/* Whether each particle is in the cell that it was loaded with, or near it. ERR_INPUT: the grid is another
+ * one. */
+enum err checkpoint_check_cells(const struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
 /* Loads a valid image into a simulation of the same case from simulation_create, and recomputes derived
  * fields (simulation_resume). */
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The same for a case with other physics. Particles are sorted again, since the grid may differ; a motion
+/* The same for a case with other physics. Particles are sorted again if the grid is another one; a motion
  * must continue from the present position of its wall; dissipation is counted from this time. */
 enum err checkpoint_fork(const struct image *m, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;

@@ -80,6 +80,25 @@ static void clear_interface_impulse(struct simulation *s)
     memset(p->interface_impulse_y, 0, (size_t)p->n * sizeof *p->interface_impulse_y);
 }
 
+/* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork without a
+ * change keeps its bits. */
+static bool order_fits(const struct simulation *s)
+{
+    struct diag other_grid = {.code = ERR_OK};
+    if (checkpoint_check_cells(s, &other_grid)) return false;
+    const struct cells *const c = &s->cells;
+    for (int k = 0; k < KIND_COUNT; k++) {
+        const struct particles *const p = &s->kind[k];
+        for (int64_t i = 0; i < p->n; i++) {
+            const double x = p->x[i] - c->lower[0], y = p->y[i] - c->lower[1];
+            const bool inside =
+                x >= 0 && x < c->nx * c->side[0] && y >= 0 && y < c->ny * c->side[1];
+            if (p->cell[i] < 0 && inside) return false;
+        }
+    }
+    return true;
+}
+
 static enum err sort_again(struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < KIND_COUNT; k++) {
@@ -104,7 +123,7 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     if (s->effects & (FX_FLUID | FX_MOTION)) TRY(fork_walls(s, d));
     if (s->effects & FX_SOLID) TRY(fork_clamps(s, free, d));
     clear_interface_impulse(s);
-    if (s->effects & FX_FLUID) TRY(sort_again(s, d));
+    if ((s->effects & FX_FLUID) && !order_fits(s)) TRY(sort_again(s, d));
     TRY(simulation_resume(s, d));
     const struct ledger now = simulation_ledger(s);
     s->state.energy_start -= now.dissipated;

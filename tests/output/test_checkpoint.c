@@ -2,6 +2,7 @@
  * Checkpoints: the next steps have the same bits, damage is found, the last two are kept. */
 #include "output/checkpoint.h"
 #include "output/ranges.h"
+#include "base/hash.h"
 #include "geometry/load.h"
 #include "fuzz.h"
 #include "tiny.h"
@@ -78,6 +79,52 @@ static void same_bits_verlet(void)
 static void same_bits_double_single_rate(void)
 {
     goes_on_with_the_same_bits(2, (const char *[]){"precision=double", "numerics.multirate=off"});
+}
+
+static uint64_t particles(const struct simulation *s)
+{
+    uint64_t hash = HASH_START;
+    for (int k = 0; k < KIND_COUNT; k++) hash = particles_hash(&s->kind[k], hash);
+    return hash;
+}
+
+/* A fork without a change, in the middle between two sorts: only energies are counted anew. */
+static void an_unchanged_fork_keeps_the_bits(void)
+{
+    static const char *const sets[] = {"integrator=symplectic", "integrator=verlet",
+                                       "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(sets); k++) {
+        open_with(1, &sets[k]);
+        step(&first, 137);
+        store(tiny_path("fork"), &first);
+        const int64_t sorts = first.state.sorts;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_read(&other, path, &diag), diag.text);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_fork(&other, &second, &diag), diag.text);
+        TEST_ASSERT_EQUAL_INT64(sorts, second.state.sorts);
+        step(&first, 100);
+        step(&second, 100);
+        TEST_ASSERT_TRUE_MESSAGE(particles(&first) == particles(&second), sets[k]);
+        tearDown();
+    }
+}
+
+/* Another grid: cells of the checkpoint mean nothing there. */
+static void a_fork_into_another_domain_is_sorted_again(void)
+{
+    static const char *const wider[] = {"domain.lower=-0.1, -0.1", "domain.upper=0.7, 0.5"};
+    struct scene wide;
+    open_with(0, NULL);
+    step(&first, 20);
+    store(tiny_path("wider"), &first);
+    simulation_free(&second);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&wide, tiny_case, "x.cfg", 2, wider, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&second, &wide, &diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_read(&other, path, &diag));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_fork(&other, &second, &diag), diag.text);
+    TEST_ASSERT_EQUAL_INT64(first.state.sorts + 1, second.state.sorts);
+    step(&second, 20);
+    simulation_free(&second);
+    scene_free(&wide);
 }
 
 static void says_what_it_is(void)
@@ -307,6 +354,8 @@ int main(void)
     RUN_TEST(same_bits_symplectic);
     RUN_TEST(same_bits_verlet);
     RUN_TEST(same_bits_double_single_rate);
+    RUN_TEST(an_unchanged_fork_keeps_the_bits);
+    RUN_TEST(a_fork_into_another_domain_is_sorted_again);
     RUN_TEST(says_what_it_is);
     RUN_TEST(cells_of_another_grid_are_refused);
     RUN_TEST(numbers_that_no_run_has_are_refused);

@@ -3,6 +3,8 @@
 #include "fuzz.h"
 
 #include "output/checkpoint.h"
+#include "output/reference.h"
+#include "output/series.h"
 #include "case/expr.h"
 #include "case/scene.h"
 #include "geometry/load.h"
@@ -96,6 +98,85 @@ int fuzz_motion(const uint8_t *data, size_t size)
     return 0;
 }
 
+/* --- files of rows: on a disk of memory, in one folder for each process --- */
+
+static char rows_folder[64];
+
+static void remove_rows(void)
+{
+    char path[128];
+    snprintf(path, sizeof path, "%s/rows.csv", rows_folder);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/probes.csv", rows_folder);
+    unlink(path);
+    rmdir(rows_folder);
+}
+
+static const char *write_rows(const char *name, const uint8_t *data, size_t size)
+{
+    static char path[2][128];
+    static int next;
+    if (!rows_folder[0]) {
+        snprintf(rows_folder, sizeof rows_folder, "%s/sphfsi-fuzz-XXXXXX",
+                 access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp");
+        if (!mkdtemp(rows_folder)) abort();
+        atexit(remove_rows);
+    }
+    next = !next;
+    snprintf(path[next], sizeof path[next], "%s/%s", rows_folder, name);
+    FILE *const file = fopen(path[next], "wb");
+    if (!file || fwrite(data, 1, size, file) != size) abort();
+    fclose(file);
+    return path[next];
+}
+
+/* Up to the first byte of value 0 the file of a reference, behind it the probes that are compared. */
+int fuzz_reference(const uint8_t *data, size_t size)
+{
+    static const char header[] = "time_s,P_dx_m,P_dy_m";
+    const uint8_t *const zero = size ? memchr(data, 0, size) : NULL;
+    const size_t first = zero ? (size_t)(zero - data) : size;
+    char text[512];
+    snprintf(text, sizeof text,
+             "dp = 1 cm\nend_time = 1\n[solid s]\nshape = box 0, 0, 0.05, 0.05\n"
+             "density = 1000\nyoung = 1e6\npoisson = 0.3\n[probe P]\nbody = s\n"
+             "point = 0.05, 0.05\n[reference r]\nprobe = P_dy_m\nfile = %s\n",
+             write_rows("rows.csv", data, first));
+    const char *const probes =
+        write_rows("probes.csv", zero ? zero + 1 : data, zero ? size - first - 1 : size);
+    static struct scene s;
+    struct references r = {0};
+    struct score score;
+    struct diag d = {.code = ERR_OK};
+    if (s.top.dp == 0 && scene_load_text(&s, text, "/x.cfg", 0, NULL, &d)) abort();
+    struct arena a = {0};
+    enum err e = references_open(&r, &s, 1, (const char *const[]){header}, &a, &d);
+    judge(e, &d);
+    if (!e) {
+        e = references_score(&r, 0, probes, &score, &d);
+        judge(e, &d);
+        if (!e && score.points < 0) abort();
+    }
+    arena_free(&a);
+    return 0;
+}
+
+/* The rows of a run that is continued at half a second. */
+int fuzz_series(const uint8_t *data, size_t size)
+{
+    struct series s = {.fd = -1};
+    struct diag d = {.code = ERR_OK};
+    double first[3], last;
+    write_rows("rows.csv", data, size);
+    const enum err e =
+        series_resume(&s, rows_folder, "rows.csv", "time_s,x,y", 0.5, first, &last, &d);
+    judge(e, &d);
+    if (!e && !(last <= 0.5)) abort();
+    if (!e) judge(series_row(&s, (const double[]){0.5, 1, 2}, &d), &d);
+    series_close(&s);
+    return 0;
+}
+
 /* --- checkpoints --- */
 
 static const char small_case[] =
@@ -174,8 +255,18 @@ int fuzz_checkpoint(const uint8_t *data, size_t size)
     enum err e = checkpoint_check(&m, "x.ckpt", &d);
     judge(e, &d);
     if (!e) {
+        int64_t missed;
+        struct block_info block;
         checkpoint_info(&m);
+        for (size_t at = 0; checkpoint_block(&m, &at, &block);)
+            if (block.count < 0 || !block.data) abort();
+        judge(checkpoint_missed(&m, &missed, &d), &d);
+        d.code = ERR_OK;
         e = checkpoint_apply(&m, small_simulation(), &d);
+        judge(e, &d);
+        if (!e) judge(simulation_step(small_simulation(), small.state.time + 1e-5, &d), &d);
+        d.code = ERR_OK;
+        e = checkpoint_fork(&m, small_simulation(), &d);
         judge(e, &d);
         if (!e) judge(simulation_step(small_simulation(), small.state.time + 1e-5, &d), &d);
     }

@@ -1,0 +1,16 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The first random cases of tools/random_cases.py: other threads, kills, restarts and forks change no bit."""
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import PROGRAM, TOOLS, packages
+with packages():
+    import h5py  # noqa: F401  the snapshots are compared with it
+
+count = os.environ.get("RANDOM_CASES", "6")
+sys.exit(subprocess.run([sys.executable, TOOLS / "random_cases.py", "--builds", f"gcc={PROGRAM}", "--count",
+                         count, "--no-record"]).returncode)
