@@ -48,8 +48,9 @@ def command(test, build):
 
 
 def limit(seconds):
-    """For subprocess: at most so many seconds of the processor in each process."""
-    return lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+    """In a child: a group of its own, each process of which may use so many seconds of the processor."""
+    os.setpgid(0, 0)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
 
 
 def run_test(test, build, program, seconds, **more):
@@ -58,8 +59,7 @@ def run_test(test, build, program, seconds, **more):
     env = {**ENV, "SPHFSI": str(program), "SPHFSI_LIBRARY": library, "BUILD": str(build), **more}
     with tempfile.TemporaryFile() as output:
         process = subprocess.Popen(command(test, build), cwd=ROOT, env=env, stdin=subprocess.DEVNULL,
-                                   stdout=output, stderr=output, preexec_fn=limit(seconds),
-                                   start_new_session=True)
+                                   stdout=output, stderr=output, preexec_fn=lambda: limit(seconds))
         alarm = threading.Timer(30 + 10 * seconds, os.killpg, (process.pid, 9))
         alarm.start()
         _, status, used = os.wait4(process.pid, 0)

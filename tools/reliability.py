@@ -17,6 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CHECKS = ROOT / "tests" / "fault" / "checks.json"
+RANDOM = ROOT / "tests" / "fault" / "random.json"
 COUNTS = ROOT / "tests" / "fuzz" / "counts.txt"
 LONG = {"KILLS": "50", "FULL_STEPS": "40", "INJECT_STRIDE": "5"}
 FAULT_TESTS = [
@@ -144,8 +145,12 @@ def row(first, record):
             f"{record['date']} | {record['seconds']} |")
 
 
+def random_cases():
+    return json.loads(RANDOM.read_text()) if RANDOM.exists() else {}
+
+
 def summary(records):
-    """Three sentences that say whether the program survives faults."""
+    """What was tried, how much of it, and what was lost."""
     def state(names):
         outcomes = [records[name]["outcome"] for name in names if name in records]
         return sum(o == "passed" for o in outcomes), len(names)
@@ -154,12 +159,39 @@ def summary(records):
     lines = [line.split() for line in COUNTS.read_text().splitlines() if not line.startswith("#")] \
         if COUNTS.exists() else []
     bad = sum(line[3] != "0" for line in lines)
-    return (f"**Does the program survive faults?** {good} of {tests} fault tests passed: kills, full "
-            f"disks, failing "
-            f"calls, damaged files and bad input. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
-            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. {clean} of "
-            f"{checks} sanitizer "
-            "and analyser runs passed.")
+    scenes = random_cases()
+    wrong = len(scenes.get("failures", ()))
+    lost = bad + wrong + (tests - good)
+    said = (f"**What was lost: {'nothing' if not lost else f'something in {lost} of these trials'}.** "
+            f"Tried were kills, full disks, failing calls, damaged files and bad input: {good} of {tests} "
+            f"fault tests passed. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
+            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. ")
+    if scenes:
+        said += (f"{scenes['cases']:,} random scenes ran in {len(scenes['builds'])} builds, were killed "
+                 f"{scenes['kills']:,} times, restarted and forked: "
+                 f"{f'{wrong} differ' if wrong else 'all agree bit by bit'}. ")
+    return said + f"{clean} of {checks} sanitizer and analyser runs passed."
+
+
+def random_lines():
+    scenes = random_cases()
+    if not scenes:
+        return []
+    count = scenes["outcomes"]
+    lines = ["", "## Random scenes", "",
+             "`make random-cases` draws small scenes with a seed and runs each with every build "
+             f"({', '.join(scenes['builds'])}), on another number of threads, killed and restarted, "
+             "stopped and restarted on another build, and forked without a change. State, rows and snapshots "
+             "have to agree bit by bit; of a fork its last snapshot.", "",
+             f"Of {scenes['cases']:,} scenes (seeds {scenes['seeds'][0]} to {scenes['seeds'][1]}, "
+             f"{scenes['steps']:,} steps) {count.get('finished', 0):,} finished with finite numbers and "
+             f"speeds below that of sound, {count.get('stopped by a guard', 0)} were stopped by a guard at "
+             f"the same step everywhere, {len(scenes['failures'])} differ. {count.get('refused', 0)} more "
+             f"were refused by a sentence. Program "
+             f"{scenes['version']}, {scenes['date']}, {scenes['seconds']} s.",
+             "", "| of the scenes | have |", "|---|---|"]
+    return lines + [f"| {n} | {name} |" for name, n in scenes["features"].items()] + \
+        ([""] + [f"* {why}" for why in scenes["failures"]] if scenes["failures"] else [])
 
 
 def report():
@@ -176,6 +208,7 @@ def report():
               "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the "
               "fuzzers' logs.", "",
               "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
+    lines += random_lines()
     lines += ["", "## Sanitizers and analysers", "",
               "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
     lines += [row(f"{name} | `{command}`", records.get(command)) for name, command in CHECKED]
