@@ -12,14 +12,18 @@
 
 static const char *const section_meanings[][2] = {
     {"top", "Keys before the first section."},
-    {"numerics", "How it is computed; the defaults are those of the article or better."},
-    {"domain", "Where fluid may be."},
-    {"output", "What is written and how often."},
-    {"fluid", "Water at the start. Several sections may differ in region, surface, pressure and "
-              "velocity, not in kind."},
-    {"wall", "Rigid bodies, at rest or driven."},
+    {"numerics",
+     "Parameters of the numerical method. [theory.md](theory.md), Sec. 9, lists where the "
+     "defaults depart from the article."},
+    {"domain", "The region in which particles may be."},
+    {"output", "What is written, and how often."},
+    {"fluid",
+     "Fluid at the start. Several sections may differ in shape, surface, pressure and velocity; "
+     "their other values must be equal."},
+    {"wall", "Rigid bodies, at rest or with a prescribed motion."},
     {"solid", "Elastic bodies."},
-    {"motion", "A prescribed motion of walls, as a displacement from their place in the case."},
+    {"motion",
+     "A prescribed motion of walls or clamps: the displacement from their initial position."},
     {"probe", "A measurement."},
     {"reference", "A curve that a probe is compared with, in the summary and in plots."},
 };
@@ -185,8 +189,9 @@ static void say_quantities(const struct sphfsi_options *o)
     session_say(o, "%s", "");
     session_say(o, "### Quantities of a probe");
     session_say(o, "%s", "");
-    session_say(o,
-                "A column is called PROBE_COLUMN, such as `tip_dx_m`. All are per metre of depth.");
+    session_say(
+        o, "A column is called PROBE_COLUMN, such as `tip_dx_m`. Forces, moments, energies and "
+           "fluxes are per metre of depth.");
     session_say(o, "%s", "");
     session_say(o, "| quantity | needs | columns | meaning |");
     session_say(o, "|---|---|---|---|");
@@ -200,9 +205,10 @@ static void say_effects(const struct sphfsi_options *o)
     session_say(o, "%s", "");
     session_say(o, "### Effects");
     session_say(o, "%s", "");
-    session_say(o, "What a case calls for is simulated, and nothing else; `--explain` says which.");
+    session_say(o, "An effect is a part of the model that a case enables. Only enabled effects are "
+                   "computed; `--explain` lists them.");
     session_say(o, "%s", "");
-    session_say(o, "| effect | called for by | meaning | source |");
+    session_say(o, "| effect | enabled by | meaning | source |");
     session_say(o, "|---|---|---|---|");
     for (int k = 0; k < EFFECT_COUNT; k++) {
         char meaning[512];
