@@ -77,6 +77,10 @@ SPHFSI_INLINE vreal fx_one_sided(vreal p, vreal dens, vreal x, vreal y, vreal li
     return vmax(k->lowest, p - (vset(1) + dens) * vfma(lift_y, y, lift_x * x));
 }
 
+/* L-6a: beside its own pressure a fluid particle meets its mirror image, with the velocity
+ * 2 v_s - v_a. The work of both parts of the pressure then goes into compression. */
+SPHFSI_INLINE vreal fx_one_sided_rate(const struct pair *q) { return vset(2) * fx_continuity(q); }
+
 /* Used in place of the boundary force of Monaghan 1994, between fluid and dummies nearer than r0: a
  * pressure beta rho0 c0^2 ((r0^2 + eta^2)/(r^2 + eta^2) - 1), Pa; near = (r0^2 + eta^2)/h^2, inv =
  * h^2/(r^2 + eta^2). */

@@ -134,7 +134,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
 {
     struct exchange e;
     struct pair q = pair_between(a, code, b);
-    e.rate = fx_continuity(&q);
+    e.rate = fx & FX_ONE_SIDED ? fx_one_sided_rate(&q) : fx_continuity(&q);
     const vreal inv = vset(1) / (q.r2 + k->eta2);
     vreal stress = fx_pressure(a, &q);
     if (fx & FX_ONE_SIDED)

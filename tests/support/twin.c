@@ -187,7 +187,8 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     }
     const double pressure = slip ? surface_pressure(t, a, b) : a->p + b->p;
     const double factor = -b->m * (pressure / (a->rho * b->rho) + Pi);
-    const double moved = a->rho * V * (du * gx + dv * gy);
+    const double mirrored = slip && t->one_sided ? 2 : 1; /* the image in b has 2 v_b - v_a */
+    const double moved = mirrored * a->rho * V * (du * gx + dv * gy);
     const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
     if (!slip && t->tensile > 0) {
         const double f = kernel(r, t->h) / kernel(t->dp, t->h);
@@ -208,7 +209,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     a->size_a += b->m *
                  ((fabs(a->p) + fabs(b->p) + fabs(pressure)) / (a->rho * b->rho) + fabs(Pi)) *
                  hypot(gx, gy);
-    a->size_drho += a->rho * V * (fabs(du * gx) + fabs(dv * gy)) + fabs(diffused);
+    a->size_drho += mirrored * a->rho * V * (fabs(du * gx) + fabs(dv * gy)) + fabs(diffused);
     t->top_approach = fmax(t->top_approach, fabs(t->h * vx / (r * r + eta2)));
 }
 
