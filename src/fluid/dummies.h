@@ -238,20 +238,22 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
     scatter(d, wet_y, p->wet_y);
 }
 
-/* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. */
+/* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
+ * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
 static void no_slip(const struct fluid *f, const struct particles *p, const struct dummies *d,
                     const struct neighbours *neighbours, const struct cell_sides *sides)
 {
+    const bool own_image = f->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
     gather_velocity(f, d, p, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
-    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
+    for (int r = 0; r < CLUSTER && neighbours->n && !own_image; r += GROUPS) {
         const struct receiver s = receiver_at(sides, d->packed + r);
         mirrored_velocity(neighbours, &s, &mirror_u[r], &mirror_v[r]);
     }
     for (int r = 0; r < d->count; r++) {
-        sticks[r] = neighbours->n && f->sticks[d->kind][p->body[d->at[r]]];
+        sticks[r] = neighbours->n && f->sticks[d->kind][p->body[d->at[r]]] ? 1 + own_image : 0;
         if (sticks[r] != 0) continue;
         mirror_u[r] = u[r];
         mirror_v[r] = v[r];

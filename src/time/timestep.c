@@ -56,11 +56,12 @@ static double bound_repulsion(const struct simulation *s, const struct fluid_ext
     return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
 }
 
-/* Morris et al. 1997, Eq. 21. */
+/* Morris et al. 1997, Eq. 21. L-6b gives pairs with a surface twice the weight. */
 static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return 0.125 * square(s->fluid.k.h) / s->fluid.k.nu;
+    const double weight = s->effects & FX_NO_SLIP && s->effects & FX_ONE_SIDED ? 2 : 1;
+    return 0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.nu);
 }
 
 static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)

@@ -113,8 +113,8 @@ static void extrapolate(const struct twin *t, struct twin_point *s)
         size += (fabs(f->p) + fabs(lift)) * w;
     }
     s->weight = sum_w / kernel(0, t->h);
-    s->mu = sum_w > 0 ? 2 * s->u - sum_u / sum_w : s->u;
-    s->mv = sum_w > 0 ? 2 * s->v - sum_v / sum_w : s->v;
+    s->mu = sum_w > 0 && !t->one_sided ? 2 * s->u - sum_u / sum_w : s->u;
+    s->mv = sum_w > 0 && !t->one_sided ? 2 * s->v - sum_v / sum_w : s->v;
     s->p = sum_w > 0 ? sum / sum_w : 0;
     if (!t->suction && s->p < 0) s->p = 0;
     s->size_p = sum_w > 0 ? size / sum_w : 0;
@@ -146,7 +146,8 @@ static void renormalised_gradient(const struct twin *t, struct twin_point *a)
 static void laminar_pair(const struct twin *t, struct twin_point *a, const struct twin_point *b,
                          bool mirrored, double factor)
 {
-    const double c = b->m * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
+    const double image = mirrored && t->one_sided ? 2 : 1; /* b has 2 v_b - v_a */
+    const double c = image * b->m * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
     a->ax += c * (a->u - (mirrored ? b->mu : b->u));
     a->ay += c * (a->v - (mirrored ? b->mv : b->v));
     a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
@@ -227,8 +228,8 @@ static void solid_force(const struct twin *t, struct twin_point *s)
         s->fx += factor * slope * dx;
         s->fy += factor * slope * dy;
         if (s->sticks) {
-            const double drag = s->m * f->m * 2 * t->nu * t->rho0 / (s->rho * f->rho) * slope * r *
-                                r / (r * r + 0.01 * t->h * t->h);
+            const double drag = (t->one_sided ? 2 : 1) * s->m * f->m * 2 * t->nu * t->rho0 /
+                                (s->rho * f->rho) * slope * r * r / (r * r + 0.01 * t->h * t->h);
             s->fx += drag * (s->mu - f->u);
             s->fy += drag * (s->mv - f->v);
             s->size_f += fabs(drag) * (hypot(s->mu, s->mv) + hypot(f->u, f->v));
