@@ -17,6 +17,7 @@
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
 #   make verify-fluid    small scenes of rest, waves, impact, with both schemes: docs/fluid_verification.md
+#   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
 #   make performance     the same, longest steps and the gate: docs/performance.md
@@ -50,7 +51,7 @@ IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
-             $(if $(filter gate accuracy forecast validate verify-fluid bench performance,$(GOALS)),plot))
+             $(if $(filter gate accuracy forecast validate verify-% bench performance,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -239,6 +240,9 @@ random-cases: $(PROGRAM)
 verify-fluid: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_fluid.py $(ARGS)
 
+verify-manufactured: $(PROGRAM) $(SHARED)
+	$(Q)$(PROJECT_PYTHON) tools/manufactured.py $(ARGS)
+
 stability: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
 
@@ -282,7 +286,7 @@ gallery: $(PROGRAM)
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
-.PHONY: accuracy forecast verify-fluid
+.PHONY: accuracy forecast verify-fluid verify-manufactured
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
 	@$(MAKE) --no-print-directory all

@@ -26,10 +26,11 @@ static enum bound lone_bounds(struct simulation *s)
 
 static void advance_lone(struct simulation *s, double dt, int n)
 {
-    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC) {
+    const enum integrator by = s->scene->top.integrator;
+    if (by == INTEGRATOR_SYMPLECTIC) {
         for (int k = 0; k < n; k++) symplectic_solid(s, dt);
     } else {
-        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, false);
+        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, by == INTEGRATOR_LEAPFROG);
         s->state.solid_evaluations += n;
     }
 }
@@ -50,6 +51,19 @@ static double advance_near(struct simulation *s, double dt, int n)
         s->state.dt_min = s->state.steps || k ? min2(s->state.dt_min, now) : now;
     }
     return shorter ? gone : 0;
+}
+
+/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). place_solid sets the
+ * positions after the step. */
+static void external_for_step(struct simulation *s, double dt)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const double half = s->scene->top.integrator == INTEGRATOR_VERLET ? 0 : 0.5 * dt;
+    for (int64_t i = 0; half > 0 && i < p->n; i++) {
+        p->x[i] += half * p->vx[i];
+        p->y[i] += half * p->vy[i];
+    }
+    find_external(s, KIND_SOLID, s->state.time + half);
 }
 
 static void book_lone(struct simulation *s, double dt, int n, enum bound binding)
@@ -73,7 +87,6 @@ void solid_only_step(struct simulation *s, double t_limit)
     const enum bound binding = lone_bounds(s);
     const double bound = s->dt_bound[binding];
     const bool external = s->external[KIND_SOLID].at != NULL;
-    if (external) find_external(s, KIND_SOLID, st->time);
     const int batch = external || s->gravity_varies ? 1 : SOLID_BATCH;
     /* Equal steps up to the limit, as in timestep_choose. Rounding of the times must not add a
      * step. */
@@ -83,6 +96,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     const int n = hits ? (int)steps : batch;
     const bool cut = dt < bound * (1 - 1e-9);
     if (cut) s->dt_bound[BOUND_output] = dt;
+    if (external) external_for_step(s, dt);
     double gone = 0;
     if (near)
         gone = advance_near(s, dt, n);
