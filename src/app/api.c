@@ -39,8 +39,6 @@ struct sphfsi_simulation {
     int threads;                           /* of its parallel regions */
     struct host host;                      /* what the call that is going on gives back */
     atomic_bool busy;                      /* a call is going on */
-    struct due energy;                     /* when the energy is looked at: a run's ledger */
-    bool pushed;                           /* a force has added energy that no account has */
     bool stopped;                          /* by a guard */
 };
 
@@ -68,28 +66,13 @@ static enum sphfsi_status end(struct sphfsi_simulation *s, const struct diag *d,
     return call_result(d, e);
 }
 
-/* At the times of the ledger, as a run does. */
-static enum err look_at_energy(struct sphfsi_simulation *s, struct diag *d)
-{
-    struct simulation *const sim = &s->session.simulation;
-    const double time = sim->state.time;
-    if (s->pushed || !due_now(&s->energy, time, time >= s->session.scene.top.end_time))
-        return ERR_OK;
-    due_pass(&s->energy, time);
-    const struct ledger now = simulation_ledger(sim);
-    return guards_energy(sim, &now, d);
-}
-
 static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi_options *o,
                                 struct diag *d)
 {
     TRY(session_open(&s->session, o, d));
     struct simulation *const sim = &s->session.simulation;
-    enum err e = probes_create(&s->probes, sim, &sim->arena, d);
+    const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
     if (!e) probes_follow(&s->probes, sim);
-    s->energy.written = -1;
-    due_begin(&s->energy, s->session.scene.output.ledger_interval, 0, false);
-    if (!e) e = look_at_energy(s, d);
     if (e) session_close(&s->session);
     s->threads = thread_count();
     return e;
@@ -139,7 +122,6 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
                          limit, sim->state.time);
     enum err e = simulation_step(sim, limit, d);
     if (!e) probes_follow(&s->probes, sim);
-    if (!e) e = look_at_energy(s, d);
     s->stopped = e == ERR_GUARD;
     return e;
 }
@@ -437,7 +419,6 @@ static enum err set_force(struct sphfsi_simulation *s, enum sphfsi_kind kind, sp
         return diag_fail(d, ERR_INPUT, "force: must act on fluid or solid of the scene, not on %s",
                          (unsigned)kind < KIND_COUNT ? kind_names[kind] : "this");
     s->force[kind] = (struct user_function){.of = s, .force = force, .context = context};
-    s->pushed |= force != NULL;
     return simulation_external(sim, (enum kind)kind, force ? add_user_force : NULL, &s->force[kind],
                                d);
 }

@@ -143,8 +143,9 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    bool walls_placed;        /* walls rest, and their packed positions are valid */
-    bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
+    bool counts_touch;  /* the account reads the power of walls and structures of this evaluation */
+    bool walls_placed;  /* walls rest, and their packed positions are valid */
+    bool *near_dummies; /* [cells]: walls or structures in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */

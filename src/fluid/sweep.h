@@ -112,6 +112,21 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     store_four(p->div_r + i, slope * k->h * full * div_r, count);
 }
 
+/* Power of walls and structures on `count` particles from i on: what their terms of T-6 and T-7 add
+ * to kinetic and compression energy. The deferred sums contain fluid only. */
+SPHFSI_INLINE void touch_store(const struct fluid *f, struct particles *p, int32_t i, int count,
+                               const struct touch_sums *with, const struct touch_sums *without)
+{
+    const struct fluid_constants *const k = &f->k;
+    const four_double dens = FOUR(p->dens, i), pressure = pressure_of(dens, k);
+    const four_double ax = own_sum(with->ax) - own_sum(without->ax);
+    const four_double ay = own_sum(with->ay) - own_sum(without->ay);
+    const four_double rate = own_sum(with->rate) - own_sum(without->rate);
+    store_four(p->touch + i,
+               PAIR_SLOPE * k->h * (FOUR(p->vx, i) * ax + FOUR(p->vy, i) * ay - pressure * rate),
+               count);
+}
+
 /* Receivers of the fluid from their packed fields. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
                                        const struct vector_constants *k, effect_set fx)
@@ -143,8 +158,18 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
-    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
+    const bool touched = neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n;
+    if (touched && f->counts_touch) {
+        const struct touch_sums without = touch_sums_of(&s);
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
+        const struct touch_sums with = touch_sums_of(&s);
+        touch_store(f, p, i, count, &with, &without);
+    } else {
+        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+            if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
+        store_four(p->touch + i, (four_double){0}, count);
+    }
     top->approach = s.approach;
     real *const deferred =
         chunk->deferred + deferred_slot(chunk, (size_t)cluster) * deferred_stride(fx);

@@ -127,6 +127,6 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     TRY(simulation_resume(s, d));
     const struct ledger now = simulation_ledger(s);
     s->state.energy_start -= now.dissipated;
-    account_begin(s, &now);
+    account_begin(s);
     return ERR_OK;
 }

@@ -29,17 +29,14 @@ static enum err check_state(const struct simulation *s, struct diag *d)
 
 static enum err check_account(const struct account *a, struct diag *d)
 {
-    const struct {
-        const double *of;
-        double low;
-    } part[] = {{a->put, -FINITE},
-                {a->step_work, 0},
-                {a->high, -FINITE},
-                {a->play, -FINITE},
-                {a->region, 0}};
-    for (size_t p = 0; p < COUNT_OF(part); p++)
-        for (int k = 0; k < ACCOUNT_ENTRIES; k++)
-            TRY(range_check("account", part[p].of[k], part[p].low, FINITE, d));
+    /* All of its numbers are doubles (ACCOUNT_NUMBERS). */
+    const double *const number = (const double *)(const void *)a;
+    for (size_t k = 0; k < ACCOUNT_NUMBERS; k++)
+        TRY(range_check("account", number[k], -FINITE, FINITE, d));
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
+        TRY(range_check("account", a->step_work[k], 0, FINITE, d));
+        TRY(range_check("account", a->region[k], 0, FINITE, d));
+    }
     return ERR_OK;
 }
 

@@ -161,6 +161,23 @@ static double energy(const struct ledger *l)
     return l->kinetic + l->potential + l->internal + l->elastic + l->hourglass;
 }
 
+/* The most that a region has gained by each term of the account (T-46). */
+static void write_gains(struct json *j, const struct account *a)
+{
+    static const char *const names[ACCOUNT_TERMS] = {
+        [TERM_FLUID] = "fluid", [TERM_DISSIPATION] = "dissipation", [TERM_INTERFACE] = "interface",
+        [TERM_SOLID] = "solid", [TERM_ALL] = "boundaries",
+    };
+    json_open(j, "gains_by_term", '{');
+    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+        json_open(j, names[t], '{');
+        json_number(j, "gain", a->most[t]);
+        json_number(j, "gain_over_energy_in_play", a->most_share[t]);
+        json_close(j, '}');
+    }
+    json_close(j, '}');
+}
+
 /* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the changes of the
  * others. */
 static void write_drift(struct json *j, const struct simulation *s, const struct record *r)
@@ -176,6 +193,7 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_number(j, "dissipated", b->dissipated);
     json_number(j, "gain", s->state.gain);
     json_number(j, "gain_over_energy_in_play", s->state.gain_share);
+    write_gains(j, &s->state.account);
     number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
     json_number(j, "momentum_x", b->momentum_x - a->momentum_x);
     json_number(j, "momentum_y", b->momentum_y - a->momentum_y);

@@ -31,7 +31,7 @@ static void find_face(const struct solid *s, struct particles *p, int64_t i, dou
     p->face_x[i] = root * p->wet_x[i];
     p->face_y[i] = root * p->wet_y[i];
     p->face_v[i] = p->wx[i] * p->face_x[i] + p->wy[i] * p->face_y[i];
-    p->face_dv[i] = 0;
+    p->face_dv[i] = p->face_work[i] = 0;
 }
 
 void interface_begin(const struct solid *s, struct particles *p, double dt, int n)

@@ -10,14 +10,44 @@
 
 #include "solid/material.h"
 
-/* Strain energy per reference volume, J/m^3. The paper's law has no stored-energy function. Its row
- * is half the product of stress and strain, exact for small strains only. */
+/* The right stretch of F = R S, less the identity: (F^T F)^(1/2) - I in closed form, without
+ * cancellation (Hoger and Carlson 1984). */
+SPHFSI_INLINE struct vtensor2 right_stretch(struct vtensor2 U)
+{
+    const struct vtensor2 E = green_lagrange(U);
+    const vdouble J = vtensor2_det(deformation(U));
+    /* S = (C + J I)/trace S, with (trace S)^2 = trace C + 2 J. */
+    const vdouble sum = vsqrt_double(2.0 * (E.xx + E.yy + 1.0 + J)), per_sum = 1.0 / sum;
+    /* 1 + J - trace S. */
+    const vdouble excess = 4.0 * (E.xx * E.yy - E.xy * E.yx) / (1.0 + J + sum);
+    return (struct vtensor2){(2.0 * E.xx + excess) * per_sum, 2.0 * E.xy * per_sum,
+                             2.0 * E.yx * per_sum, (2.0 * E.yy + excess) * per_sum};
+}
+
+/* T-41a: the work of the paper's law, which has no potential, on the straight way from rest to the
+ * right stretch: the integral of P : dS by four points of Gauss. */
+SPHFSI_INLINE vdouble straight_work(const struct solid_body *b, struct vtensor2 U)
+{
+    static const double at[] = {0.06943184420297371, 0.33000947820757187, 0.66999052179242813,
+                                0.93056815579702629},
+                        weight[] = {0.17392742256872693, 0.32607257743127307, 0.32607257743127307,
+                                    0.17392742256872693};
+    const struct vtensor2 S = right_stretch(U);
+    vdouble work = vset_double(0);
+    for (int k = 0; k < 4; k++) {
+        const struct vtensor2 P = material_pk1(b, (struct vtensor2){S.xx * at[k], S.xy * at[k],
+                                                                    S.yx * at[k], S.yy * at[k]});
+        work = work + (P.xx * S.xx + P.xy * S.xy + P.yx * S.yx + P.yy * S.yy) * weight[k];
+    }
+    return work;
+}
+
+/* Strain energy per reference volume, J/m^3. */
 SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor2 U)
 {
-    const struct vtensor2 F = deformation(U), E = green_lagrange(U), cof = vtensor2_cof(F);
-    const vdouble J = vtensor2_det(F);
-    struct vtensor2 e = E;
+    const struct vtensor2 E = green_lagrange(U);
     if (b->law == LAW_NEO_HOOKEAN) {
+        const vdouble J = vtensor2_det(deformation(U));
         vdouble W = J;
         for (int l = 0; l < LANES_DOUBLE; l++) {
             const double t2 = b->plane == PLANE_STRESS
@@ -28,17 +58,9 @@ SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor
         }
         return W;
     }
-    if (b->law == LAW_PAPER) {
-        const vdouble inv_J2 = 1.0 / (J * J);
-        e = vtensor2_mul_t(vtensor2_mul(cof, E), cof);
-        e = (struct vtensor2){e.xx * inv_J2, e.xy * inv_J2, e.yx * inv_J2, e.yy * inv_J2};
-    }
-    const struct vtensor2 S = hooke(e, plane_lambda(b), b->mu);
-    const vdouble W = (S.xx * e.xx + S.yy * e.yy + S.xy * e.xy + S.yx * e.yx) * 0.5;
-    if (b->law != LAW_PAPER) return W;
-    if (b->plane == PLANE_STRAIN) return W * J;
-    const vdouble eps_zz = (e.xx + e.yy) * across_ratio(b);
-    return W * J / vsqrt_double(1.0 - 2.0 * eps_zz);
+    if (b->law == LAW_PAPER) return straight_work(b, U);
+    const struct vtensor2 S = hooke(E, plane_lambda(b), b->mu);
+    return (S.xx * E.xx + S.yy * E.yy + S.xy * E.xy + S.yx * E.yx) * 0.5;
 }
 
 /* State across the plane: the thickness stretch and the Cauchy stress sigma_zz, Pa, of lane 0. In

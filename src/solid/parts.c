@@ -255,7 +255,7 @@ enum err solid_parts_create(struct solid *s, struct arena *a, const struct parti
 /* --- stepping --- */
 
 #define STATE_FIELDS(p) (p)->ux, (p)->uy, (p)->vx, (p)->vy
-#define FACE_FIELDS(p) (p)->face_x, (p)->face_y, (p)->face_v, (p)->face_dv
+#define FACE_FIELDS(p) (p)->face_x, (p)->face_y, (p)->face_v, (p)->face_dv, (p)->face_work
 #define SHOWN_FIELDS(p) \
     (p)->Uxx, (p)->Uxy, (p)->Uyx, (p)->Uyy, (p)->Pxx, (p)->Pxy, (p)->Pyx, (p)->Pyy, (p)->sx, (p)->sy
 
@@ -282,8 +282,8 @@ static void give(const struct solid_part *part, double *const *from, double *con
 
 void solid_part_store(const struct solid_part *part, const struct particles *whole)
 {
-    double *const from[] = {STATE_FIELDS(&part->p), part->p.face_dv};
-    double *const to[] = {STATE_FIELDS(whole), whole->face_dv};
+    double *const from[] = {STATE_FIELDS(&part->p), part->p.face_dv, part->p.face_work};
+    double *const to[] = {STATE_FIELDS(whole), whole->face_dv, whole->face_work};
     give(part, from, to, COUNT_OF(from));
 }
 

@@ -301,9 +301,10 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
     const int64_t end = end_of(own);
 #pragma omp simd
     for (int64_t i = first_of(own); i < end; i++) {
+        const double before = impeded ? p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i] : 0;
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
-        if (impeded) impedance_kick(p, i);
+        if (impeded) impedance_kick(p, i, before);
         p->ux[i] += drift * p->vx[i];
         p->uy[i] += drift * p->vy[i];
     }

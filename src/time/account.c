@@ -37,8 +37,11 @@ static void unite(struct account *a, int one, int other)
     const int from = region_of(a, one), to = region_of(a, other);
     const int first = from < to ? from : to, second = from < to ? to : from;
     if (first == second) return;
-    a->high[first] += a->high[second];
-    a->play[first] += a->play[second];
+    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+        a->low[t][first] += a->low[t][second];
+        a->play[t][first] += a->play[t][second];
+    }
+    a->lowest[first] += a->lowest[second];
     for (int k = 0; k < ACCOUNT_ENTRIES; k++)
         if (region_of(a, k) == second) a->region[k] = first;
 }
@@ -135,6 +138,7 @@ static void join_at_once(struct simulation *s, double contact)
 
 struct energies {
     double kinetic, potential, internal, elastic, hourglass, contact;
+    double dummies; /* compression energy of dummies by their pressure */
 };
 
 static double in_play(const struct energies *e)
@@ -142,15 +146,27 @@ static double in_play(const struct energies *e)
     return e->kinetic + e->internal + e->elastic + e->hourglass + e->contact;
 }
 
+static void add_energies(struct energies *sum, const struct energies *e)
+{
+    sum->kinetic += e->kinetic;
+    sum->potential += e->potential;
+    sum->internal += e->internal;
+    sum->elastic += e->elastic;
+    sum->hourglass += e->hourglass;
+    sum->contact += e->contact;
+    sum->dummies += e->dummies;
+}
+
 static void add_fluid(const struct simulation *s, struct energies *of)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
     const struct fluid_constants *const k = &s->fluid.k;
+    const double *const g = s->scene->top.gravity;
     for (int64_t i = 0; i < p->n; i++) {
         struct energies *const e = &of[account_entry(KIND_FLUID, p->body[i])];
         const double m = p->m ? k->mass * p->m[i] : k->mass;
         e->kinetic += 0.5 * m * (square(p->vx[i]) + square(p->vy[i]));
-        e->potential -= m * (k->gravity[0] * p->x[i] + k->gravity[1] * p->y[i]);
+        e->potential -= m * (g[0] * p->x[i] + g[1] * p->y[i]);
         e->internal += m * eos_energy(p->dens[i], k->c0);
     }
 }
@@ -171,28 +187,89 @@ static void add_solids(const struct simulation *s, struct energies *of)
     }
 }
 
+/* The energy of dummies, divided among the fluids as their compression energy is: a wall at rest
+ * belongs to no region. */
+static void add_dummies(const struct simulation *s, struct energies *of)
+{
+    double dummies = 0, internal = 0;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        const struct particles *const p = &s->kind[kind];
+        for (int64_t i = 0; i < p->n && p->dens; i++)
+            dummies += s->fluid.volume[kind][p->body[i]] * eos_energy(p->dens[i], s->fluid.k.c0);
+    }
+    for (int k = 0; k < s->scene->n_fluid; k++)
+        internal += of[account_entry(KIND_FLUID, k)].internal;
+    for (int k = 0; k < s->scene->n_fluid && internal > 0; k++) {
+        struct energies *const e = &of[account_entry(KIND_FLUID, k)];
+        e->dummies = s->fluid.k.mass * dummies * e->internal / internal;
+    }
+}
+
 /* Energies of the sections. The first solid carries the energy of contact of all. */
-static void find_energies(const struct simulation *s, const struct ledger *now,
-                          struct energies of[ACCOUNT_ENTRIES])
+static void find_energies(struct simulation *s, struct energies of[ACCOUNT_ENTRIES])
 {
     memset(of, 0, ACCOUNT_ENTRIES * sizeof *of);
     if (s->effects & FX_FLUID) add_fluid(s, of);
     if (s->effects & FX_SOLID) add_solids(s, of);
-    of[account_entry(KIND_SOLID, 0)].contact = now->contact;
+    if (s->effects & FX_FLUID) add_dummies(s, of);
+    if (s->effects & FX_CONTACT)
+        of[account_entry(KIND_SOLID, 0)].contact =
+            contact_energy(&s->contact, &s->kind[KIND_SOLID], s->state.time);
 }
 
-void account_begin(struct simulation *s, const struct ledger *now)
+/* --- terms --- */
+
+/* Work that T-35b has still to take back from a body: the impulse at the velocity that the fluid
+ * uses. */
+static void find_owed(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int64_t i = 0; i < p->n && p->interface_impulse_x; i++)
+        of[p->body[i]] +=
+            p->interface_impulse_x[i] * p->wx[i] + p->interface_impulse_y[i] * p->wy[i];
+}
+
+/* The terms of the sections as they are now. */
+static void find_terms(const struct simulation *s, const struct energies of[ACCOUNT_ENTRIES],
+                       double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES])
+{
+    const struct account *const a = &s->state.account;
+    double owed[SCENE_MAX_SECTIONS];
+    find_owed(s, owed);
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
+        const bool solid = k >= account_entry(KIND_SOLID, 0);
+        const double more = in_play(&of[k]) + of[k].potential - a->put[k];
+        terms[TERM_FLUID][k] = solid ? 0 : more;
+        terms[TERM_SOLID][k] = solid ? more : 0;
+        terms[TERM_DISSIPATION][k] = a->spent[k];
+        terms[TERM_INTERFACE][k] =
+            solid ? a->exchange[k] - owed[k - account_entry(KIND_SOLID, 0)] : 0;
+        terms[TERM_ALL][k] = terms[TERM_FLUID][k] + terms[TERM_SOLID][k] + a->spent[k] +
+                             terms[TERM_INTERFACE][k] + a->dummies[k];
+    }
+}
+
+void account_begin(struct simulation *s)
 {
     struct account *const a = &s->state.account;
     struct energies of[ACCOUNT_ENTRIES];
     memset(a, 0, sizeof *a);
-    find_energies(s, now, of);
+    find_energies(s, of);
+    a->open = s->effects & FX_OPEN ? open_energy(&s->open) : 0;
+    a->looked = s->state.time;
+    double contact = 0;
+    find_owed(s, &a->exchange[account_entry(KIND_SOLID, 0)]);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
-        a->put[k] = in_play(&of[k]) + of[k].potential;
-        a->play[k] = in_play(&of[k]);
+        const double play = in_play(&of[k]);
+        a->put[k] = play + of[k].potential;
+        a->lowest[k] = of[k].potential;
+        for (int t = 0; t < ACCOUNT_TERMS; t++) a->play[t][k] = play;
+        a->low[TERM_ALL][k] = of[k].dummies;
         a->region[k] = k;
+        contact += of[k].contact;
     }
-    join_at_once(s, now->contact);
+    join_at_once(s, contact);
 }
 
 enum err account_check(const struct account *a, struct diag *d)
@@ -204,79 +281,108 @@ enum err account_check(const struct account *a, struct diag *d)
     return ERR_OK;
 }
 
-void account_work(struct account *a, enum kind kind, int section, double work)
+void account_work(struct account *a, enum account_source source, enum kind kind, int section,
+                  double work)
 {
     const int k = account_entry(kind, section);
     a->put[k] += work;
-    a->step_work[k] = max2(a->step_work[k], fabs(work));
+    account_step(a, source, k, work);
 }
 
-/* --- the check at a row --- */
+void account_step(struct account *a, enum account_source source, int entry, double work)
+{
+    const double change = fabs(work - a->last[source][entry]);
+    a->step_work[entry] = max2(a->step_work[entry], change);
+    a->last[source][entry] = work;
+}
+
+/* --- the check --- */
 
 /* Round-off of the sums (T-46). */
 #define ROUND_OFF 1e-9
 
-static struct gain gain_of(struct account *a, int region, const struct energies *of)
+/* Sums over the sections of a region. */
+struct region_sums {
+    struct energies energies;
+    double term[ACCOUNT_TERMS];
+    double off; /* below which a gain is an error of the sums */
+};
+
+static struct region_sums sum_region(const struct account *a, int region, const struct energies *of,
+                                     double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES])
 {
-    struct energies sum = {0};
-    double put = 0, size = 0, late = 0;
+    struct region_sums sum = {.off = 0};
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         if (region_of(a, k) != region) continue;
-        put += a->put[k];
-        size += fabs(a->put[k]) + fabs(of[k].potential);
-        late += a->step_work[k];
-        sum.kinetic += of[k].kinetic;
-        sum.potential += of[k].potential;
-        sum.internal += of[k].internal;
-        sum.elastic += of[k].elastic;
-        sum.hourglass += of[k].hourglass;
-        sum.contact += of[k].contact;
+        add_energies(&sum.energies, &of[k]);
+        for (int t = 0; t < ACCOUNT_TERMS; t++) sum.term[t] += terms[t][k];
+        sum.off += a->step_work[k] + ROUND_OFF * (fabs(a->put[k]) + fabs(of[k].potential));
     }
-    const double active = in_play(&sum), lost = put - active - sum.potential;
-    if (lost >= a->high[region]) {
-        a->high[region] = lost;
-        a->play[region] = active;
-    }
-    a->play[region] = max2(a->play[region], active);
-    const double off = late + ROUND_OFF * size, gained = a->high[region] - lost - off;
-    return (struct gain){
-        .entry = gained > 0 ? region : -1,
-        .energy = gained,
-        .play = a->play[region],
-        .net = -lost - off,
-        .kinetic = sum.kinetic,
-        .internal = sum.internal,
-        .elastic = sum.elastic,
-        .hourglass = sum.hourglass,
-    };
+    return sum;
 }
 
-/* The power at the end of a step is counted with the next step. So fluid that a wall has just
- * touched has its energy before any work of the wall is counted. */
-static void look_ahead(struct simulation *s)
+/* A gain of all terms together by the largest of them, if that is half of it. The rest is the work
+ * of dummies. */
+static void name_cause(struct gain *g, const double gained[ACCOUNT_TERMS])
 {
-    for (int k = 0; k < s->wall_motion.n; k++) {
-        const struct moving_wall *const b = &s->wall_motion.body[k];
-        double *const step_work = &s->state.account.step_work[account_entry(KIND_WALL, b->section)];
-        const double power = moving_body_power(b, &s->kind[KIND_WALL]);
-        *step_work = max2(*step_work, s->state.dt * fabs(power));
-    }
+    int largest = TERM_FLUID;
+    for (int t = 0; t < TERM_ALL; t++)
+        if (gained[t] > gained[largest]) largest = t;
+    if (g->term == TERM_ALL && gained[largest] >= 0.5 * g->energy)
+        g->term = (enum account_term)largest;
 }
 
-struct gain account_look(struct simulation *s, const struct ledger *now)
+/* The term of a region that has gained the largest fraction. */
+static struct gain gain_of(struct account *a, int region, const struct region_sums *sum)
+{
+    const struct energies *const e = &sum->energies;
+    struct gain worst = {.entry = -1,
+                         .play = 1,
+                         .kinetic = e->kinetic,
+                         .internal = e->internal,
+                         .elastic = e->elastic,
+                         .hourglass = e->hourglass};
+    a->lowest[region] = min2(a->lowest[region], e->potential);
+    const double active = in_play(e) + e->potential - a->lowest[region];
+    double gained[ACCOUNT_TERMS];
+    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+        /* Dummies may return what they hold. */
+        const double now = sum->term[t], base = now + (t == TERM_ALL ? e->dummies : 0);
+        if (base <= a->low[t][region]) {
+            a->low[t][region] = base;
+            a->play[t][region] = active;
+        }
+        a->play[t][region] = max2(a->play[t][region], active);
+        const double play = a->play[t][region];
+        const double more = gained[t] = now - a->low[t][region] - sum->off;
+        a->most[t] = max2(a->most[t], more);
+        if (more > 0 && play > 0) a->most_share[t] = max2(a->most_share[t], more / play);
+        if (!(more > 0) || (worst.entry >= 0 && more * worst.play <= worst.energy * play)) continue;
+        worst.entry = region;
+        worst.term = (enum account_term)t;
+        worst.energy = more;
+        worst.play = play;
+    }
+    const double all = gained[TERM_ALL] / a->play[TERM_ALL][region];
+    worst.all = gained[TERM_ALL] > 0 ? all : 0;
+    name_cause(&worst, gained);
+    return worst;
+}
+
+struct gain account_look(struct simulation *s)
 {
     struct account *const a = &s->state.account;
     struct energies of[ACCOUNT_ENTRIES];
+    double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
     struct gain worst = {.entry = -1, .play = 1};
-    join_at_once(s, now->contact);
+    find_energies(s, of);
+    join_at_once(s, of[account_entry(KIND_SOLID, 0)].contact);
     join_neighbours(s);
-    if (s->effects & FX_FLUID) look_ahead(s);
-    find_energies(s, now, of);
-    /* The energy that open boundaries bring in is less accurate than a gain (T-46): no check. */
-    const int open = s->effects & FX_OPEN ? region_of(a, account_entry(KIND_FLUID, 0)) : -1;
+    find_terms(s, of, terms);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
-        if (region_of(a, k) != k || k == open) continue;
-        const struct gain g = gain_of(a, k, of);
+        if (region_of(a, k) != k) continue;
+        const struct region_sums sum = sum_region(a, k, of, terms);
+        const struct gain g = gain_of(a, k, &sum);
         if (g.entry >= 0 && (worst.entry < 0 || g.energy * worst.play > worst.energy * g.play))
             worst = g;
     }

@@ -9,27 +9,24 @@
 /* Whether an account read from a file is valid. */
 enum err account_check(const struct account *a, struct diag *d) SPHFSI_CHECKED;
 
-/* What a region has gained, J/m. */
-struct gain {
-    int entry; /* first section of the region; -1: no region has gained energy */
-    double energy,
-        play;   /* since its dissipation was largest, and the largest energy in play since then */
-    double net; /* beyond all energy supplied from outside */
-    double kinetic, internal, elastic, hourglass; /* in play in the region now */
-};
-
 /* Where a section is. */
 int account_entry(enum kind kind, int section);
 
-/* Starts the account with the present energies. */
-void account_begin(struct simulation *s, const struct ledger *now);
+/* Starts the account with the present energies. Gradients and the pressure of dummies must be up
+ * to date. */
+void account_begin(struct simulation *s);
 
-/* Adds the work done on a section from outside in a step. */
-void account_work(struct account *a, enum kind kind, int section, double work);
+/* Adds the work done on a section in a step. */
+void account_work(struct account *a, enum account_source source, enum kind kind, int section,
+                  double work);
 
-/* Checks the regions at a row of the ledger. Returns the one whose gain is the largest fraction of
- * its energy in play. A gain within the rounding error of the sums counts as none. */
-struct gain account_look(struct simulation *s, const struct ledger *now);
+/* Notes the work of a step: its change bounds the error of the sums over steps. */
+void account_step(struct account *a, enum account_source source, int entry, double work);
+
+/* Checks the regions. Gradients and the pressure of dummies must be up to date. Returns the gain
+ * that is the largest fraction of the energy in play. One within the error of the sums counts as
+ * none. */
+struct gain account_look(struct simulation *s);
 
 /* Writes the names of a region's sections, "[solid plate], [fluid left]". */
 enum { ACCOUNT_TEXT = 160 };

@@ -72,6 +72,8 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
     if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) clear_applied_impulse(&s->kind[KIND_SOLID]);
     if (s->effects & FX_OPEN) set_buffers(s, time);
+    const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    s->fluid.counts_touch = !predicts || time != s->state.time; /* symplectic: of the corrector */
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
     if (s->external[KIND_FLUID].at) add_external(s, time);

@@ -10,10 +10,9 @@
  * that time. */
 enum { LOOK_INTERVAL = 16 };
 
-/* Checks the energy account at a row of the ledger: warns once if a region has gained energy, and
+/* Reads the gain of the last check of the account: warns once if a region has gained energy, and
  * fails if the gain is nine tenths of its energy in play. */
-enum err guards_energy(struct simulation *s, const struct ledger *row, struct diag *d)
-    SPHFSI_CHECKED;
+enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if
  * there are more than stray particles. */

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "particles/kernel.h"
+#include "time/booking.h"
 
 /* T-45: ten times the density change that c0 is chosen for, and two thirds of the guard's limit.
  * Larger tension is not part of the flow. */
@@ -26,6 +27,7 @@ void limit_isolated_tension(struct simulation *s)
     if (!(s->extremes.dens_low < lowest)) return;
     struct particles *const p = &s->kind[KIND_FLUID];
     const int most = most_of_drop(s);
+    const struct fluid_energy before = book_before(s);
     int64_t found = 0;
 #pragma omp parallel for schedule(static) reduction(+ : found)
     for (int64_t i = 0; i < p->n; i++) {
@@ -36,4 +38,5 @@ void limit_isolated_tension(struct simulation *s)
         found++;
     }
     s->state.tension_limited += found;
+    if (found) book_change(s, &before);
 }

@@ -5,6 +5,7 @@
  * same work. */
 #include <string.h>
 
+#include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 
@@ -78,6 +79,7 @@ void leapfrog_step(struct simulation *s, double t_limit)
     double clock = wall_clock();
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits), dt_old = st->dt;
+    book_step(s, dt);
     update_fluid(s, dt, dt_old, st->dt_old);
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/simulation.h"
 #include "time/account.h"
+#include "time/booking.h"
 #include "time/guards.h"
 
 #include <math.h>
@@ -308,7 +309,7 @@ static enum err build(struct simulation *s, struct diag *d)
     const struct ledger start = simulation_ledger(s);
     s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
                             start.hourglass + start.contact;
-    account_begin(s, &start);
+    account_begin(s);
     open_forget(&s->open); /* particles created in the buffers belong to the start */
     s->state.det_low = 1;
     s->evaluated = false; /* the caller may add to the scene before the first step */
@@ -348,28 +349,24 @@ void simulation_free(struct simulation *s) { arena_free(&s->arena); }
 /* Moves fluid particles towards lower concentration. */
 static double shift_fluid(struct simulation *s, double clock)
 {
+    const struct fluid_energy before = book_before(s);
     s->shifted = fluid_shift(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+    book_change(s, &before);
     return phase_add(s, PHASE_shift, clock);
 }
 
 /* Work of moving walls on the fluid in the last step. */
 static void add_wall_work(struct simulation *s)
 {
-    const struct particles *const walls = &s->kind[KIND_WALL];
-    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, walls);
-    for (int k = 0; k < s->wall_motion.n; k++) {
-        const struct moving_wall *const b = &s->wall_motion.body[k];
-        account_work(&s->state.account, KIND_WALL, b->section,
-                     s->state.dt * moving_body_power(b, walls));
-    }
+    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
 }
 
-/* Adds a particle's work to the account of its section (T-70). */
-static void book_gravity(struct simulation *s, enum kind kind, const struct particles *p, int64_t i,
-                         double mass, const double g[2])
+/* Adds the work on a particle of a solid to the account of its section (T-70). */
+static void book_gravity(struct simulation *s, const struct particles *p, int64_t i, double mass,
+                         const double g[2])
 {
     const double *const start = s->scene->top.gravity;
-    s->state.account.put[account_entry(kind, p->body[i])] +=
+    s->state.account.put[account_entry(KIND_SOLID, p->body[i])] +=
         s->state.dt * mass * ((g[0] - start[0]) * p->vx[i] + (g[1] - start[1]) * p->vy[i]);
 }
 
@@ -383,14 +380,13 @@ static void add_gravity_work(struct simulation *s)
     for (int64_t i = 0; i < fluid->n; i++) {
         px += s->fluid.k.mass * fluid->vx[i];
         py += s->fluid.k.mass * fluid->vy[i];
-        book_gravity(s, KIND_FLUID, fluid, i, s->fluid.k.mass, g);
     }
     for (int64_t i = 0; i < solid->n; i++) {
         const double mass = s->scene->solid[solid->body[i]].gravity * solid->free[i] *
                             s->solid.body[solid->body[i]].mass;
         px += mass * solid->vx[i];
         py += mass * solid->vy[i];
-        book_gravity(s, KIND_SOLID, solid, i, mass, g);
+        book_gravity(s, solid, i, mass, g);
     }
     s->state.wall_work += s->state.dt * ((g[0] - s->scene->top.gravity[0]) * px +
                                          (g[1] - s->scene->top.gravity[1]) * py);
@@ -414,7 +410,7 @@ static void take_work(struct simulation *s)
     s->state.wall_work += s->solid.work;
     s->solid.work = 0;
     for (int k = 0; k < s->solid.n_bodies; k++) {
-        account_work(&s->state.account, KIND_SOLID, k, s->solid.work_on[k]);
+        account_work(&s->state.account, SOURCE_OUTSIDE, KIND_SOLID, k, s->solid.work_on[k]);
         s->solid.work_on[k] = 0;
     }
 }
@@ -430,6 +426,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 {
     s->solid.time = s->state.time;
     if (!(s->effects & FX_FLUID)) {
+        const int64_t steps = s->state.steps;
         solid_only_step(s, t_limit);
         take_work(s);
         if (s->gravity_varies) add_gravity_work(s);
@@ -438,6 +435,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         show_strain(s);
         TRY(guards_check(s, d));
         timestep_recheck_solid(s);
+        book_look_lone(s, steps);
         return ERR_OK;
     }
     const double speed2_before = s->extremes.speed2;
@@ -459,7 +457,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     const enum err e = guards_check(s, d);
     find_speed(s);
     if (s->effects & FX_MOTION) add_wall_work(s);
-    if (s->effects & FX_OPEN) open_book(&s->open, s->state.dt);
+    if (s->effects & FX_OPEN) {
+        open_book(&s->open, s->state.dt);
+        book_open(s);
+    }
     take_work(s);
     if (s->gravity_varies) add_gravity_work(s);
     if (s->effects & FX_COUPLING) add_exchange(s);

@@ -65,6 +65,8 @@ struct simulation {
     } carried; /* by probes from step to step (output/probes.h): checkpointed, not hashed */
     struct guard guard;
     struct external external[KIND_COUNT]; /* of fluid and solid */
+    struct gain gain;                     /* of the last check of the account */
+    bool checked;                         /* the guards have yet to read it */
 };
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the

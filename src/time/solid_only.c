@@ -2,6 +2,7 @@
  * Steps of a solid without fluid. */
 #include <math.h>
 
+#include "time/account.h"
 #include "time/guards.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
@@ -79,6 +80,17 @@ static void book_lone(struct simulation *s, double dt, int n, enum bound binding
     s->substeps = 1;
 }
 
+/* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
+static void book_external(struct simulation *s, double dt)
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    const struct external *const external = &s->external[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++)
+        s->state.account.put[account_entry(KIND_SOLID, p->body[i])] +=
+            dt * s->solid.body[p->body[i]].mass * p->free[i] *
+            (external->ax[i] * p->vx[i] + external->ay[i] * p->vy[i]);
+}
+
 void solid_only_step(struct simulation *s, double t_limit)
 {
     struct state *const st = &s->state;
@@ -98,10 +110,12 @@ void solid_only_step(struct simulation *s, double t_limit)
     if (cut) s->dt_bound[BOUND_output] = dt;
     if (external) external_for_step(s, dt);
     double gone = 0;
+    if (external) book_external(s, 0.5 * dt);
     if (near)
         gone = advance_near(s, dt, n);
     else
         advance_lone(s, dt, n);
+    if (external) book_external(s, (gone > 0 ? gone : dt) - 0.5 * dt);
     place_solid(&s->kind[KIND_SOLID]);
     phase_add(s, PHASE_solid, start);
     st->time = gone > 0 ? st->time + gone : hits ? t_limit : st->time + n * dt;

@@ -10,15 +10,48 @@
 /* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
 enum { ACCOUNT_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
 
+/* Terms of the account, J/m. Each is negative in an exact solution, or zero (T-46). */
+enum account_term {
+    TERM_FLUID,       /* what the fluid's energy gains beyond the work of all its rates */
+    TERM_DISSIPATION, /* work of viscosity, diffusion, shifting and T-45 */
+    TERM_INTERFACE,   /* work on structures less what the fluid delivers */
+    TERM_SOLID,       /* what the solid's energy gains beyond the work on it */
+    TERM_ALL,         /* these, and the work of dummies */
+    ACCOUNT_TERMS
+};
+
+/* Work of a step on a section. */
+enum account_source { SOURCE_FLUID, SOURCE_OUTSIDE, ACCOUNT_SOURCES };
+
 /* Energies in J/m. */
 struct account {
-    /* Of sections: energy at the start, work from outside since then, and the largest work of a
-     * step. */
-    double put[ACCOUNT_ENTRIES], step_work[ACCOUNT_ENTRIES];
-    /* Of regions, at their first section: the most that has been dissipated so far, and the largest
-     * energy in play since then. */
-    double high[ACCOUNT_ENTRIES], play[ACCOUNT_ENTRIES];
+    /* Of sections: energy at the start and all work since then; the work of the last step,
+     * by the fluid's rates or its force and from outside; the largest change of either
+     * from step to step. */
+    double put[ACCOUNT_ENTRIES], last[ACCOUNT_SOURCES][ACCOUNT_ENTRIES];
+    double step_work[ACCOUNT_ENTRIES];
+    double spent[ACCOUNT_ENTRIES];   /* TERM_DISSIPATION of fluids */
+    double dummies[ACCOUNT_ENTRIES]; /* work of dummies on the fluid beyond that on the structure */
+    double exchange[ACCOUNT_ENTRIES]; /* TERM_INTERFACE of solids, with the work still to return */
+    /* Of regions, at their first section: the lowest value of each term, the energy that dummies
+     * could return then, and the largest energy in play since then; the lowest potential energy. */
+    double low[ACCOUNT_TERMS][ACCOUNT_ENTRIES], play[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
+    double lowest[ACCOUNT_ENTRIES];
     double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
+    /* The most that any region has gained by each term: J/m, and over the energy in play. */
+    double most[ACCOUNT_TERMS], most_share[ACCOUNT_TERMS];
+    double pending; /* s, from the last evaluation counted to the present state */
+    double open;    /* energy that open boundaries have brought in as far as it is counted */
+    double looked;  /* time of the last check, s */
+};
+
+/* What a region has gained, J/m. */
+struct gain {
+    int entry; /* first section of the region; -1: no region has gained energy */
+    enum account_term term;
+    double all;          /* gain of all terms together over the energy in play */
+    double energy, play; /* beyond the term's lowest value, and the largest in play since then */
+    double kinetic, internal, elastic, hourglass; /* in play in the region now */
 };
 enum { ACCOUNT_NUMBERS = sizeof(struct account) / sizeof(double) };
 

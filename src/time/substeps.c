@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "time/filter.h"
+#include "time/booking.h"
 #include "time/integrators.h"
 
 double place_solid(struct particles *p)
@@ -50,6 +51,7 @@ void advance_solid(struct simulation *s, double dt, int n, bool centred)
         p->vy0[i] = p->vy[i];
     }
     solid_advance(&s->solid, p, dt / n, n, centred);
+    book_solid(s, dt, n, centred);
     s->substeps = n;
     s->state.solid_substeps += n;
     s->state.solid_evaluations += n;

@@ -3,6 +3,7 @@
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
 #include "time/filter.h"
+#include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 
@@ -115,6 +116,7 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
+    book_look(s);
     predict_fluid(fluid, 0.5 * dt);
     if (coupled && multirate) carry_solid(s, 0.5 * dt);
     if (coupled && !multirate) {
@@ -127,6 +129,7 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     evaluate_fluid(s, time + 0.5 * dt);
     accept_evaluation(s);
+    book_midpoint(s, dt);
     clock = wall_clock();
     if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
     if (coupled && !multirate) rates_of_solid(s);
@@ -135,6 +138,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     advance_fluid(s, correct_rows, &dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
+        book_solid(s, dt, 1, true);
         solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
         solid_place_clamps(&s->solid, solid, time + dt);
         show_solid(solid, filter_weight(s, dt));

@@ -2,6 +2,7 @@
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
 #include "time/filter.h"
+#include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
 
@@ -65,6 +66,7 @@ void verlet_step(struct simulation *s, double t_limit)
     const double dt = timestep_choose(s, t_limit, &hits);
     const bool euler = s->state.verlet_count == 0;
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
+    book_step(s, dt);
     advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {

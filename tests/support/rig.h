@@ -55,4 +55,7 @@ void assert_near(double tolerance, double expected, double actual, const char *w
 /* Fails with both values unless value <= limit. */
 void assert_at_most(double limit, double value, const char *what);
 
+/* For a state that a test has set: no gain of energy stops the run. */
+void rig_ignore_gains(struct rig *r);
+
 #endif

@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/booking.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fluid/eos.h"
+#include "time/account.h"
+
+/* Power of a fluid section, W/m: of all rates on its energy; of walls and structures; of sources
+ * outside the scene. */
+struct power {
+    double total, touch, outer;
+};
+
+/* Sums in groups of eight over a fixed number of slices: the same order on every machine and with
+ * any number of threads. */
+enum { ABREAST = 8, SLICES = 16 };
+
+/* The rate at which T-6 and T-7 change kinetic, potential and compression energy of a particle,
+ * over the mass of a particle at rest. */
+SPHFSI_INLINE double rate_of(const struct particles *p, int64_t i, const struct fluid_constants *k,
+                             const double g[2])
+{
+    const double d = p->dens[i], m = p->m ? p->m[i] : 1;
+    const double pressure = square(k->c0) / EOS_GAMMA * eos_power(d);
+    return m * (p->vx[i] * (p->ax[i] - g[0]) + p->vy[i] * (p->ay[i] - g[1]) +
+                pressure / square(1 + d) * p->ddens[i]);
+}
+
+/* Acceleration from outside: of a program, and gravity beyond its value at t = 0. */
+static double outer_power(const struct simulation *s, int64_t i, const double more[2])
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const struct external *const external = &s->external[KIND_FLUID];
+    const double m = p->m ? p->m[i] : 1;
+    double power = more[0] * p->vx[i] + more[1] * p->vy[i];
+    if (external->at) power += external->ax[i] * p->vx[i] + external->ay[i] * p->vy[i];
+    return m * s->fluid.k.mass * power;
+}
+
+/* One section: without indices. */
+static struct power slice_power(const struct simulation *s, int64_t from, int64_t end)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double *const g = s->scene->top.gravity;
+    double total[ABREAST] = {0}, touch[ABREAST] = {0};
+    int64_t i = from;
+    for (; i + ABREAST <= end; i += ABREAST)
+#pragma omp simd
+        for (int r = 0; r < ABREAST; r++) {
+            total[r] += rate_of(p, i + r, &s->fluid.k, g);
+            touch[r] += p->touch[i + r];
+        }
+    for (; i < end; i++) {
+        total[0] += rate_of(p, i, &s->fluid.k, g);
+        touch[0] += p->touch[i];
+    }
+    struct power sum = {0};
+    for (int r = 0; r < ABREAST; r++) {
+        sum.total += s->fluid.k.mass * total[r];
+        sum.touch += touch[r];
+    }
+    return sum;
+}
+
+static void add_slice(const struct simulation *s, int64_t from, int64_t end, struct power *of)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double *const g = s->scene->top.gravity;
+    const double more[2] = {s->fluid.k.gravity[0] - g[0], s->fluid.k.gravity[1] - g[1]};
+    const bool outer = s->gravity_varies || s->external[KIND_FLUID].at;
+    if (s->scene->n_fluid == 1) {
+        of[0] = slice_power(s, from, end);
+    } else {
+        for (int64_t i = from; i < end; i++) {
+            of[p->body[i]].total += s->fluid.k.mass * rate_of(p, i, &s->fluid.k, g);
+            of[p->body[i]].touch += p->touch[i];
+        }
+    }
+    for (int64_t i = from; outer && i < end; i++) of[p->body[i]].outer += outer_power(s, i, more);
+}
+
+static void find_powers(const struct simulation *s, struct power of[SCENE_MAX_SECTIONS])
+{
+    const int64_t n = s->kind[KIND_FLUID].n;
+    struct power part[SLICES][SCENE_MAX_SECTIONS];
+    memset(part, 0, sizeof part);
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+#pragma omp parallel for schedule(static) num_threads(s->fluid.threads)
+    for (int m = 0; m < SLICES; m++) add_slice(s, n * m / SLICES, n * (m + 1) / SLICES, part[m]);
+    for (int m = 0; m < SLICES; m++)
+        for (int k = 0; k < s->scene->n_fluid; k++) {
+            of[k].total += part[m][k].total;
+            of[k].touch += part[m][k].touch;
+            of[k].outer += part[m][k].outer;
+        }
+    for (int k = 0; k < s->open.n && s->effects & FX_OPEN; k++)
+        of[0].outer += s->open.rate[k].power;
+}
+
+/* Power of the fluid's force on structures at the velocity that the fluid uses. */
+static void find_delivered(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int64_t i = 0; i < p->n && s->effects & FX_COUPLING; i++)
+        of[p->body[i]] += p->fx[i] * p->wx[i] + p->fy[i] * p->wy[i];
+}
+
+/* The rates of the last evaluation over dt. */
+static void integrate(struct account *a, const struct simulation *s, const struct power *power,
+                      const double *delivered, double dt)
+{
+    for (int k = 0; k < s->scene->n_fluid; k++) {
+        const int entry = account_entry(KIND_FLUID, k);
+        const struct power *const now = &power[k];
+        a->put[entry] += dt * now->total;
+        a->spent[entry] += dt * (now->total - now->touch - now->outer);
+        a->dummies[entry] += dt * now->touch;
+    }
+    for (int k = 0; k < s->scene->n_solid; k++) {
+        const int entry = account_entry(KIND_SOLID, k);
+        a->dummies[entry] += dt * delivered[k];
+        a->exchange[entry] -= dt * delivered[k];
+    }
+    for (int k = 0; k < s->wall_motion.n; k++) {
+        const struct moving_wall *const b = &s->wall_motion.body[k];
+        a->dummies[account_entry(KIND_WALL, b->section)] -=
+            dt * moving_body_power(b, &s->kind[KIND_WALL]);
+    }
+}
+
+static void note_step(struct account *a, const struct simulation *s, const struct power *power,
+                      double dt)
+{
+    for (int k = 0; k < s->scene->n_fluid; k++)
+        account_step(a, SOURCE_FLUID, account_entry(KIND_FLUID, k), dt * power[k].total);
+}
+
+/* Energy that open boundaries have brought in other than by their constraint. */
+static void take_open(struct simulation *s)
+{
+    struct account *const a = &s->state.account;
+    if (!(s->effects & FX_OPEN)) return;
+    const double now = open_energy(&s->open);
+    a->put[account_entry(KIND_FLUID, 0)] += now - a->open;
+    a->open = now;
+}
+
+void book_open(struct simulation *s) { s->state.account.open = open_energy(&s->open); }
+
+/* Steps and time between two checks. A check costs about two steps of a solid. */
+enum { LOOK_STEPS = 32, LONE_LOOK_STEPS = 256 };
+#define LOOK_TIME 2.5e-3
+
+static void look(struct simulation *s)
+{
+    if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
+    s->gain = account_look(s);
+    s->checked = true;
+    s->state.account.looked = s->state.time;
+}
+
+static bool overdue(const struct simulation *s)
+{
+    return s->state.time - s->state.account.looked >= LOOK_TIME;
+}
+
+void book_look(struct simulation *s)
+{
+    take_open(s);
+    if (s->state.steps % LOOK_STEPS == 0 || overdue(s)) look(s);
+}
+
+void book_look_lone(struct simulation *s, int64_t steps_before)
+{
+    if (s->state.steps / LONE_LOOK_STEPS > steps_before / LONE_LOOK_STEPS || overdue(s)) look(s);
+}
+
+void book_step(struct simulation *s, double dt)
+{
+    struct account *const a = &s->state.account;
+    struct power power[SCENE_MAX_SECTIONS];
+    double delivered[SCENE_MAX_SECTIONS];
+    find_powers(s, power);
+    find_delivered(s, delivered);
+    integrate(a, s, power, delivered, a->pending);
+    note_step(a, s, power, dt);
+    book_look(s);
+    a->pending = 0.5 * dt;
+    integrate(a, s, power, delivered, a->pending);
+}
+
+void book_midpoint(struct simulation *s, double dt)
+{
+    struct power power[SCENE_MAX_SECTIONS];
+    double delivered[SCENE_MAX_SECTIONS];
+    find_powers(s, power);
+    find_delivered(s, delivered);
+    integrate(&s->state.account, s, power, delivered, dt);
+    note_step(&s->state.account, s, power, dt);
+}
+
+/* Displacement of a particle by the mean velocities of its kicks. Drifts after the kicks are longer
+ * by half a kick of the change of velocity. */
+static void mean_way(const struct particles *p, int64_t i, double late, double way[2])
+{
+    way[0] = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
+    way[1] = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
+}
+
+void book_solid(struct simulation *s, double dt, int n, bool centred)
+{
+    struct account *const a = &s->state.account;
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    const double *const *const external = s->solid.external;
+    const double late = centred ? 0 : 0.5 * dt / n;
+    double fluid[SCENE_MAX_SECTIONS] = {0}, outer[SCENE_MAX_SECTIONS] = {0};
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->free[i] == 0) continue;
+        const double mass = s->solid.body[p->body[i]].mass;
+        double way[2];
+        mean_way(p, i, late, way);
+        fluid[p->body[i]] += p->fx[i] * way[0] + p->fy[i] * way[1];
+        if (s->solid.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
+        if (external[0])
+            outer[p->body[i]] += mass * (external[0][i] * way[0] + external[1][i] * way[1]);
+    }
+    for (int k = 0; k < s->scene->n_solid; k++) {
+        account_work(a, SOURCE_FLUID, KIND_SOLID, k, fluid[k] + outer[k]);
+        a->exchange[account_entry(KIND_SOLID, k)] += fluid[k];
+    }
+}
+
+struct fluid_energy book_before(const struct simulation *s)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const struct fluid_constants *const k = &s->fluid.k;
+    const double *const g = s->scene->top.gravity;
+    struct fluid_energy e = {{0}};
+    for (int64_t i = 0; i < p->n; i++)
+        e.section[p->body[i]] += (p->m ? p->m[i] : 1) * k->mass *
+                                 (eos_energy(p->dens[i], k->c0) - g[0] * p->x[i] - g[1] * p->y[i]);
+    return e;
+}
+
+void book_change(struct simulation *s, const struct fluid_energy *before)
+{
+    const struct fluid_energy after = book_before(s);
+    for (int k = 0; k < s->scene->n_fluid; k++) {
+        const int entry = account_entry(KIND_FLUID, k);
+        const double change = after.section[k] - before->section[k];
+        s->state.account.put[entry] += change;
+        s->state.account.spent[entry] += change;
+    }
+}
