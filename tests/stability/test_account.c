@@ -51,6 +51,8 @@ static enum err go_on(double end)
 static enum err run(const char *text, const char *set, double end)
 {
     rig_open(&rig, text, set, NULL);
+    simulation_refresh(&rig.sim);
+    account_begin(&rig.sim);
     rig.diag = (struct diag){.warn = note};
     warnings = 0;
     return go_on(end);

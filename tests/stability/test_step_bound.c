@@ -72,7 +72,6 @@ static double growth(const struct combination *c, double factor, int steps, cons
         p->vx[i] = 1e-4 * p->free[i] * noise(&seed);
         p->vy[i] = 1e-4 * p->free[i] * noise(&seed);
     }
-    rig_ignore_gains(&rig);
     struct ledger row = simulation_ledger(&rig.sim);
     const double start = row.kinetic;
     while (rig.sim.state.steps < steps)

@@ -51,7 +51,6 @@ static void stretch(const struct strained *c)
         p->vx[i] = 1e-4 * p->free[i] * noise(&seed);
         p->vy[i] = 1e-4 * p->free[i] * noise(&seed);
     }
-    rig_ignore_gains(&rig);
 }
 
 static double total_energy(void)

@@ -36,6 +36,7 @@ void rig_open(struct rig *r, const char *text, ...)
     e = simulation_create(&r->sim, &r->scene, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->sim_open = true;
+    rig_ignore_gains(r);
 }
 
 void rig_close(struct rig *r)

@@ -55,7 +55,8 @@ void assert_near(double tolerance, double expected, double actual, const char *w
 /* Fails with both values unless value <= limit. */
 void assert_at_most(double limit, double value, const char *what);
 
-/* For a state that a test has set: no gain of energy stops the run. */
+/* Tests put energy into the state: no gain of energy stops a run that a rig has opened, unless the
+ * account begins again (account_begin). */
 void rig_ignore_gains(struct rig *r);
 
 #endif

@@ -288,6 +288,8 @@ static void advises(const char *text, const char *what, const char *set, const c
 {
     rig_open(&rig, text, set, another, NULL);
     rig_steps(&rig, 1, 1);
+    simulation_refresh(&rig.sim);
+    account_begin(&rig.sim);
     rig.sim.kind[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
     rig.diag = (struct diag){.warn = note};
     simulation_refresh(&rig.sim);

@@ -251,7 +251,6 @@ static double energy_after(int steps, double *start)
         p->vx[i] = 0.01 * noise(&seed);
         p->vy[i] = 0.01 * noise(&seed);
     }
-    rig_ignore_gains(&rig);
     struct ledger row = simulation_ledger(&rig.sim);
     *start = row.kinetic;
     const double fixed = rig.scene.numerics.fixed_step;
