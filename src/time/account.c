@@ -379,6 +379,10 @@ struct gain account_look(struct simulation *s)
     join_at_once(s, of[account_entry(KIND_SOLID, 0)].contact);
     join_neighbours(s);
     find_terms(s, of, terms);
+    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+        a->now[t] = 0;
+        for (int k = 0; k < ACCOUNT_ENTRIES; k++) a->now[t] += terms[t][k];
+    }
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         if (region_of(a, k) != k) continue;
         const struct region_sums sum = sum_region(a, k, of, terms);

@@ -40,6 +40,7 @@ struct account {
     double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
     /* The most that any region has gained by each term: J/m, and over the energy in play. */
     double most[ACCOUNT_TERMS], most_share[ACCOUNT_TERMS];
+    double now[ACCOUNT_TERMS]; /* sums over all sections at the last check */
     double pending; /* s, from the last evaluation counted to the present state */
     double open;    /* energy that open boundaries have brought in as far as it is counted */
     double looked;  /* time of the last check, s */

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT
+ * The account of energy (T-46a to T-46d): what does not close is the error of the time integration, which falls
+ * with the step, and a run that becomes unstable is named as soon as it does. */
+#include "time/account.h"
+#include "time/guards.h"
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Water on both sides of a plate, higher on the left. */
+static const char tanks[] =
+    "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n[constants]\nx1 = 0.115\n"
+    "[fluid left]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nartificial_viscosity = 0.1\n"
+    "density_diffusion = 0.1\nsurface = 0.1\n"
+    "[fluid right]\nlike = left\nshape = box x1, 0, x1 + 0.1, 0.05\nsurface = 0.05\n"
+    "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.1, 0\n"
+    "shape = polyline thickness -0.02: x1, 0; x1 + 0.1, 0; x1 + 0.1, 0.2\n"
+    "[solid plate]\nshape = box 0.1, -0.02, x1, 0.12\nclamp = box 0.1, -0.02, x1, 0\n"
+    "density = 1000\nyoung = 1.5e6\npoisson = 0.3\n";
+/* A beam that swings, without viscosity. */
+static const char beam[] = "dp = 5 mm\nend_time = 1\n[solid beam]\nshape = box 0, 0, 0.2, 0.02\n"
+                           "clamp = box 0, 0, 0.02, 0.02\ndensity = 1000\nyoung = 1 MPa\n"
+                           "poisson = 0.3\nartificial_viscosity = 0\nlaw = svk\n"
+                           "velocity = 0, 5*x\n";
+
+static const char *const integrators[] = {"integrator=leapfrog", "integrator=symplectic",
+                                          "integrator=verlet"};
+
+static struct rig rig;
+static char warning[512];
+static double named; /* s; 0: not */
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    if (!strstr(text, "gained") || named > 0) return;
+    named = rig.sim.state.time;
+    snprintf(warning, sizeof warning, "%s", text);
+}
+
+void setUp(void) {}
+void tearDown(void) { rig_close(&rig); }
+
+static void begin(const char *text, const char *set, const char *another, const char *third)
+{
+    rig_open(&rig, text, set, another, third, NULL);
+    simulation_refresh(&rig.sim);
+    account_begin(&rig.sim);
+    rig.diag = (struct diag){.warn = note};
+    named = 0;
+}
+
+static void go_on(double end)
+{
+    while (rig.sim.state.time < end)
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, simulation_step(&rig.sim, end, &rig.diag),
+                                      rig.diag.text);
+}
+
+/* The largest size of a term at the checks of a run, over the energy in play, with a step that is a
+ * fraction of the stable one. */
+static double remainder_of(const char *text, const char *integrator, enum account_term term,
+                           const char *key, double fraction, double end)
+{
+    char step[64];
+    snprintf(step, sizeof step, "%s=%g", key, fraction);
+    begin(text, integrator, step, NULL);
+    const struct account *const a = &rig.sim.state.account;
+    double play = 0, most = 0;
+    while (rig.sim.state.time < end) {
+        go_on(fmin(end, rig.sim.state.time + 1e-3));
+        most = fmax(most, fabs(a->now[term]));
+    }
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++) play = fmax(play, a->play[term][k]);
+    TEST_ASSERT_TRUE(play > 1e-3);
+    TEST_ASSERT_TRUE_MESSAGE(named == 0, warning);
+    return most / play;
+}
+
+static void falls(const char *text, enum account_term term, const char *key, double coarse,
+                  double end, double most)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        const double wide = remainder_of(text, integrators[k], term, key, coarse, end);
+        rig_close(&rig);
+        const double narrow = remainder_of(text, integrators[k], term, key, 0.25 * coarse, end);
+        rig_close(&rig);
+        printf("%s: %.2e of the energy in play, %.2e at a quarter of the step\n", integrators[k],
+               wide, narrow);
+        assert_at_most(most, wide, integrators[k]);
+        assert_at_most(0.3 * wide, narrow, integrators[k]);
+    }
+}
+
+static void test_the_fluid_closes_with_the_step(void)
+{
+    falls(tanks, TERM_FLUID, "numerics.cfl", 0.2, 0.03, 1e-3);
+}
+
+static void test_the_solid_closes_with_the_step(void)
+{
+    falls(beam, TERM_SOLID, "numerics.solid_safety", 0.9, 0.05, 1e-3);
+}
+
+/* All terms and the work of dummies are the change of energy that the ledger has, which knows none of
+ * them. */
+static void test_the_terms_add_up(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        begin(tanks, integrators[k], NULL, NULL);
+        const struct ledger first = simulation_ledger(&rig.sim);
+        go_on(0.02);
+        const struct ledger last = simulation_ledger(&rig.sim);
+        account_look(&rig.sim);
+        const struct account *const a = &rig.sim.state.account;
+        double lost = 0;
+        for (int e = 0; e < ACCOUNT_ENTRIES; e++) lost += a->spent[e] + a->dummies[e];
+        const double play = first.internal + last.kinetic + last.elastic;
+        assert_near(0.01 * play, last.dissipated - first.dissipated, -lost, integrators[k]);
+        rig_close(&rig);
+    }
+}
+
+/* A solid whose bound is forgotten: named within 5 ms and before a tenth of the energy in play is
+ * gained, or stopped. */
+static void test_an_unstable_solid_is_named(void)
+{
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        begin(tanks, integrators[k], "numerics.solid_safety=1", "plate.young=2e8");
+        go_on(0.01);
+        TEST_ASSERT_TRUE(named == 0);
+        const double start = rig.sim.state.time;
+        enum err e = ERR_OK;
+        while (!e && named == 0 && rig.sim.state.time < start + 6e-3) {
+            rig.sim.state.substeps_held =
+                (int64_t)fmax(1, 0.6 * ceil(rig.sim.state.dt / rig.sim.solid.stable_step));
+            rig.sim.dt_solid = rig.sim.dt_lone_solid = 1;
+            e = simulation_step(&rig.sim, 1, &rig.diag);
+        }
+        const double at = named > 0 ? named : rig.sim.state.time;
+        printf("%s: named after %.2g ms\n", integrators[k], 1e3 * (at - start));
+        TEST_ASSERT_TRUE(e == ERR_GUARD || named > 0);
+        assert_at_most(5e-3, at - start, "time until it is named");
+        const char *const text = named > 0 ? warning : rig.diag.text;
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "solid"), text);
+        rig_close(&rig);
+    }
+}
+
+/* Energy that comes from nowhere at the interface. */
+static void test_a_gain_at_the_interface_is_named(void)
+{
+    begin(tanks, "integrator=leapfrog", NULL, NULL);
+    go_on(0.03);
+    TEST_ASSERT_TRUE(named == 0);
+    struct account *const a = &rig.sim.state.account;
+    const double start = rig.sim.state.time;
+    double play = 0;
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++) play = fmax(play, a->play[TERM_INTERFACE][k]);
+    a->exchange[account_entry(KIND_SOLID, 0)] += 0.02 * play;
+    go_on(start + 6e-3);
+    TEST_ASSERT_TRUE(named > 0);
+    assert_at_most(5e-3, named - start, "time until it is named");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "by the exchange between fluid and structure"),
+                                 warning);
+}
+
+int main(void)
+{
+    rig_one_thread();
+    UNITY_BEGIN();
+    RUN_TEST(test_the_fluid_closes_with_the_step);
+    RUN_TEST(test_the_solid_closes_with_the_step);
+    RUN_TEST(test_the_terms_add_up);
+    RUN_TEST(test_an_unstable_solid_is_named);
+    RUN_TEST(test_a_gain_at_the_interface_is_named);
+    return UNITY_END();
+}
