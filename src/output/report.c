@@ -172,7 +172,7 @@ static void write_gains(struct json *j, const struct account *a)
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
         json_open(j, names[t], '{');
         json_number(j, "gain", a->most[t]);
-        json_number(j, "gain_over_energy_in_play", a->most_share[t]);
+        number_if(j, a->top > 0, "gain_over_energy_in_play", a->most[t] / a->top);
         json_close(j, '}');
     }
     json_close(j, '}');

@@ -345,6 +345,7 @@ static struct gain gain_of(struct account *a, int region, const struct region_su
     a->lowest[region] = min2(a->lowest[region], e->potential);
     const double active = in_play(e) + e->potential - a->lowest[region];
     double gained[ACCOUNT_TERMS];
+    a->top = max2(a->top, active);
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
         /* Dummies may return what they hold. */
         const double now = sum->term[t], base = now + (t == TERM_ALL ? e->dummies : 0);
@@ -355,8 +356,7 @@ static struct gain gain_of(struct account *a, int region, const struct region_su
         a->play[t][region] = max2(a->play[t][region], active);
         const double play = a->play[t][region];
         const double more = gained[t] = now - a->low[t][region] - sum->off;
-        a->most[t] = max2(a->most[t], more);
-        if (more > 0 && play > 0) a->most_share[t] = max2(a->most_share[t], more / play);
+        a->most[t] = max2(a->most[t], more + sum->off);
         if (!(more > 0) || (worst.entry >= 0 && more * worst.play <= worst.energy * play)) continue;
         worst.entry = region;
         worst.term = (enum account_term)t;

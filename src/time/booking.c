@@ -18,14 +18,13 @@ struct power {
 enum { ABREAST = 8, SLICES = 16 };
 
 /* The rate at which T-6 and T-7 change kinetic, potential and compression energy of a particle,
- * over the mass of a particle at rest. */
-SPHFSI_INLINE double rate_of(const struct particles *p, int64_t i, const struct fluid_constants *k,
-                             const double g[2])
+ * over its mass. `stiff`: c0^2/7. */
+SPHFSI_INLINE double rate_of(const struct particles *p, int64_t i, double stiff, double gx,
+                             double gy)
 {
-    const double d = p->dens[i], m = p->m ? p->m[i] : 1;
-    const double pressure = square(k->c0) / EOS_GAMMA * eos_power(d);
-    return m * (p->vx[i] * (p->ax[i] - g[0]) + p->vy[i] * (p->ay[i] - g[1]) +
-                pressure / square(1 + d) * p->ddens[i]);
+    const double d = p->dens[i], s = 1 + d;
+    return p->vx[i] * (p->ax[i] - gx) + p->vy[i] * (p->ay[i] - gy) +
+           stiff * eos_power(d) / (s * s) * p->ddens[i];
 }
 
 /* Acceleration from outside: of a program, and gravity beyond its value at t = 0. */
@@ -39,22 +38,23 @@ static double outer_power(const struct simulation *s, int64_t i, const double mo
     return m * s->fluid.k.mass * power;
 }
 
-/* One section: without indices. */
+/* One section and one mass: without indices. */
 static struct power slice_power(const struct simulation *s, int64_t from, int64_t end)
 {
-    const struct particles *const p = &s->kind[KIND_FLUID];
-    const double *const g = s->scene->top.gravity;
+    const struct particles p = s->kind[KIND_FLUID];
+    const double gx = s->scene->top.gravity[0], gy = s->scene->top.gravity[1];
+    const double stiff = square(s->fluid.k.c0) / EOS_GAMMA;
     double total[ABREAST] = {0}, touch[ABREAST] = {0};
     int64_t i = from;
     for (; i + ABREAST <= end; i += ABREAST)
 #pragma omp simd
         for (int r = 0; r < ABREAST; r++) {
-            total[r] += rate_of(p, i + r, &s->fluid.k, g);
-            touch[r] += p->touch[i + r];
+            total[r] += rate_of(&p, i + r, stiff, gx, gy);
+            touch[r] += p.touch[i + r];
         }
     for (; i < end; i++) {
-        total[0] += rate_of(p, i, &s->fluid.k, g);
-        touch[0] += p->touch[i];
+        total[0] += rate_of(&p, i, stiff, gx, gy);
+        touch[0] += p.touch[i];
     }
     struct power sum = {0};
     for (int r = 0; r < ABREAST; r++) {
@@ -70,11 +70,13 @@ static void add_slice(const struct simulation *s, int64_t from, int64_t end, str
     const double *const g = s->scene->top.gravity;
     const double more[2] = {s->fluid.k.gravity[0] - g[0], s->fluid.k.gravity[1] - g[1]};
     const bool outer = s->gravity_varies || s->external[KIND_FLUID].at;
-    if (s->scene->n_fluid == 1) {
+    const double stiff = square(s->fluid.k.c0) / EOS_GAMMA;
+    if (s->scene->n_fluid == 1 && !p->m) {
         of[0] = slice_power(s, from, end);
     } else {
         for (int64_t i = from; i < end; i++) {
-            of[p->body[i]].total += s->fluid.k.mass * rate_of(p, i, &s->fluid.k, g);
+            of[p->body[i]].total +=
+                (p->m ? p->m[i] : 1) * s->fluid.k.mass * rate_of(p, i, stiff, g[0], g[1]);
             of[p->body[i]].touch += p->touch[i];
         }
     }

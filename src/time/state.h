@@ -38,12 +38,13 @@ struct account {
     double low[ACCOUNT_TERMS][ACCOUNT_ENTRIES], play[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
     double lowest[ACCOUNT_ENTRIES];
     double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
-    /* The most that any region has gained by each term: J/m, and over the energy in play. */
-    double most[ACCOUNT_TERMS], most_share[ACCOUNT_TERMS];
+    /* The most that any region has gained by each term, the error of the sums included, and the
+     * largest energy in play of any, J/m. */
+    double most[ACCOUNT_TERMS], top;
     double now[ACCOUNT_TERMS]; /* sums over all sections at the last check */
-    double pending; /* s, from the last evaluation counted to the present state */
-    double open;    /* energy that open boundaries have brought in as far as it is counted */
-    double looked;  /* time of the last check, s */
+    double pending;            /* s, from the last evaluation counted to the present state */
+    double open;   /* energy that open boundaries have brought in as far as it is counted */
+    double looked; /* time of the last check, s */
 };
 
 /* What a region has gained, J/m. */

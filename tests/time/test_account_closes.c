@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The account of energy (T-46a to T-46d): what does not close is the error of the time integration, which falls
- * with the step, and a run that becomes unstable is named as soon as it does. */
+ * The account of energy (T-46a to T-46d): what does not close is the error of the time integration,
+ * which falls with the step, and a run that becomes unstable is named as soon as it does. */
 #include "time/account.h"
 #include "time/guards.h"
 #include "rig.h"
