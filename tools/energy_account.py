@@ -119,7 +119,8 @@ def grid_lines(program):
                         for name in TERMS)
     return [f"Of {len(cases)} plates {stopped} were stopped, and {above} gained more than 1 % of the",
             "energy in play by a term of the account.", "",
-            f"Median and largest gain by term: {typical}.", "", "Those above 1 %:", "", *(f"- {text}" for text in where)]
+            f"Median and largest gain by term: {typical}.", "",
+            "Those above 1 %:", "", *(f"- {text}" for text in where)]
 
 
 def main():
