@@ -26,6 +26,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import random_scenes
@@ -224,6 +225,7 @@ def main():
     parser.add_argument("--seed", type=int, help="the case of this seed alone")
     parser.add_argument("--first", type=int, default=1, help="seed of the first case")
     parser.add_argument("--print", action="store_true", help="print the case of --seed")
+    parser.add_argument("--jobs", type=int, default=1, help="cases at a time")
     parser.add_argument("--keep", type=Path, help="keep the folders of the runs here")
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long")
     parser.add_argument("--builds", nargs="+", metavar="NAME=PROGRAM", default=["gcc=./sphfsi"])
@@ -238,25 +240,32 @@ def main():
     start, seed, count, features = time.time(), args.seed or args.first, Counter(), Counter()
     steps = kills = 0
     failures = []
-    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as top:
-        while count.total() - count["refused"] < (1 if args.seed else args.count) and \
-                time.time() - start < 60 * args.minutes:
-            folder = (args.keep or Path(top)) / f"seed-{seed}"
-            try:
-                result = one_case(seed, builds, folder)
-            except subprocess.TimeoutExpired as late:
-                result = {"outcome": "FAILED", "why": f"does not end: {late.cmd}"}
-            count[result["outcome"]] += 1
-            features.update(result.get("features", ()))
-            steps += result.get("steps", 0)
-            kills += result.get("kills", 0)
-            if result["outcome"] == "FAILED":
-                failures.append(f"seed {seed}: {result['why']}")
-            if result["outcome"] != "finished":
-                print(f"seed {seed}: {result['outcome']}: {result['why']}", flush=True)
+    def try_seed(k):
+        folder = (args.keep or Path(top)) / f"seed-{k}"
+        try:
+            return k, one_case(k, builds, folder)
+        except subprocess.TimeoutExpired as late:
+            return k, {"outcome": "FAILED", "why": f"does not end: {late.cmd}"}
+        finally:
             if not args.keep:
                 shutil.rmtree(folder, ignore_errors=True)
-            seed += 1
+
+    wanted = 1 if args.seed else args.count
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as top, \
+            ThreadPoolExecutor(args.jobs) as pool:
+        while (left := wanted - count.total() + count["refused"]) > 0 and \
+                time.time() - start < 60 * args.minutes:
+            seeds = range(seed, seed + min(left, 10))
+            seed = seeds.stop
+            for k, result in pool.map(try_seed, seeds):
+                count[result["outcome"]] += 1
+                features.update(result.get("features", ()))
+                steps += result.get("steps", 0)
+                kills += result.get("kills", 0)
+                if result["outcome"] == "FAILED":
+                    failures.append(f"seed {k}: {result['why']}")
+                if result["outcome"] != "finished":
+                    print(f"seed {k}: {result['outcome']}: {result['why']}", flush=True)
     record = {"cases": count.total() - count["refused"], "outcomes": dict(count), "steps": steps,
               "kills": kills, "features": dict(sorted(features.items())), "builds": sorted(builds),
               "seeds": [args.seed or args.first, seed - 1], "failures": failures,
