@@ -18,6 +18,7 @@
 #                        it was interrupted
 #   make verify-fluid    small scenes of rest, waves, impact, with both schemes: docs/fluid_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
+#   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
 #   make performance     the same, longest steps and the gate: docs/performance.md
@@ -243,6 +244,9 @@ verify-fluid: $(PROGRAM)
 verify-manufactured: $(PROGRAM) $(SHARED)
 	$(Q)$(PROJECT_PYTHON) tools/manufactured.py $(ARGS)
 
+verify-open: $(PROGRAM)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_open.py $(ARGS)
+
 stability: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
 
@@ -279,7 +283,7 @@ gate: $(PROGRAM)
 GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:1.2:pressure \
            beam_on_beam:1.2:pressure two_posts:0.16:pressure \
            rotating_patch:0.6:pressure accelerated_tank:1:pressure \
-           ringing_bar:0.01:pressure
+           ringing_bar:0.01:pressure elastic_valve:0.75:velocity
 gallery: $(PROGRAM)
 	@set -e; for g in $(GALLERY); do \
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
@@ -287,6 +291,8 @@ gallery: $(PROGRAM)
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
 .PHONY: accuracy forecast verify-fluid verify-manufactured
+
+.PHONY: accuracy forecast verify-fluid verify-open
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
 	@$(MAKE) --no-print-directory all

@@ -8,6 +8,7 @@ examples:
   tools/turek_hron.py read runs/turek_hron/*      prints what the runs show
   tools/turek_hron.py keep runs/turek_hron/*      adds it to docs/turek_hron.json
   tools/turek_hron.py report                      writes docs/turek_hron.md from there
+  tools/turek_hron.py pictures runs/turek_hron/fsi2-10   draws docs/img/turek_hron_*.png
 """
 import argparse
 import csv
@@ -264,6 +265,40 @@ def report():
     PAGE.write_text("\n".join(text), encoding="utf-8")
 
 
+def pictures(run):
+    """Error of the amplitude of uy against core-seconds, from the kept runs; histories of a run."""
+    import matplotlib
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+    fig, ax = plt.subplots(figsize=(6, 3.6))
+    for case, mark in (("fsi2", "o"), ("fsi3", "s")):
+        wanted = REFERENCE[case]["uy"][1]
+        own = [(k["cpu_seconds"], abs(100 * (k["series"]["uy"]["amplitude"] / wanted - 1)), k["across"])
+               for k in json.loads(KEPT.read_text())
+               if k["case"] == case and k["series"]["uy"]["state"] == "periodic" and k["cpu_seconds"]]
+        other = [(cost, abs(off)) for name, off, cost, _ in OTHERS if name.endswith(case.upper())]
+        ax.loglog(*zip(*other), mark, mfc="none", color="0.4", label=f"OpenFOAM, {case.upper()}")
+        if own:
+            ax.loglog([k[0] for k in own], [k[1] for k in own], mark, label=f"sphfsi, {case.upper()}")
+            for cost, off, across in own:
+                ax.annotate(f" D/dp = {across}", (cost, off))
+    # Twenty seconds of FSI2, 77 to 81 mm beside 81.6 mm (timed on two cores).
+    ax.loglog([200, 200], [0.7, 5.6], "-", color="tab:red", label="SPHinXsys, FSI2, 10 across")
+    ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %")
+    ax.legend(fontsize=7)
+    fig.savefig(ROOT / "docs" / "img" / "turek_hron_cost.png", dpi=100, bbox_inches="tight")
+    if not run:
+        return
+    times, series = columns(run)
+    fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.4 * len(series)), sharex=True)
+    for axis, (name, values) in zip(axes, series.items()):
+        axis.plot(times, values, lw=0.6)
+        axis.set_ylabel(f"{name}, {UNIT[name]}")
+    axes[-1].set_xlabel("time, s")
+    name = Path(run).name.replace("-", "_")
+    fig.savefig(ROOT / "docs" / "img" / f"turek_hron_{name}.png", dpi=80, bbox_inches="tight")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -277,6 +312,8 @@ def main():
     for name in ("read", "keep"):
         sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+", type=Path)
     sub.add_parser("report", help="write docs/turek_hron.md")
+    draw = sub.add_parser("pictures", help="draw error against cost, and the histories of a run")
+    draw.add_argument("history", nargs="?", type=Path)
     args = parser.parse_args()
     if args.command == "run":
         return run_case(args)
@@ -285,6 +322,8 @@ def main():
             print(json.dumps(read(folder), indent=2))
     elif args.command == "keep":
         keep(args.runs)
+    elif args.command == "pictures":
+        pictures(args.history)
     else:
         report()
     return 0
