@@ -290,9 +290,7 @@ gallery: $(PROGRAM)
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
 
-.PHONY: accuracy forecast verify-fluid verify-manufactured
-
-.PHONY: accuracy forecast verify-fluid verify-open
+.PHONY: accuracy forecast verify-fluid verify-manufactured verify-open
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
 	@$(MAKE) --no-print-directory all
