@@ -45,7 +45,7 @@ def foreseen(case, threads, more, cache):
     done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
                           capture_output=True, text=True, check=False, env=environment)
     steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)
-    solid = re.search(r"(?m)^ *about ([\d.e+]+) steps of the solid", done.stdout)
+    solid = re.search(r"(?m)^ *about ([\d.e+]+) solid sub-steps", done.stdout)
     cost = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", done.stdout)
     if done.returncode or not steps or not cost:
         lines = done.stderr.strip().splitlines()

@@ -25,7 +25,7 @@ class InputError(Error, ValueError):
 
 
 class Guard(Error, ArithmeticError):
-    """The numerical state is no longer sound: the run or simulation was stopped."""
+    """The numerical state is no longer valid: the run or simulation was stopped."""
 
 
 class Interrupted(KeyboardInterrupt):

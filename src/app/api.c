@@ -51,8 +51,8 @@ static enum err begin(struct sphfsi_simulation *s, const char *name, struct diag
     if (!s) return diag_fail(d, ERR_INPUT, "%s: the simulation is NULL", name);
     if (atomic_exchange(&s->busy, true))
         return diag_fail(d, ERR_INPUT,
-                         "%s: this simulation is within another call, of another thread or one "
-                         "that has called back; call it after that has returned",
+                         "%s: this simulation is in use by another call, from another thread or "
+                         "around this callback; wait until that call has returned",
                          name);
     const enum err e = host_enter(&s->host, s->threads, d);
     if (e) atomic_store(&s->busy, false);
@@ -118,7 +118,8 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
                          "step: a guard has stopped this simulation; create a new one");
     if (!(limit > sim->state.time))
         return diag_fail(d, ERR_INPUT,
-                         "step: the limit %.17g s is not later than the simulated time %.17g s",
+                         "step: the limit must be later than the simulated time: it is %.17g s, "
+                         "and the time is %.17g s",
                          limit, sim->state.time);
     enum err e = simulation_step(sim, limit, d);
     if (!e) probes_follow(&s->probes, sim);
@@ -339,9 +340,8 @@ static enum err find_field(struct sphfsi_simulation *s, enum sphfsi_kind kind, c
     if (!name || !view)
         return diag_fail(d, ERR_INPUT, "field: the %s is NULL", name ? "view" : "name");
     if ((unsigned)kind >= KIND_COUNT)
-        return diag_fail(d, ERR_INPUT,
-                         "field: %d is no kind of particles; from 0 to %d are possible", (int)kind,
-                         KIND_COUNT - 1);
+        return diag_fail(d, ERR_INPUT, "field: kind = %d is not a kind of particles; use 0 to %d",
+                         (int)kind, KIND_COUNT - 1);
     if (view_array(&s->session.simulation, (enum kind)kind, name, view)) return ERR_OK;
     return view_computed(s, (enum kind)kind, name, view, d);
 }

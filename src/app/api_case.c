@@ -75,8 +75,7 @@ enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double se
     struct call c;
     enum err e = call_begin(&c, "budget", options);
     if (!e && !(seconds > 0 && seconds <= 1e9))
-        e = diag_fail(&c.diag, ERR_INPUT, "budget = %g s: from above 0 to 1e9 are possible",
-                      seconds);
+        e = diag_fail(&c.diag, ERR_INPUT, "budget = %g s must be above 0 and at most 1e9", seconds);
     if (!e) e = with_session(&c, "budget", budget_work, &seconds);
     return call_end(&c, e);
 }
@@ -155,7 +154,9 @@ static enum err preview_work(struct session *x, struct call *c, void *unused)
     TRY(session_read(x, &c->options, &c->diag));
     preview_path(&c->options, path);
     const enum err e = preview_draw(&x->scene, path, &c->diag);
-    if (!e) session_say(&c->options, "%s: the scene as it would start; any browser shows it", path);
+    if (!e)
+        session_say(&c->options, "%s: picture of the case at the start; open it in a browser",
+                    path);
     scene_free(&x->scene);
     return e;
 }

@@ -22,7 +22,7 @@ static bool fits(const struct sphfsi_options *o, double dp, const char **why)
     char set[40];
     snprintf(set, sizeof set, "dp=%.17g", dp);
     struct sphfsi_options mine = *o;
-    *why = "does not fit the case";
+    *why = "the case refuses it";
     if (s && sets) {
         for (int k = 0; k < o->n_sets; k++) sets[k] = o->sets[k];
         sets[o->n_sets] = set;
@@ -68,9 +68,10 @@ static void propose(const struct session *x, const struct unit_costs *c, int thr
     const struct forecast own = forecast_run(c, &x->simulation, threads, 1);
     say_one(o, dp0, &own, "the case's own");
     if (best > 0)
-        session_say(o, "the finest that fits: --set dp=%.6g", best);
+        session_say(o, "finest dp within the budget: --set dp=%.6g", best);
     else
-        session_say(o, "no round spacing near the budget fits both the budget and the lattice");
+        session_say(o, "no round dp keeps all bodies on the lattice and runs within the budget; "
+                       "allow more time or choose another dp");
 }
 
 enum err budget_session(struct session *x, int threads, double seconds,

@@ -14,7 +14,7 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
 {
     const struct scene *c = &x->scene;
     session_say(o, "%s: %s", c->path, c->top.title);
-    session_say(o, "  dp %g m, h %g m, %g s to simulate", c->top.dp, c->h, c->top.end_time);
+    session_say(o, "  dp %g m, h %g m, simulated time %g s", c->top.dp, c->h, c->top.end_time);
     if (c->c0 > 0) session_say(o, "  speed of sound %g m/s, density %g kg/m^3", c->c0, c->rho0);
     for (int k = 0; k < KIND_COUNT; k++)
         session_say(o, "  %-6s %10lld particles", kind_names[k],
@@ -51,7 +51,7 @@ static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
     param_choice_name(param_find(SECTION_top, "scheme"), c->top.scheme, name);
     session_say(o,
                 c->top.scheme == SCHEME_PAPER
-                    ? "scheme %s: the defaults of all keys, the article's fluid"
+                    ? "scheme %s: all keys keep their defaults, the method of the article"
                     : "scheme %s sets",
                 name);
     for (int k = 0; k < PARAM_COUNT; k++) {
@@ -65,13 +65,13 @@ static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
             snprintf(text, sizeof text, "%g", value);
         const bool given = scene_given(c, p->section, 0, p->key) != NULL;
         session_say(o, "  %s.%s = %s%s", section_table[p->section].word, p->key, text,
-                    given ? ", but the case gives it" : "");
+                    given ? ", but the case sets it" : "");
     }
 }
 
 static void say_effects(const struct simulation *s, const struct sphfsi_options *o)
 {
-    session_say(o, "effects that are on, and what called for them");
+    session_say(o, "enabled effects, and the setting that enables each");
     for (int k = 0; k < EFFECT_COUNT; k++) {
         if (!(s->effects & EFFECT_BIT(k))) continue;
         struct effect_caller by;
@@ -81,7 +81,7 @@ static void say_effects(const struct simulation *s, const struct sphfsi_options 
         session_say(o, "  %-16s %-42s %s%s%s", effect_table[k].name, text, effect_table[k].meaning,
                     effect_table[k].equation[0] ? "; " : "", effect_table[k].equation);
     }
-    session_say(o, "effects that are off, and what would call for them");
+    session_say(o, "disabled effects, and the setting that would enable each");
     for (int k = 0; k < EFFECT_COUNT; k++)
         if (!(s->effects & EFFECT_BIT(k)))
             session_say(o, "  %-16s %-42s %s", effect_table[k].name, effect_table[k].key,
@@ -118,12 +118,13 @@ static void say_fields(const struct simulation *s, const struct sphfsi_options *
             if (field_array(p, &field_table[f]) && at < sizeof names - 32)
                 at += (size_t)snprintf(names + at, sizeof names - at, " %s", field_table[f].name);
         const size_t bytes = particles_bytes(p);
-        session_say(o, "  %-6s %.3g MB, %zu bytes a particle:%s", kind_names[k],
+        session_say(o, "  %-6s %.3g MB, %zu bytes per particle:%s", kind_names[k],
                     1e-6 * (double)bytes, bytes / (size_t)p->capacity, names);
     }
     say_groups(s, o);
-    session_say(o, "  in all %.3g MB with cells, packed fields and stencils; %.3g MB for the scene",
-                1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
+    session_say(
+        o, "  total %.3g MB (fields, cells, packed copies, stencils), and %.3g MB for the case",
+        1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
 }
 
 static void say_output(const struct simulation *s, const struct sphfsi_options *o)
@@ -136,8 +137,8 @@ static void say_output(const struct simulation *s, const struct sphfsi_options *
     for (int k = 0; k < KIND_COUNT; k++) points += (double)s->kind[k].n;
     session_say(o, "output");
     session_say(o,
-                "  fields.vtkhdf: %.0f snapshots, %.0f points of %.0f bytes: %.3g MB %s; twice "
-                "that during the run",
+                "  fields.vtkhdf: %.0f snapshots of %.0f points of %.0f bytes: %.3g MB %s; needs "
+                "twice that space during the run",
                 snapshots, points, point, 1e-6 * snapshots * points * point,
                 layout.deflate ? "before compression" : "(no compression)");
 }
@@ -159,15 +160,16 @@ static void say_bounds(const struct simulation *s, const struct sphfsi_options *
         char value[32] = "-";
         if (known) snprintf(value, sizeof value, "%.4g s", s->dt_bound[k]);
         session_say(o, "  %-10s %12s  %s%s", bound_names[k], value, bound_sources[k],
-                    k == binding ? "  <- binds" : "");
+                    k == binding ? "  <- limits the step" : "");
     }
     if (s->kind[KIND_SOLID].n == 0) return;
-    session_say(o, "  the solid is stable up to %.4g s", s->dt_solid);
+    session_say(o, "  stable step of the solid: %.4g s", s->dt_solid);
     if (s->effects & FX_COUPLING)
-        session_say(o, "  %d step%s of it in one of the fluid", s->substeps,
+        session_say(o, "  %d solid sub-step%s in each fluid step", s->substeps,
                     s->substeps == 1 ? "" : "s");
     if (s->effects & FX_CONTACT)
-        session_say(o, "  without contact it would be up to %.4g s", s->dt_lone_solid);
+        session_say(o, "  without contact, the stable step of the solid would be %.4g s",
+                    s->dt_lone_solid);
 }
 
 static void text_of_seconds(double seconds, char text[32])
@@ -194,20 +196,20 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c, int
     const struct forecast f = forecast_run(c, s, threads, 1);
     session_say(o, "cost with %d thread%s, %s", threads, threads == 1 ? "" : "s",
                 c->cached ? "from an earlier calibration on this machine"
-                          : "from a second of the first steps");
+                          : "measured in one second of trial steps");
     for (int k = 0; k < PHASE_COUNT; k++)
         if (k != PHASE_output && c->phase_fraction[k] > 0)
             session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
                         100 * c->phase_fraction[k], phase_table[k].meaning);
-    if (c->fluid > 0) session_say(o, "  %.3g ns a fluid particle and evaluation", 1e9 * c->fluid);
-    if (c->solid > 0) session_say(o, "  %.3g ns a solid particle and step", 1e9 * c->solid);
+    if (c->fluid > 0) session_say(o, "  %.3g ns per fluid particle and evaluation", 1e9 * c->fluid);
+    if (c->solid > 0) session_say(o, "  %.3g ns per solid particle and step", 1e9 * c->solid);
     char time[32], memory[32], disk[32];
     text_of_seconds(f.seconds, time);
     text_of_bytes(f.memory, memory);
     text_of_bytes(f.disk, disk);
     session_say(o, "  about %.3g steps of %.3g s%s", f.steps, f.dt,
-                f.substeps > f.steps ? "" : ", of all particles alike");
-    if (f.substeps > f.steps) session_say(o, "  about %.3g steps of the solid", f.substeps);
+                f.substeps > f.steps ? "" : ", the same for fluid and solid");
+    if (f.substeps > f.steps) session_say(o, "  about %.3g solid sub-steps", f.substeps);
     session_say(o, "  %s on this machine when idle, memory %s, disk at most %s", time, memory,
                 disk);
 }
@@ -237,7 +239,7 @@ enum err explain_session(struct session *x, int threads, const struct sphfsi_opt
     char precision[SCENE_NAME], integrator[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
     param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
-    session_say(o, "integrator %s, precision %s, kernel of the fluid: %s, of the solid: %s",
+    session_say(o, "integrator %s, precision %s; compiled loops of the fluid: %s, of the solid: %s",
                 integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none",
                 s->solid.sweeps ? s->solid.sweeps->name : "none");
     return say_trial(s, threads, o, d);

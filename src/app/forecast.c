@@ -391,21 +391,24 @@ static void say_error(const struct scene *s, enum kind kind, int body, const cha
     snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
              band.low, band.high);
     if (!isfinite(band.low))
-        session_say(o, "  %s: %.0f particles across: the study has no case of this kind", name, n);
+        session_say(o,
+                    "  %s: %.0f particles across; unknown, because docs/accuracy.md has no case of "
+                    "this kind",
+                    name, n);
     else if (band.coarser)
         session_say(o,
-                    "  %s: %.0f particles across, fewer than any case of this kind has: its error "
-                    "is not known; a finer dp mends it",
+                    "  %s: %.0f particles across, fewer than in all cases of this kind in "
+                    "docs/accuracy.md, so the error is not known; use a finer dp",
                     name, n);
     else if (kind == KIND_FLUID)
         session_say(o,
-                    "  %s: %.0f particles over its height: off by about %s (cases of this kind, "
+                    "  %s: %.0f particles over its height: error of about %s (cases of this kind, "
                     "docs/accuracy.md)",
                     name, n, range);
     else
         session_say(o,
-                    "  %s: %.0f particles across: tip within about %s of converged (cases of this "
-                    "kind, docs/accuracy.md)",
+                    "  %s: %.0f particles across: error of the tip displacement about %s (cases of "
+                    "this kind, docs/accuracy.md)",
                     name, n, range);
 }
 

@@ -10,7 +10,7 @@
 static void say_head(const char *path, const struct image *m, const struct sphfsi_options *o)
 {
     const struct image_info info = checkpoint_info(m);
-    session_say(o, "%s: a sound checkpoint of %zu bytes, written by sphfsi %s", path, m->size,
+    session_say(o, "%s: a valid checkpoint of %zu bytes, written by sphfsi %s", path, m->size,
                 info.version);
     session_say(o, "  time %.9g s, %lld steps", info.time, (long long)info.steps);
     for (int k = 0; k < KIND_COUNT; k++)

@@ -281,9 +281,9 @@ static int parse_option(struct command *c, const char *argument, const char *nex
     const struct option *option = find_option(argument, &operand);
     if (!option) return unknown_option(argument);
     if (option->takes == NOTHING && operand)
-        return complain("%s takes no operand, not '%s'", option->name, operand);
+        return complain("%s takes no value, but '%s' is given", option->name, operand);
     if (option->takes == OPERAND && !operand && !next)
-        return complain("%s: its operand is missing%s", option->name, "");
+        return complain("%s needs a value%s", option->name, "");
     *used_next = !operand && (option->takes == OPERAND ||
                               (option->takes == MAYBE && is_operand(c, option, next)));
     return apply(c, option, *used_next ? next : operand);
@@ -298,7 +298,7 @@ static int parse(struct command *c, int argc, char **argv)
             if (parse_option(c, argv[k], k + 1 < argc ? argv[k + 1] : NULL, &used_next)) return 1;
             if (c->mode == HELP || c->mode == VERSION) return 0;
         } else if (c->options.case_path) {
-            return complain("one case at a time is run, not %s and %s", c->options.case_path,
+            return complain("only one case can be given, not %s and %s", c->options.case_path,
                             argv[k]);
         } else {
             c->options.case_path = argv[k];
@@ -344,7 +344,8 @@ static enum sphfsi_status carry_out(struct command *c)
 static int report_is_out(void)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return 1;
-    fprintf(stderr, "sphfsi: the report is not complete: the standard output cannot be written\n");
+    fprintf(stderr,
+            "sphfsi: the output is not complete, because the standard output cannot be written\n");
     return 0;
 }
 

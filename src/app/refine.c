@@ -314,13 +314,11 @@ static void say_head(const struct refinement *x, struct json *j)
 static void say_foot(const struct refinement *x)
 {
     session_say(x->options,
-                "peak: value of largest magnitude; settled: mean of the last quarter; band: "
-                "grid convergence index, or 3 times the largest difference without order");
+                "peak: value of largest magnitude; settled: mean of the last quarter; band: grid "
+                "convergence index or, if there is no order, 3 times the largest difference");
     if (x->off_lattice)
-        session_say(
-            x->options,
-            "bodies are off the lattice in some of these resolutions, so their sizes differ: the "
-            "orders are not reliable");
+        session_say(x->options, "bodies are off the lattice in some of these resolutions, so their "
+                                "sizes differ and the orders are not reliable");
 }
 
 static enum err report_all(const struct refinement *x, const struct scene *scene)
@@ -344,13 +342,16 @@ static enum err report_all(const struct refinement *x, const struct scene *scene
 static enum err check(struct refinement *x)
 {
     if (x->options->restart || x->options->fork)
-        return diag_fail(x->diag, ERR_INPUT,
-                         "refine: continues by itself; run it without restart and fork");
+        return diag_fail(
+            x->diag, ERR_INPUT,
+            "refine: continues an interrupted study by itself; leave out --restart and --fork");
     if (x->runs < 3 || x->runs > MOST_RUNS)
-        return diag_fail(x->diag, ERR_INPUT, "refine: %d resolutions; from 3 to %d are possible",
-                         x->runs, MOST_RUNS);
+        return diag_fail(x->diag, ERR_INPUT,
+                         "refine: %d resolutions are given, but 3 to %d are allowed", x->runs,
+                         MOST_RUNS);
     if (!(x->ratio >= 1.1 && x->ratio <= 4))
-        return diag_fail(x->diag, ERR_INPUT, "refine: a ratio of %g; from 1.1 to 4 are possible",
+        return diag_fail(x->diag, ERR_INPUT,
+                         "refine: the ratio of resolutions is %g, but 1.1 to 4 is allowed",
                          x->ratio);
     for (int k = 0; k < x->runs; k++) TRY(try_case(x, k));
     return ERR_OK;

@@ -13,6 +13,7 @@
 #include "output/snapshot.h"
 #include "time/guards.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -150,7 +151,7 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
         return e ? diag_fail(r->diag, e, "%s", why->text) : ERR_OK;
     r->record.snapshots_missed++;
-    diag_warn(why, "the snapshot at %.6g s is left out, the run continues: %s", time, why->text);
+    diag_warn(why, "the snapshot at %.6g s is missing, the run continues: %s", time, why->text);
     return ERR_OK;
 }
 
@@ -303,7 +304,7 @@ static void save_last_state(struct run *r, enum err why)
     /* A checkpoint of the image needs all rows and snapshots up to its time, for a restart without a gap. */
     const bool whole = !r->snapshot_lost && wait_for_snapshot(r) == ERR_OK;
     if (why != ERR_INTERRUPT && whole && r->image.size > 0 && store(r, &second))
-        diag_warn(&second, "the last sound state could not be saved: %s", second.text);
+        diag_warn(&second, "the last valid state could not be saved: %s", second.text);
     second.code = ERR_OK;
     if (why == ERR_GUARD &&
         (snapshots_write(&r->snapshots, r->s, &second) || snapshots_wait(&r->snapshots, &second)))
@@ -316,7 +317,7 @@ static void save_last_state(struct run *r, enum err why)
     if (write_summary(r, reason, r->diag->text, &second))
         diag_warn(&second, "summary.json could not be written: %s", second.text);
     if (why == ERR_GUARD && r->checkpoint[0])
-        session_say(r->options, "the last sound state is in %s, the state at the stop in %s",
+        session_say(r->options, "last valid state, for a restart: %s; state at the stop: %s",
                     r->checkpoint, r->snapshots.path);
 }
 
@@ -330,8 +331,7 @@ enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], 
             for (size_t n = strlen(path); n > 1 && path[n - 1] == '/'; n--) path[n - 1] = '\0';
             return ERR_OK;
         }
-        return diag_fail(d, ERR_INPUT,
-                         "out: the path has %zu characters, from 1 to %d are possible",
+        return diag_fail(d, ERR_INPUT, "out: the path has %zu characters, but 1 to %d are allowed",
                          strlen(o->out), PATH_BYTES - 301);
     }
     const char *name = o->case_path ? o->case_path : "case";
@@ -340,10 +340,10 @@ enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], 
     const size_t length = whole > 4 && strcmp(name + whole - 4, ".cfg") == 0 ? whole - 4 : whole;
     /* A name of dots would be a folder outside of runs/. */
     if (strspn(name, ".") >= length)
-        return diag_fail(d, ERR_INPUT,
-                         "%s: the folder of the results is named after the case, but '%.*s' is "
-                         "none; choose one with --out",
-                         o->case_path, (int)length, name);
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: '%.*s' cannot be the name of the folder of results; choose one with --out",
+            o->case_path, (int)length, name);
     snprintf(path, PATH_BYTES, "runs/%.*s%s", (int)length, name, o->fork ? "-fork" : "");
     return ERR_OK;
 }
@@ -365,7 +365,8 @@ static enum err put_case(struct run *r, const char *part)
     char path[PATH_BYTES];
     TRY(path_join(path, r->folder.path, "case.cfg", r->diag));
     if (rename(part, path) != 0)
-        return diag_fail(r->diag, ERR_IO, "%s: cannot be replaced by %s", path, part);
+        return diag_fail(r->diag, ERR_IO, "%s: cannot be replaced by %s: %s; nothing was started",
+                         path, part, strerror(errno));
     return directory_sync(r->folder.path, r->diag);
 }
 
@@ -491,7 +492,7 @@ static void say_results(const struct run *r)
     if (r->s->state.particle_steps > r->record.start_particle_steps)
         session_say(r->options, "%.3g million particle steps a second: %s",
                     1e-6 * report_rate(r->s, &r->record), text);
-    session_say(r->options, "energy gained: at most %.3g J/m, %.2g %% of what was in play",
+    session_say(r->options, "spurious energy gain: at most %.3g J/m, %.2g %% of its region's",
                 r->s->state.gain, 100 * r->s->state.gain_share);
     for (int k = 0; k < r->references.n && r->record.score; k++) {
         reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
@@ -505,8 +506,8 @@ static void warn_of_losses(const struct run *r)
     const int64_t lost = s->state.lost, left = s->kind[KIND_FLUID].n;
     if (lost > 0)
         diag_warn(r->diag,
-                  "%lld of %lld fluid particles have left the domain: their mass and pressure are "
-                  "missing; a [wall] that holds them or a larger [domain] keeps them",
+                  "%lld of %lld fluid particles have left the domain, so their mass and pressure "
+                  "are missing; close the gap with a [wall] or enlarge [domain]",
                   (long long)lost, (long long)(lost + left));
 }
 

@@ -51,10 +51,10 @@ static enum err check_count(const struct scene *scene, const char *key, double b
 {
     const double end = max2(scene->top.end_time, until), n = end / between;
     if (between == 0 || n <= most_counts) return ERR_OK;
-    return diag_fail(d, ERR_INPUT,
-                     "%s: %s = %g s means %.3g %s until %g s, and at most %g are possible; choose "
-                     "at least %.3g s",
-                     scene->path, key, between, n, what, end, most_counts, end / most_counts);
+    return diag_fail(
+        d, ERR_INPUT,
+        "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose at least %.3g s",
+        scene->path, key, between, n, what, end, most_counts, end / most_counts);
 }
 
 static enum err check_counts(const struct scene *scene, double until, struct diag *d)
@@ -98,11 +98,9 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
         return diag_fail(d, ERR_INPUT, "options: set case_path or case_text");
     if (o->threads < 0 || o->threads > 4096)
         return diag_fail(d, ERR_INPUT,
-                         "threads = %d: from 1 to 4096 are possible, or 0 for as many as are "
-                         "useful",
-                         o->threads);
+                         "threads = %d: use 1 to 4096, or 0 for as many as are useful", o->threads);
     if (!(o->until >= 0 && o->until <= 1e9))
-        return diag_fail(d, ERR_INPUT, "until = %g: more than 0 and up to 1e9 seconds are possible",
+        return diag_fail(d, ERR_INPUT, "until = %g must be above 0 and at most 1e9 seconds",
                          o->until);
     return ERR_OK;
 }
@@ -121,11 +119,10 @@ static int threads_by_default(int64_t n, int offered, const struct sphfsi_option
     if (most == 1) return 1;
     const int idle = thread_idle_cores();
     if (idle >= most) return most;
-    session_say(
-        o,
-        "the machine is busy: %d of %d cores idle, so the run takes %d thread%s; to take %d "
-        "all the same: --threads %d",
-        idle, thread_cores(), idle, idle == 1 ? "" : "s", most, most);
+    session_say(o,
+                "the machine is busy: %d of %d cores idle, so the run uses %d thread%s; to use %d "
+                "anyway, give --threads %d",
+                idle, thread_cores(), idle, idle == 1 ? "" : "s", most, most);
     return idle;
 }
 
@@ -138,8 +135,8 @@ int session_threads(const struct scene *scene, const struct sphfsi_options *o, i
     if (asked == 0) return threads_by_default(n, offered < limit ? offered : limit, o);
     if (asked <= limit) return asked;
     diag_warn(d,
-              "%s = %d is more than %lld particles on %d cores can use: there are %d threads; give "
-              "that number or fewer",
+              "%s = %d is more than %lld particles on %d cores can use, so the run uses %d "
+              "threads; give that number or fewer",
               name, asked, (long long)n, thread_cores(), limit);
     return limit;
 }

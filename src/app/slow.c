@@ -27,11 +27,10 @@ static void warn_of_interval(const struct simulation *s, enum section_id section
     char place[PLACE_TEXT];
     if (!(interval > 0 && interval < 0.5 * step)) return;
     place_of(s->scene, section, index, key, place);
-    diag_warn(
-        d,
-        "%s%s = %g s is shorter than the time step of %.3g s: every output ends a step, so the "
-        "run takes about %.3g times as many; a longer interval spares them",
-        place, key, interval, step, step / interval);
+    diag_warn(d,
+              "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, so "
+              "the run needs about %.3g times as many steps; use a longer interval",
+              place, key, interval, step, step / interval);
 }
 
 static void warn_of_damping(const struct simulation *s, struct diag *d)
@@ -43,11 +42,10 @@ static void warn_of_damping(const struct simulation *s, struct diag *d)
         const struct scene_solid *const body = &s->scene->solid[k];
         if (!(body->damping_time > 0)) continue;
         place_of(s->scene, SECTION_solid, k, "damping_time", place);
-        diag_warn(
-            d,
-            "%s[solid %s] damping_time = %g s: the solid's damping makes its steps %.3g times "
-            "shorter; a shorter damping_time lengthens them",
-            place, body->common.name, body->damping_time, free / s->solid.stable_step);
+        diag_warn(d,
+                  "%s[solid %s] damping_time = %g s makes the steps of the solid %.3g times "
+                  "shorter; a shorter damping_time allows longer steps",
+                  place, body->common.name, body->damping_time, free / s->solid.stable_step);
     }
 }
 
@@ -68,11 +66,10 @@ static void warn_of_bound(const struct simulation *s, struct diag *d)
         const double bound = s->dt_bound[owner[k].bound];
         if (!(bound > 0 && bound < 0.1 * acoustic)) continue;
         place_of(s->scene, owner[k].section, 0, owner[k].key, place);
-        diag_warn(
-            d,
-            "%s%s holds the time step at %.3g s, %.3g times below what sound allows, and the run "
-            "takes as many times longer",
-            place, owner[k].key, bound, acoustic / bound);
+        diag_warn(d,
+                  "%s%s limits the time step to %.3g s, while sound waves would allow %.3g times "
+                  "as much. The run takes as many times longer; another value may help",
+                  place, owner[k].key, bound, acoustic / bound);
     }
 }
 

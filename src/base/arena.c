@@ -70,7 +70,8 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
     const size_t want = (count * size + ARENA_ALIGN - 1) / ARENA_ALIGN * ARENA_ALIGN;
     if (a->limit && (want > a->limit || a->bytes > a->limit - want)) {
         diag_fail(d, ERR_MEMORY,
-                  "%s: %.3g GB would raise the run to %.3g GB, more than the %.3g GB it may use",
+                  "%s: needs %.3g GB, so the run would use %.3g GB, more than the limit of %.3g "
+                  "GB; use a larger dp",
                   what, 1e-9 * (double)want, 1e-9 * (double)(a->bytes + want),
                   1e-9 * (double)a->limit);
         return NULL;

@@ -13,7 +13,7 @@ enum err path_join(char path[PATH_BYTES], const char *folder, const char *name, 
     const int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
     if (length >= 0 && length < PATH_BYTES) return ERR_OK;
     return diag_fail(d, ERR_INPUT,
-                     "%.80s.../%s: the path has %d characters, at most %d are possible", folder,
+                     "%.80s.../%s: the path has %d characters, but at most %d are allowed", folder,
                      name, length, PATH_BYTES - 1);
 }
 
@@ -24,7 +24,8 @@ int file_open_no_follow(const char *path, int flags)
 
 const char *file_error_text(int error)
 {
-    return error == ELOOP ? "it is a symbolic link, which is not written through" : strerror(error);
+    return error == ELOOP ? "it is a symbolic link, and files are not written through links"
+                          : strerror(error);
 }
 
 enum err directory_sync(const char *path, struct diag *d)

@@ -38,7 +38,8 @@ enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
     DIR *dir = opendir(path);
     if (!dir && errno == ENOENT && use == RUN_DIR_FRESH) return ERR_OK;
     if (!dir && errno == ENOENT)
-        return diag_fail(d, ERR_INPUT, "%s: there is no such folder, so no run to restart", path);
+        return diag_fail(d, ERR_INPUT, "%s: there is no such folder, so there is no run to restart",
+                         path);
     if (!dir)
         return diag_fail(d, ERR_INPUT, "%s: cannot be used as the folder of a run: %s", path,
                          strerror(errno));
@@ -46,10 +47,11 @@ enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
     const bool found = find_result(dir, name);
     closedir(dir);
     if (found && use == RUN_DIR_FRESH)
-        return diag_fail(d, ERR_INPUT,
-                         "%s: holds a run already (%s), which is not overwritten; continue it with "
-                         "--restart, choose another folder with --out, or remove it",
-                         path, name);
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: contains the results of a run (%s), which are not overwritten; continue it with "
+            "--restart, choose another folder with --out, or remove it",
+            path, name);
     return ERR_OK;
 }
 
@@ -105,7 +107,8 @@ static enum err lock_run_dir(struct run_dir *dir, struct diag *d)
         struct stat mine, named;
         if (fstat(fd, &mine) == 0 && stat(path, &named) == 0 && mine.st_ino == named.st_ino) {
             if (ftruncate(fd, 0) != 0 || dprintf(fd, "%ld\n", (long)getpid()) < 0)
-                diag_warn(d, "%s: cannot write the process number: %s", path, strerror(errno));
+                diag_warn(d, "%s: cannot write the process ID, which others would be told: %s",
+                          path, strerror(errno));
             dir->lock = fd;
             return ERR_OK;
         }
@@ -119,10 +122,9 @@ enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use us
     dir->lock = -1;
     const size_t length = strlen(path);
     if (length == 0 || length > LONGEST)
-        return diag_fail(
-            d, ERR_INPUT,
-            "folder of the run: the path has %zu characters, from 1 to %d are possible", length,
-            LONGEST);
+        return diag_fail(d, ERR_INPUT,
+                         "folder of the run: the path has %zu characters, but 1 to %d are allowed",
+                         length, LONGEST);
     memcpy(dir->path, path, length + 1);
     if (use == RUN_DIR_FRESH) TRY(make_directories(path, d));
     TRY(run_dir_check(path, use, d));

@@ -37,7 +37,9 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         "for Eq. 3",
                         f->common.name);
     if (*c0 > 1e7)
-        return bad_line(r, line, "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above 1e7",
+        return bad_line(r, line,
+                        "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above the limit of "
+                        "1e7; reduce `max_speed` or `max_pressure`",
                         f->common.name, *c0);
     if (*c0 < least * (1 - 1e-9))
         warn(r, line,
@@ -50,8 +52,8 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
         warn(r, line,
-             "[fluid %s] has a `surface`, but gravity has no vertical part: its pressure "
-             "starts at zero",
+             "[fluid %s] has a `surface`, but gravity has no vertical component, so the initial "
+             "pressure is zero",
              f->common.name);
     return ERR_OK;
 }
@@ -63,13 +65,14 @@ static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
     if (f->shifting_speed != SHIFTING_LARGEST) return;
     if (gravity[0] != 0 || gravity[1] != 0)
         warn(r, line,
-             "[fluid %s] shifting_speed = largest under gravity lifts a free surface, which gains "
-             "energy, the more the larger `shifting` is; it is for fluid that fills its domain",
+             "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
+             "energy, in proportion to `shifting`; if the fluid has a free surface, use "
+             "shifting_speed = own",
              f->common.name);
     if (f->shifting * cfl > 5 * (1 + 1e-9))
         warn(r, line,
-             "[fluid %s] shifting = %g with numerics.cfl = %g: their product is beyond 5, up to "
-             "which shifting_speed = largest is a stable diffusion",
+             "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
+             "shifting_speed = largest; reduce one of them",
              f->common.name, f->shifting, cfl);
 }
 
@@ -86,9 +89,10 @@ static enum err differ(struct reader *r, const struct scene_fluid *f, const char
         snprintf(mine_text, sizeof mine_text, "%g", mine);
         snprintf(its_text, sizeof its_text, "%g", its);
     }
-    return bad_line(r, f->common.line,
-                    "[fluid %s] and [fluid %s] differ in `%s`: %s and %s; all fluid is of one kind",
-                    f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
+    return bad_line(
+        r, f->common.line,
+        "[fluid %s] and [fluid %s] differ in `%s`: %s and %s; all fluid must have the same value",
+        f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
 }
 
 /* Compares a fluid with the first one. */
@@ -199,8 +203,8 @@ static enum err check_motion_jumps(struct reader *r, const struct scene_motion *
     const int line = given ? given->line : m->common.line;
     if (expr_steps(e))
         return bad_line(r, line,
-                        "[motion %s] %s = %.200s jumps where it rounds what depends on t, and a "
-                        "motion needs a velocity",
+                        "[motion %s] %s = %.200s jumps in time, because it rounds a term with t, "
+                        "so the velocity is undefined; use a continuous expression",
                         m->common.name, key, expr_source(e));
     double size = 0, at;
     for (int n = 0; n <= MOTION_TIMES; n++)
@@ -208,8 +212,8 @@ static enum err check_motion_jumps(struct reader *r, const struct scene_motion *
     for (int n = 0; n < MOTION_TIMES; n++)
         if (expr_jumps(e, length * n / MOTION_TIMES, length * (n + 1) / MOTION_TIMES, size, &at))
             return bad_line(r, line,
-                            "[motion %s] %s = %.200s jumps or is not finite at t = %g s since "
-                            "start, and a motion needs a velocity",
+                            "[motion %s] %s = %.200s jumps or is not finite %g s after `start`, so "
+                            "the velocity is undefined; use a continuous expression",
                             m->common.name, key, expr_source(e), at);
     return ERR_OK;
 }
@@ -230,11 +234,10 @@ static enum err check_motion_expressions(struct reader *r, const struct scene_mo
             const double t = length * n / MOTION_TIMES;
             const struct expr_jet at = expr_jet_at(each[k]->e[0], t);
             if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
-                return bad_line(
-                    r, m->common.line,
-                    "[motion %s] %.200s is not finite, or its velocity or acceleration is "
-                    "not, at t = %g s since start",
-                    m->common.name, expr_source(each[k]->e[0]), t);
+                return bad_line(r, m->common.line,
+                                "[motion %s] %.200s: displacement, velocity or acceleration is not "
+                                "finite %g s after `start`; change the expression",
+                                m->common.name, expr_source(each[k]->e[0]), t);
         }
         if (each[k]->e[0]) TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], length));
     }
@@ -331,8 +334,7 @@ static enum err check_spacing(struct reader *r, int solid)
     if (ratio >= 1 - 1e-9 && (ratio <= 3 + 1e-9 || s->n_fluid == 0)) return ERR_OK;
     return bad_line(
         r, s->solid[solid].common.line,
-        "[solid %s] dp = %g m: it must lie between a third of the dp at the top, %g m, and all of "
-        "it%s",
+        "[solid %s] dp = %g m must be between a third of the dp at the top, %g m, and that dp%s",
         s->solid[solid].common.name, s->solid[solid].dp, s->top.dp,
         s->n_fluid ? "" : "; without fluid it may be finer");
 }
@@ -361,7 +363,7 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
     if (c->gap <= most * dp * (1 + 1e-9)) return ERR_OK;
     return bad_line(
         r, c->common.line,
-        "[contact %s] gap = %g m is more than %g spacings of %g m; at most %g m are possible",
+        "[contact %s] gap = %g m is more than %g particle spacings of %g m; use at most %g m",
         c->common.name, c->gap, most, dp, most * dp);
 }
 
@@ -375,7 +377,7 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
     TRY(check_gap(r, c));
     if (!*c->between) return ERR_OK;
     if (!scene_pair(c->between, name))
-        return bad_line(r, line, "between = %.100s: two names with a comma between them",
+        return bad_line(r, line, "between = %.100s: two names are expected, separated by a comma",
                         c->between);
     bool solid = false;
     for (int j = 0; j < 2; j++) {
@@ -384,10 +386,10 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
             return no_such(r, line, "between", name[j], SECTION_solid);
     }
     if (!solid)
-        return bad_line(r, line,
-                        "between = %.100s: walls do not move each other; one of the two must be a "
-                        "solid",
-                        c->between);
+        return bad_line(
+            r, line,
+            "between = %.100s: one of the two must be a [solid], because walls do not interact",
+            c->between);
     return ERR_OK;
 }
 
@@ -445,7 +447,7 @@ static enum err check_gravity(struct reader *r)
             const char *const text[] = {c ? "..., " : "", c ? "" : ", ..."};
             return bad_line(r, given ? given->line : 1,
                             "gravity = %s%.200s%s: component %d is not finite at t = %g s; it must "
-                            "be at all times up to end_time",
+                            "be finite at all times up to end_time",
                             text[0], expr_source(top->gravity_in_time.e[c]), text[1], c + 1, t);
         }
     return ERR_OK;
@@ -465,11 +467,10 @@ static enum err check_solid_h(struct reader *r)
     if (value == 0 || value >= 1.1) return ERR_OK;
     const struct scene_given *const at =
         scene_given(r->scene, SECTION_numerics, 0, "solid_h_over_dp");
-    return bad_line(
-        r, at ? at->line : 1,
-        "solid_h_over_dp = %g: between 0 and 1.1 particles have too few neighbours; give "
-        "0 for h_over_dp, or 1.1 to 2",
-        value);
+    return bad_line(r, at ? at->line : 1,
+                    "solid_h_over_dp = %g is too small, so particles would have too few "
+                    "neighbours; use 1.1 to 2, or 0 for the value of h_over_dp",
+                    value);
 }
 
 enum err case_check(struct reader *r)

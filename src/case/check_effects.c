@@ -61,13 +61,14 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
     name_of(s, &by, text);
     const char *const name = effect_table[rule->effect].name;
     if (!rule->excludes)
-        return bad_line(r, line_of(s, &by), "%s calls for %s, which needs %s (%s): %s", text, name,
-                        effect_table[rule->other].name, effect_table[rule->other].key,
+        return bad_line(r, line_of(s, &by), "%s enables the effect %s, which needs %s (%s): %s",
+                        text, name, effect_table[rule->other].name, effect_table[rule->other].key,
                         rule->reason);
     name_of(s, &other, its);
     return bad_line(r, line_of(s, &by),
-                    "%s calls for %s, which excludes %s (called for by %s in line %d): %s", text,
-                    name, effect_table[rule->other].name, its, line_of(s, &other), rule->reason);
+                    "%s enables the effect %s, which excludes %s (enabled by %s in line %d): %s",
+                    text, name, effect_table[rule->other].name, its, line_of(s, &other),
+                    rule->reason);
 }
 
 /* Whether a section has the value that the scheme gives a key. */
@@ -92,10 +93,9 @@ static enum err check_owned(struct reader *r, const struct owned *row)
         by = (struct effect_caller){row->section, k, row->key};
         name_of(s, &by, text);
         TRY(case_go_on(r, bad_line(r, line_of(s, &by),
-                                   "%s does nothing without %s: leave it out, or call for that by "
-                                   "%s",
+                                   "%s has no effect without %s: leave it out, or enable %s by %s",
                                    text, effect_table[row->effect].name,
-                                   effect_table[row->effect].key)));
+                                   effect_table[row->effect].name, effect_table[row->effect].key)));
     }
     return ERR_OK;
 }
@@ -104,7 +104,9 @@ enum err case_check_effects(struct reader *r)
 {
     const char *const left_out = effect_left_out(r->scene);
     if (left_out)
-        return bad_line(r, 1, "the case calls for %s, which this build is without", left_out);
+        return bad_line(r, 1,
+                        "the case enables the effect %s, but this program was compiled without it",
+                        left_out);
     for (size_t k = 0; k < COUNT_OF(rules); k++) TRY(case_go_on(r, check_rule(r, &rules[k])));
     for (size_t k = 0; k < COUNT_OF(owned); k++) TRY(case_go_on(r, check_owned(r, &owned[k])));
     return ERR_OK;

@@ -29,7 +29,7 @@ enum err case_check_output(struct reader *r)
         if (!known)
             return bad_line(
                 r, out->common.line,
-                "[output] snapshot_fields: there is no field `%s`%s%s%s Known: all, or of"
+                "[output] snapshot_fields: there is no field `%s`%s%s%s Allowed: all, or any of"
 #define POINTDATA(NAME, name, item, width, choice) " " #name
 #include "case/pointdata.def"
 #undef POINTDATA

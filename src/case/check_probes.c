@@ -27,7 +27,7 @@ static bool is_section(const struct scene *s, const char *name, bool walls_too)
 static enum err check_body(struct reader *r, const struct scene_probe *p)
 {
     if (!*p->body)
-        return bad_line(r, p->common.line, "[probe %s] needs `body`, the solid it belongs to",
+        return bad_line(r, p->common.line, "[probe %s] needs `body`, the solid that is measured",
                         p->common.name);
     if (is_section(r->scene, p->body, false)) return ERR_OK;
     return no_section(r, p, "body", p->body, false);
@@ -39,14 +39,14 @@ static enum err check_bodies(struct reader *r, const struct scene_probe *p)
     char name[SCENE_TEXT], other[SCENE_TEXT];
     if (!*p->body)
         return bad_line(r, p->common.line,
-                        "[probe %s] needs `body`, the solids or walls it belongs to",
+                        "[probe %s] needs `body`, the solids or walls that are measured",
                         p->common.name);
     for (int k = 0; scene_listed(p->body, k, name); k++) {
         if (!is_section(r->scene, name, true)) return no_section(r, p, "body", name, true);
         for (int n = 0; n < k && scene_listed(p->body, n, other); n++)
             if (strcmp(name, other) == 0)
-                return bad_line(r, p->common.line, "body = %.60s: %.60s stands there twice",
-                                p->body, name);
+                return bad_line(r, p->common.line, "body = %.60s: %.60s is listed twice", p->body,
+                                name);
     }
     return ERR_OK;
 }
@@ -56,8 +56,8 @@ static enum err check_on(struct reader *r, const struct scene_probe *p)
     if (!*p->on) return ERR_OK;
     if (scene_probe_target(p) != TARGET_FLUID_POINT)
         return bad_line(r, p->common.line,
-                        "[probe %s] on = %.60s: only the point of a pressure, level or velocity of "
-                        "the fluid moves with a body; leave `on` out",
+                        "[probe %s] on = %.60s is only for pressure, level and velocity of the "
+                        "fluid; leave it out",
                         p->common.name, p->on);
     if (is_section(r->scene, p->on, true)) return ERR_OK;
     return no_section(r, p, "on", p->on, true);
@@ -72,8 +72,8 @@ static enum err check_average(struct reader *r, const struct scene_probe *p)
     const double interval = p->interval > 0 ? p->interval : common;
     if (p->average <= interval * (1 + 1e-12)) return ERR_OK;
     return bad_line(r, p->common.line,
-                    "[probe %s] average = %g s is longer than the %g s between its rows; give it "
-                    "`interval = %g s` or more",
+                    "[probe %s] average = %g s is longer than the interval of %g s between its "
+                    "rows; set `interval` to %g s or more",
                     p->common.name, p->average, interval, p->average);
 }
 
@@ -101,8 +101,8 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
                         p->common.name, quantity);
     if (target == TARGET_FLUID_LINE && p->point[0] == p->to[0] && p->point[1] == p->to[1])
         return bad_line(r, p->common.line,
-                        "[probe %s] measures through a line: `point` and `to` are its ends and "
-                        "must differ",
+                        "[probe %s] measures the flux through the line from `point` to `to`; the "
+                        "two points must differ",
                         p->common.name);
     return ERR_OK;
 }

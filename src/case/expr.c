@@ -95,8 +95,13 @@ static double run_binary(enum op_code code, double a, double b)
 
 static bool push(struct compiler *c, enum op_code code, double value)
 {
-    if (c->n == MAX_OPS) return say(c, "longer than %d operations", MAX_OPS);
-    if (c->stack == MAX_STACK) return say(c, "nested too deeply: more than %d operands", MAX_STACK);
+    if (c->n == MAX_OPS)
+        return say(c, "the expression has more than %d operations; use [constants] for parts of it",
+                   MAX_OPS);
+    if (c->stack == MAX_STACK)
+        return say(
+            c, "the expression needs more than %d values at once; use [constants] for parts of it",
+            MAX_STACK);
     c->op[c->n++] = (struct op){code, value};
     c->stack++;
     return true;
@@ -111,7 +116,10 @@ static bool operate(struct compiler *c, enum op_code code)
     const bool number =
         last->code == OP_NUMBER && (operands == 1 || c->op[c->n - 2].code == OP_NUMBER);
     if (!number) {
-        if (c->n == MAX_OPS) return say(c, "longer than %d operations", MAX_OPS);
+        if (c->n == MAX_OPS)
+            return say(
+                c, "the expression has more than %d operations; use [constants] for parts of it",
+                MAX_OPS);
         c->op[c->n++] = (struct op){code, 0};
         return true;
     }
@@ -165,7 +173,7 @@ static bool multiply_dims(struct compiler *c, struct dim *a, const struct dim *b
     a->s += sign * b->s;
     if (plain && is_pure(a)) *a = (struct dim){DIM_PLAIN, 0, 0, 0};
     if (fabs(a->m) > 99 || fabs(a->kg) > 99 || fabs(a->s) > 99)
-        return say(c, "its dimension is a power above 99");
+        return say(c, "the power of its unit is above 99; check the exponents");
     return true;
 }
 
@@ -184,10 +192,11 @@ static bool power_dims(struct compiler *c, struct dim *base, const struct dim *e
     if (base->kind == DIM_KNOWN && !is_pure(base)) {
         const struct op *last = &c->op[c->n - 1];
         if (last->code != OP_NUMBER)
-            return say(c, "a quantity with a unit has a power that depends on x, y or t; it must "
-                          "be a number");
+            return say(c, "a quantity with a unit has an exponent that depends on x, y or t; the "
+                          "exponent must be a number");
         const double p = last->value;
-        if (fabs(p) > 9) return say(c, "a quantity with a unit has a power beyond 9");
+        if (fabs(p) > 9)
+            return say(c, "a quantity with a unit has an exponent outside the range -9 to 9");
         base->m *= p;
         base->kg *= p;
         base->s *= p;
@@ -211,12 +220,14 @@ static bool parse_number(struct compiler *c, struct dim *dim)
         if ((ch == 'e' || ch == 'E') && !exponent &&
             (isdigit((unsigned char)next) || signed_digit)) {
             exponent = true;
-            if (n + 1 >= sizeof digits - 1) return say(c, "a number of more than 60 characters");
+            if (n + 1 >= sizeof digits - 1)
+                return say(c, "the number has more than 60 characters; shorten it");
             digits[n++] = ch;
         } else if (!isdigit((unsigned char)ch) && ch != '.') {
             break;
         }
-        if (n >= sizeof digits - 1) return say(c, "a number of more than 60 characters");
+        if (n >= sizeof digits - 1)
+            return say(c, "the number has more than 60 characters; shorten it");
         digits[n] = c->rest.at[n];
         n++;
     }
@@ -224,7 +235,7 @@ static bool parse_number(struct compiler *c, struct dim *dim)
     char *end;
     struct quantity q = {strtod(digits, &end), {DIM_PLAIN, 0, 0, 0}};
     if (*end || end == digits) return say(c, "`%s` is not a number", digits);
-    if (!isfinite(q.value)) return say(c, "%s is too large for a number", digits);
+    if (!isfinite(q.value)) return say(c, "%s is too large; the largest number is 1.8e308", digits);
     skip(c, n);
     const int next = peek(c);
     if (next == '%' || isalpha(next) || next == '_') {
@@ -241,7 +252,8 @@ static bool parse_number(struct compiler *c, struct dim *dim)
                        "Pa kPa MPa GPa, Hz kHz, rad deg, %%)",
                        (int)(length < 40 ? length : 40), c->rest.at, digits);
         }
-        if (!isfinite(q.value)) return say(c, "%s with its unit is too large", digits);
+        if (!isfinite(q.value))
+            return say(c, "%s with its unit is too large; the largest number is 1.8e308", digits);
     }
     *dim = q.dim;
     return push(c, OP_NUMBER, q.value);
@@ -284,7 +296,7 @@ static bool parse_constant(struct compiler *c, const char *name, struct dim *dim
     }
     if (strcmp(name, "x") == 0 || strcmp(name, "y") == 0) {
         if (c->names->scope != EXPR_IN_SPACE && c->names->scope != EXPR_IN_BOTH)
-            return say(c, "`%s` has a value only where a key takes an expression in x and y", name);
+            return say(c, "`%s` is known only in keys that take an expression in x and y", name);
         dim->kind = DIM_ANY;
         return push(c, name[0] == 'x' ? OP_X : OP_Y, 0);
     }
@@ -301,7 +313,8 @@ static bool parse_constant(struct compiler *c, const char *name, struct dim *dim
 static bool parse_name(struct compiler *c, struct dim *dim)
 {
     const size_t length = identifier_length(c->rest);
-    if (length >= EXPR_NAME) return say(c, "a name of more than %d characters", EXPR_NAME - 1);
+    if (length >= EXPR_NAME)
+        return say(c, "a name has more than %d characters; shorten it", EXPR_NAME - 1);
     char name[EXPR_NAME];
     memcpy(name, c->rest.at, length);
     name[length] = '\0';
@@ -373,7 +386,10 @@ static bool parse_power(struct compiler *c, struct dim *dim)
 
 static bool parse_factor(struct compiler *c, struct dim *dim)
 {
-    if (c->nesting == MAX_NESTING) return say(c, "nested more than %d deep", MAX_NESTING);
+    if (c->nesting == MAX_NESTING)
+        return say(
+            c, "parentheses or signs are nested more than %d deep; use [constants] for parts of it",
+            MAX_NESTING);
     c->nesting++;
     const int ch = peek(c);
     bool good;

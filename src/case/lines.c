@@ -95,13 +95,14 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     for (int k = 0; k < r->n_sections; k++) {
         if (r->sections[k].id != id) continue;
         if (strcmp(r->sections[k].name, name) == 0)
-            return bad_line(r, line,
-                            "[%s%s%s] is given twice, first in line %d; join the two or rename one",
-                            word, named ? " " : "", name, r->sections[k].line);
+            return bad_line(
+                r, line, "[%s%s%s] is given twice, first in line %d; merge the two or rename one",
+                word, named ? " " : "", name, r->sections[k].line);
         index++;
     }
     if (index == SCENE_MAX_SECTIONS)
-        return bad_line(r, line, "more than %d [%s] sections", SCENE_MAX_SECTIONS, word);
+        return bad_line(r, line, "more than %d [%s] sections are given; merge some of them",
+                        SCENE_MAX_SECTIONS, word);
     r->sections[r->n_sections++] = (struct case_section){id, name, line, index, false};
     return ERR_OK;
 }

@@ -42,7 +42,8 @@ const char *case_comma_hint(const char *value)
 {
     for (const char *c = value; (c = strchr(c, ',')) != NULL; c++)
         if (c > value && isdigit((unsigned char)c[-1]) && isdigit((unsigned char)c[1]))
-            return "; a comma parts numbers, and a decimal number is written with a point: 0.005";
+            return "; a comma separates numbers, and a decimal number is written with a point: "
+                   "0.005";
     return "";
 }
 
@@ -74,7 +75,8 @@ static enum err collect_constant(struct reader *r, const struct entry *e)
                              old->line);
     }
     if (r->n_constants == CASE_MAX_CONSTANTS)
-        return bad_entry(r, e, "more than %d constants", CASE_MAX_CONSTANTS);
+        return bad_entry(r, e, "more than %d constants are given; write some as numbers",
+                         CASE_MAX_CONSTANTS);
     r->constants[r->n_constants++] = (struct constant){.entry = e};
     return ERR_OK;
 }
@@ -108,7 +110,9 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
         return false;
     }
     if (r->depth == MAX_CONSTANT_DEPTH) {
-        snprintf(why, EXPR_WHY, "constants depend on constants more than %d deep",
+        snprintf(why, EXPR_WHY,
+                 "a chain of constants that use each other has more than %d members; write some as "
+                 "numbers",
                  MAX_CONSTANT_DEPTH);
         return false;
     }

@@ -59,31 +59,30 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
     const double *const g = r->scene->top.gravity;
     if (!(o->length > 0))
         return bad_line(r, line,
-                        "[%s %s] needs `from` and `to`, the two ends of the line that the fluid "
-                        "passes",
+                        "[%s %s] needs `from` and `to`, the two ends of the line through which the "
+                        "fluid passes",
                         word, name);
     if (given > 1)
         return bad_line(r, line,
-                        "[%s %s] has more than one of `speed`, `velocity` and `pressure`; one of "
-                        "them decides",
+                        "[%s %s] has more than one of `speed`, `velocity` and `pressure`; keep one",
                         word, name);
     if (given == 0 && isnan(o->level))
         return bad_line(r, line, "[%s %s] needs `speed`, `velocity`, `pressure` or `level`", word,
                         name);
     if (o->pressure && !isnan(o->level))
         return bad_line(r, line,
-                        "[%s %s] has both `pressure` and `level`, which gives the pressure; one is "
-                        "to go",
+                        "[%s %s] has both `pressure` and `level`, but `level` already sets the "
+                        "pressure; remove one of them",
                         word, name);
     if (!isnan(o->level) && !(g[1] < 0 && g[0] == 0))
-        return bad_line(r, line,
-                        "[%s %s] level = %g m needs gravity that points down, and it is %g, %g "
-                        "m/s^2",
-                        word, name, o->level, g[0], g[1]);
+        return bad_line(
+            r, line,
+            "[%s %s] level = %g m needs gravity that points down, but gravity is %g, %g m/s^2",
+            word, name, o->level, g[0], g[1]);
     if (o->kind == OPEN_VELOCITY && o->absorb > 0)
         return bad_line(r, line,
-                        "[%s %s] `absorb` goes with a pressure; where a velocity is given it holds "
-                        "exactly",
+                        "[%s %s] `absorb` needs `pressure` or `level` without a velocity; a given "
+                        "velocity holds exactly, so leave `absorb` out",
                         word, name);
     return ERR_OK;
 }
@@ -104,13 +103,14 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
             if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
             if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
             if (!isfinite(v[0] + v[1]))
-                return bad_line(r, o->common->line,
-                                "[%s %s] %s has no finite value at (%g, %g) m and t = %g s", word,
-                                name,
-                                o->pressure ? "pressure"
-                                : o->speed  ? "speed"
-                                            : "velocity",
-                                x[0], x[1], time);
+                return bad_line(
+                    r, o->common->line,
+                    "[%s %s] %s is not finite at (%g, %g) m and t = %g s; change the expression",
+                    word, name,
+                    o->pressure ? "pressure"
+                    : o->speed  ? "speed"
+                                : "velocity",
+                    x[0], x[1], time);
             const double in = v[0] * o->inward[0] + v[1] * o->inward[1];
             most = max2(most, in);
             least = min2(least, in);
@@ -138,8 +138,8 @@ enum err case_check_open(struct reader *r)
         char place[LOCATION_TEXT];
         scene_location(s, o.common->line, place);
         diag_warn(r->diag,
-                  "%s: [%s %s] is beside fluid without density_diffusion: noise of the pressure "
-                  "grows at open boundaries, and density_diffusion = 0.1 keeps it down",
+                  "%s: [%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
+                  "this boundary; use density_diffusion = 0.1",
                   place, word_of(&o), o.common->name);
     }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {

@@ -161,8 +161,8 @@ const char *param_retired(enum section_id section, const char *key)
         enum section_id section;
         const char *key, *why;
     } retired[] = {
-        {SECTION_numerics, "idle", "all its values computed the same"},
-        {SECTION_numerics, "kernel", "all its values computed the same"},
+        {SECTION_numerics, "idle", "it had no effect"},
+        {SECTION_numerics, "kernel", "it had no effect"},
     };
     for (size_t k = 0; k < COUNT_OF(retired); k++)
         if (retired[k].section == section && strcmp(retired[k].key, key) == 0)

@@ -123,7 +123,7 @@ static bool note_retired(struct reader *r, const struct entry *e, int id)
     char place[LOCATION_TEXT];
     if (!why) return false;
     scene_location(r->scene, e->line, place);
-    diag_warn(r->diag, "%s: `%s` in [%s] is no longer used, since %s; leave it out", place, e->key,
+    diag_warn(r->diag, "%s: `%s` in [%s] has been removed, because %s; leave it out", place, e->key,
               section_table[id].word, why);
     return true;
 }
@@ -155,9 +155,8 @@ static void warn_of_lost_clamp(struct reader *r, int section, const struct entry
         const struct scene_solid *const from = &r->scene->solid[k];
         if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
             diag_warn(r->diag,
-                      "%s: [solid %s] is like [solid %s], but has no `clamp`, since "
-                      "regions are "
-                      "not copied: it moves freely",
+                      "%s: [solid %s] is like [solid %s] but has no `clamp`, because `like` does "
+                      "not copy regions, so it moves freely; give it a `clamp`",
                       place, copy->common.name, from->common.name);
     }
 }

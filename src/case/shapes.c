@@ -22,7 +22,7 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
                          given > n ? case_comma_hint(e->value) : "");
     for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
         TRY(case_number(r, e, piece, "m", &value[k]));
-        if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: beyond 1e9 m");
+        if (fabs(value[k]) > 1e9) return bad_value(r, e, "out of range: at most 1e9 m is allowed");
     }
     return ERR_OK;
 }
@@ -88,7 +88,8 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
         area += 0.5 * cross(shape->pt[0], a, b);
         size = max2(size, hypot(b[0] - a[0], b[1] - a[1]));
     }
-    if (fabs(area) <= 1e-12 * size * size) return bad_value(r, e, "the polygon has no area");
+    if (fabs(area) <= 1e-12 * size * size)
+        return bad_value(r, e, "the polygon has no area; check its points");
     for (int i = 0; i < n; i++)
         for (int j = i + 2; j < n; j++)
             if (edges_cross(shape->pt[i], shape->pt[i + 1], shape->pt[j], shape->pt[(j + 1) % n]))
@@ -108,7 +109,7 @@ static enum err read_thickness(struct reader *r, const struct entry *e, struct s
     const struct slice number = {text->at + length, (size_t)(colon - text->at) - length};
     TRY(case_number(r, e, number, "m", thickness));
     if (*thickness == 0 || fabs(*thickness) > 1e9)
-        return bad_value(r, e, "the thickness must not be 0, nor beyond 1e9 m");
+        return bad_value(r, e, "the thickness must not be 0 and at most 1e9 m");
     const size_t used = (size_t)(colon + 1 - text->at);
     *text = (struct slice){text->at + used, text->length - used};
     return ERR_OK;
@@ -126,7 +127,9 @@ static enum err read_shape(struct reader *r, const struct entry *e, struct slice
     if (shape->n < needed[shape->kind])
         return bad_value(r, e, "%d points or more are expected, `X, Y; X, Y; ...`; there %s %d",
                          needed[shape->kind], shape->n == 1 ? "is" : "are", shape->n);
-    if (shape->n > CASE_MAX_POINTS) return bad_value(r, e, "more than %d points", CASE_MAX_POINTS);
+    if (shape->n > CASE_MAX_POINTS)
+        return bad_value(r, e, "more than %d points are given; use fewer points or several shapes",
+                         CASE_MAX_POINTS);
     shape->pt =
         arena_alloc(&r->scene->arena, (size_t)shape->n, sizeof *shape->pt, "shape", r->diag);
     if (!shape->pt) return ERR_MEMORY;

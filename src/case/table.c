@@ -39,7 +39,7 @@ static int read_row(struct table_file *t, double row[3])
         const bool head =
             t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
         if (length == sizeof text - 1 && text[length - 1] != '\n') {
-            diag_fail(t->diag, ERR_INPUT, "%s:%d: a line of more than %zu characters", t->path,
+            diag_fail(t->diag, ERR_INPUT, "%s:%d: the line has more than %zu characters", t->path,
                       t->line, sizeof text - 2);
             return -1;
         }
@@ -75,12 +75,13 @@ static enum err fill_table(struct scene_table *table, struct table_file *t, int 
         if (read_row(t, row) != 1)
             return diag_fail(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
         if (k > 0 && row[0] <= table->t[k - 1])
-            return diag_fail(t->diag, ERR_INPUT, "%s:%d: time %g s does not come after %g s",
-                             t->path, t->line, row[0], table->t[k - 1]);
+            return diag_fail(t->diag, ERR_INPUT,
+                             "%s:%d: times must increase, but %g s follows %g s", t->path, t->line,
+                             row[0], table->t[k - 1]);
         if (k == 0 && t->kind->from_rest && (row[0] < 0 || row[1] != 0 || row[2] != 0))
             return diag_fail(t->diag, ERR_INPUT,
-                             "%s:%d: the first row must be a time of 0 or more "
-                             "and no displacement, `0, 0, 0` as a rule",
+                             "%s:%d: the first row must have a time of 0 or later and no "
+                             "displacement, usually `0, 0, 0`",
                              t->path, t->line);
         table->t[k] = row[0];
         table->x[k] = row[1];
@@ -95,7 +96,8 @@ static enum err read_table(struct scene *s, struct scene_table *table, struct ta
     int rows = 0, more;
     while ((more = read_row(t, row)) > 0)
         if (++rows > MAX_ROWS)
-            return diag_fail(t->diag, ERR_INPUT, "%s: more than %d rows", t->path, MAX_ROWS);
+            return diag_fail(t->diag, ERR_INPUT, "%s: more than %d rows; use fewer", t->path,
+                             MAX_ROWS);
     if (more < 0) return ERR_INPUT;
     if (rows < 2)
         return diag_fail(t->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d", t->path,

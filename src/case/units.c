@@ -66,9 +66,9 @@ const char *strange_character(const char *text)
         {"\xE2\x88\x92", "a Unicode minus; write -"},
         {"\xE2\x80\x93", "a dash; write -"},
         {"\xE2\x80\x94", "a dash; write -"},
-        {"\xC2\xA0", "a no-break space; write a blank"},
-        {"\xE2\x80\xAF", "a narrow no-break space; write a blank"},
-        {"\xE2\x80\x89", "a thin space; write a blank"},
+        {"\xC2\xA0", "a no-break space; write an ordinary space"},
+        {"\xE2\x80\xAF", "a narrow no-break space; write an ordinary space"},
+        {"\xE2\x80\x89", "a thin space; write an ordinary space"},
         {"\xC3\x97", "a multiplication sign; write *"},
         {"\xC2\xB7", "a multiplication dot; write *"},
         {"\xE2\x8B\x85", "a multiplication dot; write *"},
@@ -136,7 +136,7 @@ static bool read_power(struct slice *text, double *power, char why[EXPR_WHY])
     char *end;
     *power = strtod(digits, &end);
     if (n == 0 || *end || end == digits || fabs(*power) > 9) {
-        snprintf(why, EXPR_WHY, "the power of a unit is a number from -9 to 9");
+        snprintf(why, EXPR_WHY, "the exponent of a unit must be a number from -9 to 9");
         return false;
     }
     *text = behind(rest, n);

@@ -100,7 +100,8 @@ static enum err read_vector(struct reader *r, const struct entry *e, const struc
     TRY(check_pair(r, e, p, n));
     for (int k = 0; k < 2 && slice_next(&rest, ',', &piece); k++) {
         TRY(case_number(r, e, piece, p->unit, &value[k]));
-        if (!(fabs(value[k]) <= 1e15)) return bad_value(r, e, "out of range: beyond 1e15");
+        if (!(fabs(value[k]) <= 1e15))
+            return bad_value(r, e, "out of range: the magnitude must be 1e15 or less");
     }
     return ERR_OK;
 }
@@ -110,7 +111,8 @@ static enum err read_numbers(struct reader *r, const struct entry *e, const stru
 {
     struct slice rest = slice_of(e->value), piece = rest;
     const int n = slice_count(rest, ',');
-    if (n > CASE_MAX_POINTS) return bad_value(r, e, "more than %d numbers", CASE_MAX_POINTS);
+    if (n > CASE_MAX_POINTS)
+        return bad_value(r, e, "more than %d numbers are given", CASE_MAX_POINTS);
     list->value = arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
     if (!list->value) return ERR_MEMORY;
     for (list->n = 0; list->n < n && slice_next(&rest, ',', &piece); list->n++)
@@ -155,7 +157,9 @@ static enum err read_time_vector(struct reader *r, const struct entry *e, const 
     for (int k = 0; k < 2; k++) {
         value[k] = scene_expr_at(in_time->e[k], 0, 0);
         if (!(fabs(value[k]) <= 1e15))
-            return bad_value(r, e, "component %d is not finite or beyond 1e15 at t = 0", k + 1);
+            return bad_value(
+                r, e, "component %d at t = 0 must be a finite number of magnitude 1e15 or less",
+                k + 1);
         if (expr_is_number(in_time->e[k])) in_time->e[k] = NULL;
     }
     return ERR_OK;

@@ -50,9 +50,10 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
                               size_t size, struct diag *d)
 {
     if (clusters > CLUSTERS_MOST)
-        return diag_fail(d, ERR_INPUT,
-                         "there is room for %lld clusters of particles, and for %d at most",
-                         (long long)clusters, CLUSTERS_MOST);
+        return diag_fail(
+            d, ERR_INPUT,
+            "the case needs %lld clusters of particles, but the limit is %d; use a larger dp",
+            (long long)clusters, CLUSTERS_MOST);
     packed->cluster = arena_alloc(a, (size_t)clusters, (size_t)(packed->n * CLUSTER) * size,
                                   "lanes of the fluid's sweep", d);
     return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;

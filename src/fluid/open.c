@@ -341,11 +341,11 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k, struc
     const int number = p->open[i] - 1;
     const struct scene_open *const b = &o->boundary[number];
     if (p->n == p->capacity)
-        return diag_fail(d, ERR_GUARD,
-                         "[%s %s] has brought in so much fluid that all %lld places of the domain "
-                         "are taken: more comes in than leaves; a larger [domain] or an [outflow] "
-                         "may help",
-                         b->inflow ? "inflow" : "outflow", b->common->name, (long long)p->capacity);
+        return diag_fail(
+            d, ERR_GUARD,
+            "[%s %s] has brought in so much fluid that the limit of %lld particles is reached, "
+            "because more fluid enters than leaves; a larger [domain] or an [outflow] may help",
+            b->inflow ? "inflow" : "outflow", b->common->name, (long long)p->capacity);
     const int64_t to = p->n++;
     double place, along;
     particles_copy(p, i, to);
@@ -453,15 +453,16 @@ enum err open_list(struct open *o, const struct particles *p, struct diag *d)
     for (int64_t i = 0; i < p->n; i++) {
         if (p->open[i] == 0) continue;
         if (p->open[i] < 0 || p->open[i] > o->n)
-            return diag_fail(d, ERR_INPUT,
-                             "fluid particle %lld is in the buffer of open boundary %d, and the "
-                             "case has %d of them",
-                             (long long)p->id[i], (int)p->open[i], o->n);
+            return diag_fail(
+                d, ERR_INPUT,
+                "checkpoint: fluid particle %lld belongs to open boundary %d, but the case has "
+                "only %d; restore the [inflow] and [outflow] sections of the checkpoint",
+                (long long)p->id[i], (int)p->open[i], o->n);
         if (o->n_members == o->capacity)
             return diag_fail(d, ERR_GUARD,
-                             "the buffers of the open boundaries hold four times the particles "
-                             "that they began with: fluid collects in them; a finer dp or a line "
-                             "further from the disturbance may help");
+                             "the buffers of the open boundaries contain four times as many "
+                             "particles as at the start. Fluid collects in them; a finer dp or a "
+                             "line further from the disturbance may help");
         o->member[o->n_members++] = (int32_t)i;
     }
     return ERR_OK;

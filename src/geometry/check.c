@@ -75,8 +75,8 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
                           "xy"[c], fit);
             else
                 diag_warn(g->diag,
-                          "%s: an edge of [%s %s] is %.2g dp off the lattice, which is turned by "
-                          "%.4g degrees",
+                          "%s: an edge of [%s %s] is %.2g dp off the lattice, which is rotated by "
+                          "%.4g degrees; move the edge or choose another dp",
                           place, kind_names[region->kind], region->name, fabs(a[c] - fit) / l->dp,
                           l->angle * (180 / PI));
             return;
@@ -101,8 +101,8 @@ static enum err check_area(struct sampler *g, const struct region *region)
     scene_location(g->scene, region->line, place);
     diag_warn(
         g->diag,
-        "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2: a thin "
-        "body is then about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
+        "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2, so a "
+        "thin body is about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
         place, (long long)region->n, region->name, 100 * fabs(ratio - 1),
         ratio > 1 ? "more" : "less", area, 100 * fabs(stiff - 1), ratio > 1 ? "stiff" : "soft");
     return ERR_OK;
@@ -159,13 +159,13 @@ static enum err check_solid(struct sampler *g, const struct region *region)
     scene_location(g->scene, region->line, place);
     if (across < 2)
         return diag_fail(g->diag, ERR_INPUT,
-                         "%s: [solid %s] is %.0f particle thick at dp = %g m; "
-                         "bending needs at least 2, better 4",
+                         "%s: [solid %s] is %.0f particle thick at dp = %g m; bending needs at "
+                         "least 2, better 4",
                          place, region->name, across, region->lattice.dp);
     if (across < 4)
         diag_warn(g->diag,
-                  "%s: [solid %s] is only %.0f particles thick at dp = %g m; its bending "
-                  "will be inaccurate",
+                  "%s: [solid %s] is only %.0f particles thick at dp = %g m, so its bending will "
+                  "be inaccurate; use a finer dp, for 4 particles or more",
                   place, region->name, across, region->lattice.dp);
     if (scene_is_bonded(g->scene, region->body)) return ERR_OK;
     /* At the default h/dp a warning here would repeat the one on two particles across. */
@@ -188,8 +188,8 @@ static void warn_slit(struct sampler *g, const struct region *a, const struct sh
         char place[LOCATION_TEXT];
         scene_location(g->scene, q->line, place);
         diag_warn(g->diag,
-                  "%s: between [%s %s] and [%s %s] is a slit of %g m, narrower than dp = %g m: "
-                  "no fluid passes there",
+                  "%s: the gap between [%s %s] and [%s %s] is %g m, narrower than dp = %g m, so no "
+                  "fluid passes; use a smaller dp or close the gap",
                   place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit, dp);
         return;
     }

@@ -10,10 +10,10 @@ static enum err fail_empty(struct sampler *g, const struct region *region, int c
     const struct shape_list *const clamps = &g->scene->solid[region->body].clamp;
     char place[LOCATION_TEXT];
     scene_location(g->scene, clamps->item[clamp].line, place);
-    return diag_fail(g->diag, ERR_INPUT,
-                     "%s: clamp %d of [solid %s] holds no particle: it must "
-                     "cover a part of the body",
-                     place, clamp + 1, region->name);
+    return diag_fail(
+        g->diag, ERR_INPUT,
+        "%s: clamp %d of [solid %s] contains no particle; it must cover a part of the body", place,
+        clamp + 1, region->name);
 }
 
 enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,

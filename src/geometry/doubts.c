@@ -83,7 +83,7 @@ static enum err warn_of_missing_floor(struct sampler *g)
     scene_location(s, s->fluid[p->body[first]].common.line, place);
     diag_warn(g->diag,
               "%s: %lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall or body "
-              "below them and fall out of the domain; a [wall] below holds them",
+              "below them and will fall out of the domain; add a [wall] below them",
               place, (long long)falling, (long long)p->n, p->x[first], p->y[first]);
     return ERR_OK;
 }
@@ -97,10 +97,10 @@ static void warn_of_surface(struct sampler *g)
         const struct scene_fluid *const fluid = &s->fluid[f];
         if (isnan(fluid->surface)) continue;
         if (s->top.gravity[1] > 0)
-            warn(s, fluid->common.line, g->diag,
-                 "`surface` with gravity upwards: the pressure falls with depth at the start and "
-                 "the water is "
-                 "torn apart; gravity = 0, -9.81 points down");
+            warn(
+                s, fluid->common.line, g->diag,
+                "`surface` with upward gravity: the initial pressure decreases with depth, and the "
+                "water will be torn apart; for gravity that points down, use gravity = 0, -9.81");
         int64_t above = 0;
         double top = -HUGE_VAL;
         for (int64_t k = 0; k < p->n; k++) {
@@ -131,9 +131,8 @@ static void warn_of_density(struct sampler *g)
             char place[LOCATION_TEXT];
             scene_location(s, s->fluid[f].common.line, place);
             diag_warn(g->diag,
-                      "%s: [fluid %s] has a density of %.4g kg/m^3, less than any liquid: forces "
-                      "will be as "
-                      "small; water has 1000 kg/m^3",
+                      "%s: [fluid %s] has a density of %.4g kg/m^3, less than any liquid, so its "
+                      "forces will be small; water has 1000 kg/m^3",
                       place, s->fluid[f].common.name, s->fluid[f].density);
         }
 }
@@ -152,9 +151,8 @@ static void warn_of_full_clamps(struct sampler *g)
         char place[LOCATION_TEXT];
         scene_location(s, s->solid[body].common.line, place);
         diag_warn(g->diag,
-                  "%s: `clamp` covers all %lld particles of [solid %s]: it cannot deform; a [wall] "
-                  "costs less, "
-                  "a smaller clamp leaves it free",
+                  "%s: `clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
+                  "the clamp smaller, or use a [wall], which is faster",
                   place, (long long)all, s->solid[body].common.name);
     }
 }
@@ -184,9 +182,8 @@ static void warn_of_resting_clamps(struct sampler *g)
             char place[LOCATION_TEXT];
             scene_location(s, b->common.line, place);
             diag_warn(g->diag,
-                      "%s: the clamp of [solid %s] touches [wall %s], which moves, and stays at "
-                      "rest itself: the "
-                      "wall is driven through the body; `clamp_motion = %s` moves both",
+                      "%s: the clamp of [solid %s] is at rest but touches [wall %s], which moves, "
+                      "so the wall will pass through the body; `clamp_motion = %s` moves both",
                       place, b->common.name, s->wall[wall].common.name, s->wall[wall].motion);
         }
     }

@@ -85,7 +85,9 @@ static enum err given_domain(struct scene *s, struct diag *d)
         const struct scene_points *p = &s->points[kind];
         for (int64_t k = 0; k < p->n; k++) {
             if (in_domain(s, 0, p->x[k]) && in_domain(s, 1, p->y[k])) continue;
-            return diag_fail(d, ERR_INPUT, "%s: [domain] leaves out a %s particle at (%g, %g) m",
+            return diag_fail(d, ERR_INPUT,
+                             "%s: a %s particle at (%g, %g) m lies outside [domain]; enlarge "
+                             "[domain] or change the shape",
                              place, kind_names[kind], p->x[k], p->y[k]);
         }
     }
@@ -208,7 +210,8 @@ static enum err check_field(const struct sampler *g, const struct scene_expr *fi
                 continue;
             char place[LOCATION_TEXT];
             scene_location(g->scene, common->line, place);
-            return diag_fail(g->diag, ERR_INPUT, "%s: [%s %s] %s has no finite value at (%g, %g) m",
+            return diag_fail(g->diag, ERR_INPUT,
+                             "%s: [%s %s] %s is not finite at (%g, %g) m; change the expression",
                              place, kind_names[kind], common->name, key, p->x[k], p->y[k]);
         }
     }

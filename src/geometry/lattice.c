@@ -313,8 +313,8 @@ static void tell_shift(struct sampler *g, const struct region *region, const dou
     g->scene->off_lattice = true;
     scene_location(g->scene, region->line, place);
     diag_warn(g->diag,
-              "%s: [solid %s] begins at (%.6g, %.6g), off the lattice of dp = %.6g m; "
-              "its own lattice begins there",
+              "%s: [solid %s] begins at (%.6g, %.6g) m, off the lattice of dp = %.6g m, so it has "
+              "its own lattice, which begins there",
               place, region->name, corner[0], corner[1], region->lattice.dp);
 }
 

@@ -35,7 +35,9 @@ static enum err grow(struct point_grid *t, struct sampler *g)
 {
     const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
     if (capacity > INT32_MAX / 2)
-        return diag_fail(g->diag, ERR_INPUT, "%s: the faces of walls are too long for dp = %g m",
+        return diag_fail(g->diag, ERR_INPUT,
+                         "%s: dp = %g m needs too many wall particles along curved or slanted "
+                         "walls; use a larger dp or shorter walls",
                          g->scene->path, g->scene->top.dp);
     double(*pt)[2] = arena_alloc(&g->temp, (size_t)capacity, sizeof *pt, "walls", g->diag);
     t->next = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->next, "walls", g->diag);

@@ -105,8 +105,8 @@ static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
     }
     if (places > 0 && 2 * wet >= places) return ERR_OK;
     return fail_at(g, o, "has no fluid along its line", x,
-                   "the fluid's shape is to begin there; change `side` if it lies on the other "
-                   "side");
+                   "the shape of the fluid must begin at the line; change `side` if the fluid lies "
+                   "on the other side");
 }
 
 /* The particle at the position of a buffer particle, if any. */
@@ -117,7 +117,7 @@ static enum err check_place(const struct sampler *g, const struct scene_open *o,
     const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
     if (nearest(&kinds[KIND_WALL], x, near) >= 0)
         return fail_at(g, o, "lies in a wall", x,
-                       "shorten the line, or take the place out of the wall with `minus`");
+                       "shorten the line, or cut an opening in the wall with `minus`");
     if (nearest(&kinds[KIND_SOLID], x, near) >= 0)
         return fail_at(g, o, "lies in a solid", x, "move the line");
     if (fluid >= 0 && kinds[KIND_FLUID].points->open[fluid])
@@ -169,8 +169,8 @@ enum err geometry_open(struct sampler *g)
         const struct scene_open o = scene_open_at(s, k);
         const struct lattice l = lattice_of(s, &o);
         if ((double)l.across * l.rows > 1e8)
-            return fail_at(g, &o, "has more than 1e8 places for particles", o.from,
-                           "a larger dp or a shorter line is needed");
+            return fail_at(g, &o, "has space for more than 1e8 particles", o.from,
+                           "use a larger dp or a shorter line");
         more += (int64_t)l.across * l.rows;
     }
     GROW(x);

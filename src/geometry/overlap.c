@@ -107,10 +107,10 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
 {
     char place[LOCATION_TEXT];
     scene_location(g->scene, mine->line, place);
-    const char *mend = "move one of the shapes, or take the place out with `minus`";
+    const char *mend = "move one of the shapes, or subtract the overlap with `minus`";
     if (has_band(mine) || has_band(its))
-        mend = "turn the sign of `thickness` if the polyline's band is on the wrong side, move one "
-               "of the shapes, or take the place out with `minus`";
+        mend = "change the sign of `thickness` if the band of the polyline is on the wrong side, "
+               "move one of the shapes, or subtract the overlap with `minus`";
     if (mine->kind == KIND_WALL && its->kind == KIND_SOLID)
         mend = "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)

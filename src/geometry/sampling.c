@@ -66,14 +66,13 @@ static enum err check_size(struct sampler *g)
     if (total > 1e9 || bytes > memory)
         return diag_fail(
             g->diag, ERR_INPUT,
-            "%s: dp = %g m makes about %.3g particles, %.3g GB; this "
-            "machine has %.3g GB, and the most is 1e9 particles: a larger dp or smaller "
-            "shapes are needed",
+            "%s: dp = %g m gives about %.3g particles, which need %.3g GB. This machine has %.3g "
+            "GB, and the limit is 1e9 particles; use a larger dp or smaller shapes",
             g->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
     if (cells > max_cells)
         return diag_fail(g->diag, ERR_INPUT,
-                         "%s: the shapes span more than %g cells of dp = %g m; a "
-                         "larger dp or smaller shapes are needed",
+                         "%s: the shapes span more than %g cells of dp = %g m; use a larger dp or "
+                         "smaller shapes",
                          g->scene->path, max_cells, dp);
     return ERR_OK;
 }
@@ -239,8 +238,8 @@ static enum err count_points(struct sampler *g, struct region *region)
         if (per_shape[k]) continue;
         scene_location(g->scene, region->list->item[k].line, place);
         return diag_fail(g->diag, ERR_INPUT,
-                         "%s: shape %d of [%s %s] holds no particle: it is "
-                         "narrower than dp = %g m, or lies between the lattice's centres",
+                         "%s: shape %d of [%s %s] contains no particle, because it is narrower "
+                         "than dp = %g m or lies between lattice points; enlarge or move it",
                          place, k + 1, kind_names[region->kind], region->name, region->lattice.dp);
     }
     if (region->n) return ERR_OK;

@@ -258,7 +258,7 @@ enum err checkpoint_store(struct image *m, const char *folder, char path[PATH_BY
 
 static enum err damaged(struct diag *d, const char *path, const char *what)
 {
-    return diag_fail(d, ERR_IO, "%s: is not a sound checkpoint: %s", path, what);
+    return diag_fail(d, ERR_IO, "%s: is not a valid checkpoint: %s", path, what);
 }
 
 static enum err check_header(const struct image *m, const char *path, struct diag *d)
@@ -312,7 +312,7 @@ static enum err check_blocks(const struct image *m, const char *path, struct dia
             !memchr(b.head.name, '\0', sizeof b.head.name))
             return damaged(d, path, "the header of a block is damaged");
         if (b.head.payload_sum != checksum(m->bytes + b.payload, payload_bytes(&b)))
-            return diag_fail(d, ERR_IO, "%s: is not a sound checkpoint: block %s is damaged", path,
+            return diag_fail(d, ERR_IO, "%s: is not a valid checkpoint: block %s is damaged", path,
                              b.head.name);
         at = block_end(&b);
     }
@@ -470,15 +470,18 @@ static enum err check_kind(const struct simulation *s, enum kind kind, struct di
         const int32_t cell = p->cell[i];
         if (cell < -1 || cell >= cells)
             return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64 " is in cell %d, but the case has "
-                             "-1 (outside) to %" PRId64,
+                             "checkpoint: %s particle %" PRId64
+                             " has cell number %d, but -1 (outside) to "
+                             "%" PRId64 " are valid; the file is damaged or not of this case",
                              kind_names[kind], i, cell, cells - 1);
         if (cell < 0) continue;
         if (!cells_is_near(&s->cells, cell, p->x[i], p->y[i]))
-            return diag_fail(d, ERR_INPUT,
-                             "checkpoint: %s particle %" PRId64
-                             " at (%.6g, %.6g) m is too far from its cell, %d",
-                             kind_names[kind], i, p->x[i], p->y[i], cell);
+            return diag_fail(
+                d, ERR_INPUT,
+                "checkpoint: %s particle %" PRId64
+                " at (%.6g, %.6g) m is too far from its cell, %d; the file is damaged or "
+                "not of this case",
+                kind_names[kind], i, p->x[i], p->y[i], cell);
     }
     return ERR_OK;
 }

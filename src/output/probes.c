@@ -84,11 +84,11 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     const double h = scene_solid_h(s->scene, body), reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
     if (!(distance < h))
-        return diag_fail(
-            d, ERR_INPUT,
-            "line %d: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
-            "[solid %s]; at most h = %.3g m is possible",
-            sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
+        return diag_fail(d, ERR_INPUT,
+                         "line %d: [probe %s] point = %g, %g is %.3g m from the nearest particle "
+                         "of [solid %s]; move it to h = %.3g m or less",
+                         sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance,
+                         name, h);
     pr->n = find_near(p, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);

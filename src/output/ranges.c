@@ -8,7 +8,9 @@
 enum err range_check(const char *name, double value, double low, double high, struct diag *d)
 {
     if (value >= low && value <= high) return ERR_OK;
-    return diag_fail(d, ERR_INPUT, "checkpoint: block %s holds %g, and from %g to %g are possible",
+    return diag_fail(d, ERR_INPUT,
+                     "checkpoint: %s = %g is outside the valid range %g to %g; the file is damaged "
+                     "or not of this case",
                      name, value, low, high);
 }
 
@@ -50,7 +52,7 @@ static enum err check_fields(const struct particles *p, enum kind kind, struct d
             if (!(fabs(data[i]) <= FINITE))
                 return diag_fail(d, ERR_INPUT,
                                  "checkpoint: block %s holds %g for %s particle %" PRId64
-                                 ", which is not a finite number",
+                                 ", which is not a finite number; the file is damaged",
                                  info->name, data[i], kind_names[kind], i);
     }
     return ERR_OK;
@@ -65,7 +67,7 @@ static enum err check_bodies(const struct simulation *s, enum kind kind, struct 
         if (p->body[i] < 0 || p->body[i] >= bodies[kind])
             return diag_fail(d, ERR_INPUT,
                              "checkpoint: %s particle %" PRId64 " belongs to section %d, but the "
-                             "case has 0 to %d",
+                             "case has sections 0 to %d",
                              kind_names[kind], i, p->body[i], bodies[kind] - 1);
     return ERR_OK;
 }

@@ -66,8 +66,8 @@ static enum err read_rows(struct reference *r, const char *path, const char *tex
         const int got = read_row(at, names_allowed, row);
         if (got < 0)
             return diag_fail(d, ERR_INPUT,
-                             "%s:%d: '%.*s' is no row of a reference; write two numbers, time (s) "
-                             "and value (SI)",
+                             "%s:%d: '%.*s' is not a row of a reference; write two numbers, time "
+                             "(s) and value (SI)",
                              path, number, (int)(strcspn(at, "\r\n") % 60), at);
         if (got > 0) insert_row(r, row);
         if (got > 0 || isalpha((unsigned char)*at)) names_allowed = false;

@@ -44,7 +44,8 @@ static enum err begin(struct series *s, const char *folder, const char *name, co
     s->columns = count_columns(header);
     if (s->columns > SERIES_MAX_COLUMNS)
         return diag_fail(d, ERR_INPUT,
-                         "%s: would have %d columns, at most %d are possible; use fewer probes",
+                         "%s: would have %d columns, but at most %d are allowed; use fewer probes, "
+                         "or give some an `interval`",
                          name, s->columns, SERIES_MAX_COLUMNS);
     return path_join(s->path, folder, name, d);
 }

@@ -52,8 +52,10 @@ static enum err find_loaded(struct loads *v, struct load_region *load, const str
     }
     load->end = v->n_loaded;
     if (load->end == load->first)
-        return diag_fail(d, ERR_INPUT, "[load %s] holds no particle of [solid %s]",
-                         from->common.name, from->body);
+        return diag_fail(
+            d, ERR_INPUT,
+            "[load %s] contains no particle of [solid %s]; move or enlarge its `shape`",
+            from->common.name, from->body);
     return ERR_OK;
 }
 

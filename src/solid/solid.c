@@ -73,12 +73,11 @@ static void warn_of_flutter(const struct solid_body *b, const char *name, struct
 {
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
     if (b->variational || !(b->kappa > (quadratic ? 0 : 10))) return;
-    diag_warn(
-        d,
-        "[solid %s] hourglass_form = printed with %s has growing modes at any time step%s; take "
-        "hourglass_form = variational%s",
-        name, quadratic ? "gradient = quadratic" : "hourglass above 10",
-        quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
+    diag_warn(d,
+              "[solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
+              "hourglass_form = variational%s",
+              name, quadratic ? "gradient = quadratic" : "hourglass above 10",
+              quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
 /* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
@@ -116,7 +115,7 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     diag_warn(d,
               "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
               "artificial_viscosity below %g: its stress may have an error of 1e-6 of Young's "
-              "modulus, and it may gain energy; take auto",
+              "modulus, and it may gain energy; use auto",
               name, DAMPED);
     return &solid_sweeps_mixed;
 }
@@ -148,7 +147,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         if (scene->solid[k].joined[0] && !s->body[k].touches)
             return diag_fail(d, ERR_INPUT,
                              "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
-                             "away from it",
+                             "away from it; move it, or leave `joined` out",
                              scene->solid[k].common.name, scene->solid[k].joined,
                              KERNEL_REACH * s->body[k].h);
     for (int k = 0; k < (int)COUNT_OF(s->scratch); k++) {

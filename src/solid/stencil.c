@@ -413,7 +413,7 @@ static enum err all_moments(struct solid *s, const struct bucket_grid *g, const 
         if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
             return diag_fail(
                 d, ERR_INPUT,
-                "the solid particle at (%.6g, %.6g) m has too few neighbours to tell a "
+                "the solid particle at (%.6g, %.6g) m has too few neighbours to determine a "
                 "deformation gradient; a body needs at least 2 particles across",
                 p->X[i], p->Y[i]);
     }

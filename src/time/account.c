@@ -276,8 +276,10 @@ enum err account_check(const struct account *a, struct diag *d)
 {
     for (int k = 0; k < ACCOUNT_ENTRIES; k++)
         if (!(a->region[k] >= 0 && a->region[k] <= k))
-            return diag_fail(d, ERR_INPUT, "checkpoint: section %d is in region %g", k,
-                             a->region[k]);
+            return diag_fail(d, ERR_INPUT,
+                             "checkpoint: section %d refers to region %g, which does not exist; "
+                             "the file is damaged or not of this case",
+                             k, a->region[k]);
     return ERR_OK;
 }
 

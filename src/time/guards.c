@@ -39,12 +39,11 @@ static enum err complain(const struct simulation *s, enum kind kind, struct find
                          const char *cause, struct diag *d)
 {
     const struct particles *const p = &s->kind[kind];
-    return diag_fail(
-        d, ERR_GUARD,
-        "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, which is not "
-        "sound: %s",
-        s->state.time, (long long)s->state.steps, kind_names[kind], (long long)p->id[f.at],
-        p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
+    return diag_fail(d, ERR_GUARD,
+                     "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
+                     "which is not valid: %s",
+                     s->state.time, (long long)s->state.steps, kind_names[kind],
+                     (long long)p->id[f.at], p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
 }
 
 /* Whether any speed or density is invalid or NaN, from the extremes of the last step. */
@@ -65,9 +64,9 @@ static bool fluid_sound(struct simulation *s)
 
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
  * until the particle lies in the bed that the front runs over. */
-#define STRAY                                                                                     \
-    "fluid had entered a wall or solid before; wall_repulsion = 0.1 or diffusion_form = antuono " \
-    "keeps it out"
+#define STRAY                                                                                      \
+    "probably because fluid particles entered a wall or solid earlier in the run; wall_repulsion " \
+    "= 0.1 or diffusion_form = antuono prevents that"
 
 static enum err check_fluid(struct simulation *s, struct diag *d)
 {
@@ -79,17 +78,18 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     }
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
-        diag_warn(d,
-                  "t = %.6g s: the fluid's speed %.4g m/s is above %g of the speed of sound %.4g "
-                  "m/s: the fluid is no longer weakly compressible; a higher sound_speed helps",
-                  s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
+        diag_warn(
+            d,
+            "t = %.6g s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
+            "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
+            s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
     }
     const double dens = max2(s->state.dens_high, -s->state.dens_low);
     if (!s->guard.warned_dens && dens > DENS_WARNING) {
         s->guard.warned_dens = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's density is off by %.3g of its reference; usual is 0.01, "
-                  "and the run stops at %g; a higher sound_speed helps",
+                  "t = %.6g s: the fluid's density deviates by %.3g of its reference. 0.01 is "
+                  "usual, and the run stops at %g; a higher sound_speed may help",
                   s->state.time, dens, s->guard.dens_limit);
     }
     return ERR_OK;
@@ -132,7 +132,7 @@ static struct finding too_fast(const struct simulation *s, const struct particle
         for (; i < end; i++) {
             const double speed2 = square(p->vx[i] - mean_x) + square(p->vy[i] - mean_y);
             if (!(speed2 <= limit * limit))
-                return (struct finding){i, "speed (m/s) beside its body", sqrt(speed2)};
+                return (struct finding){i, "speed relative to its body (m/s)", sqrt(speed2)};
         }
     }
     return (struct finding){-1, "", 0};
@@ -174,7 +174,7 @@ static enum err check_solid(struct simulation *s, struct diag *d)
     const struct finding fast = too_fast(s, p);
     if (fast.at >= 0)
         return complain(s, KIND_SOLID, fast,
-                        "it is faster than its body by ten times the speed of sound: the solid is "
+                        "the limit is ten times the speed of sound of the material. The solid is "
                         "unstable (a smaller solid_safety may help) or far too soft for its load",
                         d);
     if (s->solid.contact) TRY(check_contact(s, d));
@@ -188,10 +188,11 @@ static enum err check_solid(struct simulation *s, struct diag *d)
                         d);
     if (!s->guard.warned_det && det.value < DET_WARNING) {
         s->guard.warned_det = true;
-        diag_warn(d,
-                  "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is pressed to det F = %.3g; "
-                  "at 0 the material is inverted and the run stops",
-                  s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+        diag_warn(
+            d,
+            "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
+            "the material is inverted and the run stops; a finer dp or a stiffer law may help",
+            s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
     }
     return ERR_OK;
 }
@@ -212,19 +213,19 @@ static enum err check_step(struct simulation *s, struct diag *d)
     if (s->substeps > SUBSTEPS_MOST)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: the solid's step has collapsed to %.3g s, %d sub-steps a step: "
-            "its material is being crushed or torn; finer particles may help",
+            "t = %.6g s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
+            "because its material is being crushed or torn; a finer dp may help",
             s->state.time, s->dt_solid, s->substeps);
     if (cut || s->state.dt > STEP_WARNING * limit) return ERR_OK;
     if (s->state.dt < limit)
         return diag_fail(d, ERR_GUARD,
-                         "t = %.6g s: the time step has collapsed to %.3g s: accelerations grow "
-                         "without bound; a higher sound_speed or a smaller cfl may help",
+                         "t = %.6g s: the time step has fallen to %.3g s, because accelerations "
+                         "grow without bound; a higher sound_speed or a smaller cfl may help",
                          s->state.time, s->state.dt);
     if (!s->guard.warned_step)
         diag_warn(d,
-                  "t = %.6g s: the time step has shrunk to %.3g s, bound by %s; at %.3g s the run "
-                  "stops",
+                  "t = %.6g s: the time step has fallen to %.3g s, limited by %s, and the run "
+                  "stops at %.3g s; a smaller cfl or a higher sound_speed may help",
                   s->state.time, s->state.dt, binding_bound(s), limit);
     s->guard.warned_step = true;
     return ERR_OK;
@@ -242,8 +243,8 @@ static enum err check_motion(const struct simulation *s, struct diag *d)
         if (!isfinite(sum))
             return diag_fail(
                 d, ERR_GUARD,
-                "t = %.6g s: [motion %s] puts [wall %s] at a displacement of (%g, %g) m "
-                "with (%g, %g) m/s and (%g, %g) m/s^2: all of them have to be finite",
+                "t = %.6g s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
+                "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite",
                 s->state.time, s->scene->motion[b->motion].common.name,
                 s->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
                 m->a[1]);
@@ -310,11 +311,11 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
     char name[ACCOUNT_TEXT];
     double at[2];
     account_name(s, g->entry, name);
-    const int used =
-        snprintf(text, 400,
-                 "t = %.6g s: %s gained %.3g J/m of energy by %s, where up to %.3g J/m was in "
-                 "play, now most of it in %s",
-                 s->state.time, name, g->energy, source_of(g), g->play, most_of(g));
+    const int used = snprintf(
+        text, 400,
+        "t = %.6g s: %s has gained %.3g J/m of spurious energy by %s and had at most %.3g J/m "
+        "without potential energy; most of its energy is in %s",
+        s->state.time, name, g->energy, source_of(g), g->play, most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
@@ -342,7 +343,7 @@ enum err guards_energy(struct simulation *s, struct diag *d)
                          step_key(s), step_remedy(s));
     if (s->guard.warned_energy) return ERR_OK;
     s->guard.warned_energy = true;
-    diag_warn(d, "%s: the run is not sound; a smaller %s%s may help", text, step_key(s),
+    diag_warn(d, "%s: the results may be invalid; a smaller %s%s may help", text, step_key(s),
               step_remedy(s));
     return ERR_OK;
 }
@@ -364,7 +365,7 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, the first "
             "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; wall_repulsion = 0.1, a thickness of "
-            "three particles or a higher sound_speed helps",
+            "three particles or a higher sound_speed may help",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;

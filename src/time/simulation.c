@@ -87,11 +87,11 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (!(s->effects & FX_COUPLING)) return ERR_OK;
     const double ratio = timestep_fluid_limit(s) / s->dt_solid;
     if (!(ratio <= SUBSTEPS_MOST))
-        return diag_fail(d, ERR_INPUT,
-                         "the solid's stable step, %.3g s, needs %.3g sub-steps in a step of the "
-                         "fluid, and at most %d are possible: young is too high or density too low "
-                         "for the fluid's sound_speed",
-                         s->dt_solid, ratio, SUBSTEPS_MOST);
+        return diag_fail(
+            d, ERR_INPUT,
+            "the solid's stable step of %.3g s needs %.3g sub-steps per fluid step, more than the "
+            "limit of %d; lower its young, or raise its density or the fluid's sound_speed",
+            s->dt_solid, ratio, SUBSTEPS_MOST);
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
@@ -215,15 +215,16 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     s->cells_overfull = fullest > CELL_CAPACITY;
     find_skin_left(s);
     if (s->cells_overfull && s->state.steps == 0)
-        return diag_fail(d, ERR_INPUT,
-                         "%d particles start in one cell of %.3g m, which has room for %d: a "
-                         "smaller numerics.h_over_dp or a solid's dp nearer to the fluid's helps",
-                         fullest, s->cells.side[0], CELL_CAPACITY);
+        return diag_fail(
+            d, ERR_INPUT,
+            "%d particles start in one cell of %.3g m, more than the limit of %d; use a smaller "
+            "numerics.h_over_dp, or a dp of solids closer to that of the fluid",
+            fullest, s->cells.side[0], CELL_CAPACITY);
     if (s->cells_overfull)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where some twenty "
-            "belong: the run is unstable; a smaller cfl or another sound_speed may help",
+            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where about twenty "
+            "are usual, so the run is unstable; a smaller cfl or another sound_speed may help",
             s->state.time, fullest, s->cells.side[0]);
     return ERR_OK;
 }
@@ -491,7 +492,9 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
         if (s->effects & FX_COUPLING) forget_all_touch(&s->kind[KIND_SOLID]);
         if (s->effects & FX_WALL) forget_all_touch(&s->kind[KIND_WALL]);
         if (fluid_fullest_cell(&s->cells) > CELL_CAPACITY)
-            return diag_fail(d, ERR_INPUT, "the checkpoint has more than %d particles in one cell",
+            return diag_fail(d, ERR_INPUT,
+                             "the checkpoint cannot be used, because it has more than %d particles "
+                             "in one cell; try an older one",
                              CELL_CAPACITY);
     }
     if (s->effects & FX_SOLID) {

@@ -11,9 +11,8 @@ static void warn_of_contact(const struct simulation *s, struct diag *d)
 {
     const struct scene *const c = s->scene;
     if (s->effects & FX_CONTACT || c->domain.periodic == PERIODIC_NONE || c->n_solid == 0) return;
-    diag_warn(d,
-              "contact is not simulated in a domain with periodic sides: solids may pass through "
-              "each other and through walls; periodic = none simulates it");
+    diag_warn(d, "contact is not computed in a domain with periodic sides, so solids may pass "
+                 "through each other and through walls; periodic = none enables contact");
 }
 
 /* A body without a clamp moves away, which is seldom intended in a case with gravity or a load. */
@@ -26,15 +25,14 @@ static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
         for (int m = 0; m < s->scene->n_load; m++)
             loaded |= scene_find_solid(s->scene, s->scene->load[m].body) == k;
         if (b->gravity && s->effects & FX_GRAVITY)
-            diag_warn(
-                d,
-                "[solid %s] is clamped nowhere, and gravity acts on it: it falls unless fluid "
-                "carries it; `clamp` holds it, `gravity = off` spares it",
-                b->common.name);
+            diag_warn(d,
+                      "[solid %s] has no clamp, and gravity acts on it, so it falls unless fluid "
+                      "carries it; give it a `clamp`, or gravity = off",
+                      b->common.name);
         else if (loaded)
             diag_warn(d,
-                      "[solid %s] is clamped nowhere, and a [load] acts on it: it is driven away; "
-                      "`clamp` holds it",
+                      "[solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
+                      "give it a `clamp`",
                       b->common.name);
     }
 }
@@ -66,8 +64,8 @@ static void warn_of_cfl(const struct simulation *s, struct diag *d)
     text_of_step(s, given);
     if (timestep_beyond(s, limit))
         diag_warn(d,
-                  "%s is beyond %g, up to which this integrator is stable: the fluid may "
-                  "blow up, and a guard would stop the run",
+                  "%s is above %g, the stability limit of this integrator, so the fluid may become "
+                  "unstable and a guard may stop the run; use a smaller value",
                   given, limit);
 }
 
@@ -77,11 +75,10 @@ static void warn_of_fixed_step(const struct simulation *s, struct diag *d)
     const double fixed = s->scene->numerics.fixed_step;
     const bool shared = s->effects & FX_SOLID && !(s->effects & FX_MULTIRATE);
     if (shared && fixed > s->solid.stable_step)
-        diag_warn(
-            d,
-            "numerics.fixed_step = %g s is beyond the %.4g s of the solid's bound: the run will "
-            "blow up; 0 takes the step from the bounds",
-            fixed, s->solid.stable_step);
+        diag_warn(d,
+                  "numerics.fixed_step = %g s exceeds the solid's stable step of %.4g s, so the "
+                  "run will become unstable; use a smaller value, or 0 for automatic steps",
+                  fixed, s->solid.stable_step);
 }
 
 static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
@@ -96,7 +93,7 @@ static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
     scene_location(s->scene, b->common.line, place);
     diag_warn(d,
               "%s: [solid %s], %.3g times as dense as the fluid, may gain energy with "
-              "numerics.fixed_step = %g s; take %.3g s at most, or 0 for the step from the bounds",
+              "numerics.fixed_step = %g s; use at most %.3g s, or 0 for automatic steps",
               place, b->common.name, b->density / s->scene->rho0, fixed, bound);
 }
 

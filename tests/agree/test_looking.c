@@ -100,7 +100,7 @@ static void test_absurd_ratio_of_steps_is_refused(void)
                                   d.text);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text,
-                                        "sub-steps in a step of the fluid, and at most 10000"),
+                                        "sub-steps per fluid step, more than the limit of 10000"),
                                  d.text);
     scene_free(&scene);
 }

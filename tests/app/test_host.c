@@ -331,7 +331,7 @@ static void a_callback_may_not_use_its_simulation(void)
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_set_force(a, SPHFSI_FLUID, call_back, NULL));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(a, 1));
     for (int k = 0; k < 6; k++) TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, answer[k]);
-    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "within another call"));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "in use by another call"));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_set_force(a, SPHFSI_FLUID, NULL, NULL));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(a, 1));
 }

@@ -176,7 +176,7 @@ static void a_motion_to_nowhere_is_stopped(void)
     a = create(piston, NULL);
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_set_motion(a, "push", lost_after_a_while, NULL));
     TEST_ASSERT_EQUAL_INT(SPHFSI_GUARD, sphfsi_advance(a, 0.02));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "[motion push] puts [wall piston]"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "[motion push] gives [wall piston]"),
                                  sphfsi_error());
     TEST_ASSERT_DOUBLE_WITHIN(1e-3, 0.01, sphfsi_time(a));
 }

@@ -40,7 +40,7 @@ if [ "$cores" -gt 1 ]; then
         fail "OMP_NUM_THREADS=2"
     kill "${busy[@]}"
     wait "${busy[@]}" 2>/dev/null
-    grep -q 'busy: 1 of .* cores idle, so the run takes 1 thread; .*: --threads [2-9]' "$dir/output" ||
+    grep -q 'busy: 1 of .* cores idle, so the run uses 1 thread; .* give --threads [2-9]' "$dir/output" ||
         fail "a busy machine is not said"
     [ "$(threads "$dir/busy")" = 1 ] || fail "a busy machine: $(threads "$dir/busy") threads"
     [ "$(threads "$dir/asked")" = 2 ] || fail "--threads 2: $(threads "$dir/asked") threads"

@@ -96,10 +96,10 @@ static void test_retired_keys_are_passed_over_with_a_note(void)
                                           scene_load_text(&scene, by_set ? TOP BLOCK : text,
                                                           "x.cfg", by_set, sets, &diag),
                                           diag.text);
-            snprintf(note, sizeof note,
-                     "%s: `%.*s` in [numerics] is no longer used, since all its values computed "
-                     "the same; leave it out",
-                     by_set ? "--set" : "x.cfg:4", length, keys[k]);
+            snprintf(
+                note, sizeof note,
+                "%s: `%.*s` in [numerics] has been removed, because it had no effect; leave it out",
+                by_set ? "--set" : "x.cfg:4", length, keys[k]);
             TEST_ASSERT_EQUAL_STRING(note, warned);
             scene_free(&scene);
         }

@@ -45,12 +45,13 @@ static const struct {
      "bad.cfg:1: dp = \xE2\x88\x92"
      "1 mm: a value is expected, not a Unicode minus; write -"},
     {"dp = 1\xC2\xA0mm\n", NULL,
-     "bad.cfg:1: dp = 1\xC2\xA0mm: an operator is expected, not a no-break space; write a blank"},
+     "bad.cfg:1: dp = 1\xC2\xA0mm: an operator is expected, not a no-break space; write an "
+     "ordinary space"},
     {"\xC2\xA0"
      "dp = 1 mm\n",
      NULL,
      "bad.cfg:1: `\xC2\xA0"
-     "dp` has a no-break space; write a blank"},
+     "dp` has a no-break space; write an ordinary space"},
     {"dp = 5 \xC2\xB5m\n", NULL,
      "bad.cfg:1: dp = 5 \xC2\xB5m: an operator is expected, not a micro sign; write u, as in um"},
     {"dp = 0,005\n", NULL,
@@ -58,10 +59,10 @@ static const struct {
      "point: 0.005"},
     {TOP "gravity = 0, -9,81\n", NULL,
      "bad.cfg:3: gravity = 0, -9,81: two components are expected, `gravity = X, Y`; there are 3; a "
-     "comma parts numbers, and a decimal number is written with a point: 0.005"},
+     "comma separates numbers, and a decimal number is written with a point: 0.005"},
     {TOP SOLID "clamp = box 0, 0, 0,1, 1\n", NULL,
      "bad.cfg:8: clamp = box 0, 0, 0,1, 1: 4 numbers are expected and 5 given in `0, 0, 0,1, 1`; a "
-     "comma parts numbers, and a decimal number is written with a point: 0.005"},
+     "comma separates numbers, and a decimal number is written with a point: 0.005"},
     {"dp = 1 mm // spacing\n", NULL,
      "bad.cfg:1: dp = 1 mm // spacing: `//` where a value is expected; a comment begins with #"},
     {"// a comment\n", NULL,
@@ -76,9 +77,9 @@ static const struct {
      "--set a.young=3 kg/m/s^3: young = 3 kg/m/s^3: a quantity in kg/(m s^3) where a pressure (Pa) "
      "is expected"},
     {TOP FLUID "[wall w]\nshape = polyline thickness 5 mm: 0, 0; 20 mm, 0\n", NULL,
-     "bad.cfg:3: 100 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0005) m: turn "
-     "the sign of `thickness` if the polyline's band is on the wrong side, move one of the shapes, "
-     "or take the place out with `minus`"},
+     "bad.cfg:3: 100 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0005) m: "
+     "change the sign of `thickness` if the band of the polyline is on the wrong side, move one of "
+     "the shapes, or subtract the overlap with `minus`"},
     {TOP "[solid]\n", NULL, "bad.cfg:3: [solid] needs a name: [solid NAME]"},
     {TOP "[numerics fast]\n", NULL, "bad.cfg:3: [numerics] takes no name"},
     {TOP "[solid a/b]\n", NULL,
@@ -86,9 +87,9 @@ static const struct {
     {TOP "[solid a\n", NULL, "bad.cfg:3: `[` without `]`"},
     {TOP "[solid a] b\n", NULL, "bad.cfg:3: text after the section's `]`; a comment begins with #"},
     {TOP SOLID SOLID, NULL,
-     "bad.cfg:8: [solid a] is given twice, first in line 3; join the two or rename one"},
+     "bad.cfg:8: [solid a] is given twice, first in line 3; merge the two or rename one"},
     {TOP "[output]\n[output]\n", NULL,
-     "bad.cfg:4: [output] is given twice, first in line 3; join the two or rename one"},
+     "bad.cfg:4: [output] is given twice, first in line 3; merge the two or rename one"},
     {"dp = 1 mm\ntitle = a\x01"
      "b\n",
      NULL, "bad.cfg:2: control byte 1; a case file is plain text"},
@@ -123,7 +124,7 @@ static const struct {
     {"dp = 0\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = 0: out of range: it must be above 0 m and at most 1000 m"},
     {"dp = 1e999\nend_time = 1 s\n" SOLID, NULL,
-     "bad.cfg:1: dp = 1e999: 1e999 is too large for a number"},
+     "bad.cfg:1: dp = 1e999: 1e999 is too large; the largest number is 1.8e308"},
     {"dp = nan\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = nan: unknown name `nan`; define it in [constants]"},
     {"dp = 1/0\nend_time = 1 s\n" SOLID, NULL, "bad.cfg:1: dp = 1/0: division by zero"},
@@ -143,13 +144,13 @@ static const struct {
     {"dp = max(1 mm)\nend_time = 1 s\n" SOLID, NULL,
      "bad.cfg:1: dp = max(1 mm): max needs two values: max(a, b)"},
     {"dp = x\nend_time = 1 s\n" SOLID, NULL,
-     "bad.cfg:1: dp = x: `x` has a value only where a key takes an expression in x and y"},
+     "bad.cfg:1: dp = x: `x` is known only in keys that take an expression in x and y"},
     {"dp = "
      "((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((1))))))))))))))))))))))"
      "))))))))))))))))))))))))))))))))))))))))))))))))\nend_time = 1 s\n" SOLID,
      NULL,
-     "bad.cfg:1: dp = ((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((...: nested more "
-     "than 64 deep"},
+     "bad.cfg:1: dp = ((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((...: parentheses "
+     "or signs are nested more than 64 deep"},
     {"dp = thicknes/2\nend_time = 1 s\n[constants]\nthickness = 2 mm\n" SOLID, NULL,
      "bad.cfg:1: dp = thicknes/2: unknown name `thicknes`; did you mean `thickness`?"},
     {"dp = g\nend_time = 1 s\n" SOLID, NULL,
@@ -166,9 +167,8 @@ static const struct {
     {TOP "gravity = 9.81\n" SOLID, NULL,
      "bad.cfg:3: gravity = 9.81: two components are expected, `gravity = X, Y`; there is 1"},
     {TOP "gravity = 0, 1/(t - 0.5)\n" SOLID, NULL,
-     "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be at "
-     "all "
-     "times up to end_time"},
+     "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be "
+     "finite at all times up to end_time"},
     {TOP "gravity_file = none.csv\n" SOLID, NULL,
      "bad.cfg:3: gravity_file = none.csv cannot be opened: No such file or directory"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
@@ -196,7 +196,7 @@ static const struct {
     {TOP SOLID "velocity = 1 MPa, 0\n", NULL,
      "bad.cfg:8: velocity = 1 MPa, 0: a pressure (Pa) where a speed (m/s) is expected"},
     {TOP SOLID "velocity = 1/(x - x), 0\n", NULL,
-     "bad.cfg:3: [solid a] velocity has no finite value at (0.0005, 0.0005) m"},
+     "bad.cfg:3: [solid a] velocity is not finite at (0.0005, 0.0005) m; change the expression"},
     {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: there is no earlier [solid] of that name"},
     {TOP SOLID "clamp = bix 0, 0, 1, 1\n", NULL,
      "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is not a shape; known: box, polygon, polyline, "
@@ -218,7 +218,7 @@ static const struct {
     {TOP SOLID "clamp = polyline 0, 0; 1, 1\n", NULL,
      "bad.cfg:8: clamp = polyline 0, 0; 1, 1: write `polyline thickness T: X, Y; X, Y; ...`"},
     {TOP SOLID "clamp = polyline thickness 0: 0, 0; 1, 1\n", NULL,
-     "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must not be 0, nor beyond "
+     "bad.cfg:8: clamp = polyline thickness 0: 0, 0; 1, 1: the thickness must not be 0 and at most "
      "1e9 m"},
     {TOP SOLID "clamp = polyline thickness 1 mm: 0, 0; 0, 0\n", NULL,
      "bad.cfg:8: clamp = polyline thickness 1 mm: 0, 0; 0, 0: points 1 and 2 are the same"},
@@ -228,14 +228,14 @@ static const struct {
      "bad.cfg:8: segment 1 of the polyline is too short for a thickness of 1 m: the joints at its "
      "ends cross"},
     {TOP SOLID "clamp = box 1, 1, 2, 2\n", NULL,
-     "bad.cfg:8: clamp 1 of [solid a] holds no particle: it must cover a part of the body"},
+     "bad.cfg:8: clamp 1 of [solid a] contains no particle; it must cover a part of the body"},
     {TOP "[solid a]\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n", NULL,
      "bad.cfg:3: [solid a] has no shape"},
     {TOP
      "[solid a]\nshape = box 0, 0, 10 mm, 0.3 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
      NULL,
-     "bad.cfg:4: shape 1 of [solid a] holds no particle: it is narrower than dp = 0.001 m, or lies "
-     "between the lattice's centres"},
+     "bad.cfg:4: shape 1 of [solid a] contains no particle, because it is narrower than dp = 0.001 "
+     "m or lies between lattice points; enlarge or move it"},
     {TOP "[solid a]\nshape = box 0, 0, 10 mm, 1 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
      NULL,
      "bad.cfg:3: [solid a] is 1 particle thick at dp = 0.001 m; bending needs at least 2, better "
@@ -244,40 +244,38 @@ static const struct {
      "bad.cfg:3: nothing is left of [solid a] after its `minus`"},
     {"dp = 1e-9 m\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 10 mm, 20 km\ndensity = "
      "1000\nyoung = 1 MPa\npoisson = 0.3\n",
-     NULL, "bad.cfg: dp = 1e-09 m makes about 2e+20 particles"},
+     NULL, "bad.cfg: dp = 1e-09 m gives about 2e+20 particles"},
     {"dp = 1e-300 m\nend_time = 1 s\n" SOLID, NULL,
-     "bad.cfg: dp = 1e-300 m makes about inf particles"},
+     "bad.cfg: dp = 1e-300 m gives about inf particles"},
     {TOP FLUID SOLID, NULL,
      "bad.cfg:3: 200 particles of [fluid w] lie in [solid a], the first at (0.0005, 0.0005) m: "
-     "move one of the shapes, or take the place out with `minus`"},
+     "move one of the shapes, or subtract the overlap with `minus`"},
     {TOP FLUID "[fluid v]\nlike = w\nshape = box 10 mm, 10 mm, 30 mm, 30 mm\n", NULL,
      "bad.cfg:6: 100 particles of [fluid v] lie in [fluid w], the first at (0.0105, 0.0105) m: "
-     "move one of the shapes, or take the place out with `minus`"},
+     "move one of the shapes, or subtract the overlap with `minus`"},
     {TOP SOLID "[solid b]\nlike = a\nshape = box 5 mm, 5 mm, 10 mm, 20 mm\n", NULL,
      "bad.cfg:8: 75 particles of [solid b] lie in [solid a], the first at (0.0055, 0.0055) m: move "
-     "one of the shapes, or take the place out with `minus`"},
+     "one of the shapes, or subtract the overlap with `minus`"},
     {TOP SOLID "[wall w]\nshape = box 0, 15 mm, 10 mm, 30 mm\n", NULL,
      "bad.cfg:8: 50 particles of [wall w] lie in [solid a], the first at (0.0005, 0.0155) m: only "
      "the clamped part of a solid may lie in a wall"},
     {TOP FLUID "[wall w]\nshape = box -5 mm, 15 mm, 10 mm, 30 mm\n", NULL,
      "bad.cfg:3: 50 particles of [fluid w] lie in [wall w], the first at (0.0005, 0.0155) m: move "
-     "one of the shapes, or take the place out with `minus`"},
+     "one of the shapes, or subtract the overlap with `minus`"},
     {TOP "[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\n", NULL,
      "bad.cfg:3: [fluid w] needs `sound_speed`, or `max_speed` and `max_pressure` for Eq. 3"},
     {TOP FLUID "[fluid v]\nlike = w\ndensity = 900\nshape = box 20 mm, 0, 30 mm, 20 mm\n", NULL,
-     "bad.cfg:6: [fluid v] and [fluid w] differ in `density`: 900 and 1000; all fluid is of one "
-     "kind"},
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `density`: 900 and 1000; all fluid must have "
+     "the same value"},
     {TOP FLUID "[fluid v]\nlike = w\nwall_repulsion = 0.1\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
      NULL,
-     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0.3; all fluid is of "
-     "one "
-     "kind"},
+     "bad.cfg:6: [fluid v] and [fluid w] differ in `wall_repulsion`: 0.1 and 0.3; all fluid must "
+     "have the same value"},
     {TOP FLUID "shifting = 1\nshifting_speed = largest\n"
                "[fluid v]\nlike = w\nshifting_speed = own\nshape = box 20 mm, 0, 30 mm, 20 mm\n",
      NULL,
-     "bad.cfg:8: [fluid v] and [fluid w] differ in `shifting_speed`: own and largest; all fluid is "
-     "of "
-     "one kind"},
+     "bad.cfg:8: [fluid v] and [fluid w] differ in `shifting_speed`: own and largest; all fluid "
+     "must have the same value"},
     {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; leave one out"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
@@ -292,16 +290,17 @@ static const struct {
      "bad.cfg:6: [motion lift] kind = polynomial needs `poly_x` or `poly_y`"},
     {TOP SOLID "[output]\nsnapshot_fields = velocity presure\n", NULL,
      "bad.cfg:8: [output] snapshot_fields: there is no field `presure`; did you mean `pressure`? "
-     "Known: all, or of velocity density pressure kind id body stress von_mises displacement "
+     "Allowed: all, or any of velocity density pressure kind id body stress von_mises displacement "
      "det_F"},
     {TOP SOLID "[probe F]\nquantity = force\nbody = aa\n", NULL,
      "bad.cfg:8: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
      "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
     {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
-     "bad.cfg:6: [probe Q] measures through a line: `point` and `to` are its ends and must differ"},
+     "bad.cfg:6: [probe Q] measures the flux through the line from `point` to `to`; the two points "
+     "must differ"},
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
-     "bad.cfg:8: [probe M1] needs `body`, the solid it belongs to"},
+     "bad.cfg:8: [probe M1] needs `body`, the solid that is measured"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
      "bad.cfg:8: body = aa: there is no [solid] of that name"},
     {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,
@@ -319,29 +318,30 @@ static const struct {
     {TOP SOLID "[domain]\nlower = 0, 0\nupper = 1, 0\n", NULL,
      "bad.cfg:8: [domain] lower must lie below and left of upper; here y is 0 and 0 m"},
     {TOP FLUID "[wall w]\nshape = box 0, -5 mm, 20 mm, 0\nslip = none\n", NULL,
-     "bad.cfg:8: [wall w] slip calls for NO_SLIP, which needs LAMINAR "
+     "bad.cfg:8: [wall w] slip enables the effect NO_SLIP, which needs LAMINAR "
      "(fluid.laminar_viscosity > "
-     "0): fluid sticks to a surface by its laminar viscosity"},
+     "0): fluid sticks to surfaces by its laminar viscosity"},
     {TOP SOLID "slip = none\n", NULL,
-     "bad.cfg:8: [solid a] slip calls for NO_SLIP, which needs LAMINAR"},
+     "bad.cfg:8: [solid a] slip enables the effect NO_SLIP, which needs LAMINAR"},
     {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
-     "bad.cfg:7: [fluid w] laminar_viscosity calls for LAMINAR, which excludes VERLET "
-     ""
-     "(called for by `integrator` in line 3): its two-step form is unstable with friction"},
+     "bad.cfg:7: [fluid w] laminar_viscosity enables the effect LAMINAR, which excludes VERLET "
+     "(enabled by "
+     "`integrator` in line 3): two-step Verlet is unstable with laminar viscosity"},
     {TOP FLUID "density_diffusion = 0\n", "w.diffusion_form=fourtakas",
-     "--set: [fluid w] diffusion_form does nothing without DIFFUSION: leave it out, or call for "
-     "that by fluid.density_diffusion > 0"},
+     "--set: [fluid w] diffusion_form has no effect without DIFFUSION: leave it out, or enable "
+     "DIFFUSION by fluid.density_diffusion > 0"},
     {TOP SOLID "hourglass = 0\nhourglass_form = printed\n", NULL,
-     "bad.cfg:9: [solid a] hourglass_form does nothing without HOURGLASS: leave it out, or call "
-     "for that by solid.hourglass > 0"},
+     "bad.cfg:9: [solid a] hourglass_form has no effect without HOURGLASS: leave it out, or enable "
+     "HOURGLASS by solid.hourglass > 0"},
     {TOP SOLID "artificial_viscosity = 0\nviscosity_form = printed\n", NULL,
-     "bad.cfg:9: [solid a] viscosity_form does nothing without SOLID_VISCOSITY: leave it out, "
-     "or call for that by solid.artificial_viscosity > 0"},
+     "bad.cfg:9: [solid a] viscosity_form has no effect without SOLID_VISCOSITY: leave it out, or "
+     "enable SOLID_VISCOSITY by solid.artificial_viscosity > 0"},
     {TOP SOLID "[contact c]\n[solid b]\nlike = a\nshape = box 12 mm, 0, 20 mm, 20 mm\n" FLUID
                "[domain]\nperiodic = x\nlower = -5 mm, 0\nupper = 25 mm, 0.1\n",
      NULL,
-     "bad.cfg:8: [contact c] calls for CONTACT, which excludes PERIODIC (called for by [domain] "
-     "periodic in line 16): contact does not reach through the sides"},
+     "bad.cfg:8: [contact c] enables the effect CONTACT, which excludes PERIODIC (enabled by "
+     "[domain] "
+     "periodic in line 16): contact is not computed through periodic sides"},
     {TOP FLUID "[contact c]\n", NULL, "bad.cfg:6: [contact c] needs a [solid]"},
     {TOP FLUID "[load l]\nshape = box 0, 0, 1 mm, 1 mm\nforce = 1, 0\n", NULL, "bad.cfg:6: "},
     {TOP FLUID "[wall b]\nshape = box 0, -5 mm, 20 mm, 0\nmotion = m\n[motion m]\nkind = sine\n",
@@ -353,9 +353,9 @@ static const struct {
      "be "
      "a whole number of them; 0.02 m would fit"},
     {TOP SOLID "[domain]\nperiodic = x\nlower = 0, 0\nupper = 0.1, 0.1\n", NULL,
-     "bad.cfg:9: [domain] periodic calls for PERIODIC, which needs FLUID (a [fluid] "
-     "section): "
-     "fluid alone goes round through the sides"},
+     "bad.cfg:9: [domain] periodic enables the effect PERIODIC, which needs FLUID (a [fluid] "
+     "section): only "
+     "fluid can pass through periodic sides"},
     {TOP SOLID
      "[fluid w]\nshape = box 0, 30 mm, 11 mm, 50 mm\nsound_speed = 20\n[domain]\nperiodic = x\n"
      "lower = 0, 0\nupper = 11 mm, 0.1\n",
@@ -364,9 +364,11 @@ static const struct {
      "solids "
      "are not bonded through a periodic side: at least 2 h = 0.003 m are needed"},
     {TOP FLUID "[domain]\nperiodic = x\nlower = -1 mm, 0\nupper = 19 mm, 0.1\n", NULL,
-     "bad.cfg:6: [domain] leaves out a fluid particle at (0.0195, 0.0005) m"},
+     "bad.cfg:6: a fluid particle at (0.0195, 0.0005) m lies outside [domain]; enlarge [domain] or "
+     "change the shape"},
     {TOP SOLID "[domain]\nlower = 5 mm, 0\nupper = 1, 1\n", NULL,
-     "bad.cfg:8: [domain] leaves out a solid particle at (0.0005, 0.0005) m"},
+     "bad.cfg:8: a solid particle at (0.0005, 0.0005) m lies outside [domain]; enlarge [domain] or "
+     "change the shape"},
     {TOP SOLID, "dp", "--set dp: write key=value or section.key=value"},
     {TOP SOLID, "dpp=1 mm", "--set dpp=1 mm: unknown key `dpp`; did you mean `dp`?"},
     {TOP SOLID, "zebra=1", "--set zebra=1: unknown key or constant `zebra`"},

@@ -138,10 +138,10 @@ static void test_what_makes_no_sense(void)
     wrong("the result is not a finite number", "1e308*10");
     wrong("a length (m) and a time (s) cannot be added or compared", "max(L, 1 s)");
     wrong("the power of a length (m); it needs a number without a unit", "2^L");
-    wrong("the power of a unit is a number from -9 to 9", "2 m^99");
-    wrong("a quantity with a unit has a power beyond 9", "L^99");
+    wrong("the exponent of a unit must be a number from -9 to 9", "2 m^99");
+    wrong("a quantity with a unit has an exponent outside the range -9 to 9", "L^99");
     wrong("byte 200 where an operator is expected", "2\xC8");
-    wrong("`x` has a value only where a key takes an expression in x and y", "x");
+    wrong("`x` is known only in keys that take an expression in x and y", "x");
     wrong("unknown name `q`", "q");
     wrong("unknown function `L`", "L(2)");
     wrong("unknown name `g`", "g");
@@ -179,20 +179,23 @@ static void test_length_and_depth_are_bounded(void)
     memset(text, '(', sizeof text);
     struct quantity q;
     TEST_ASSERT_FALSE(expr_value((struct slice){text, sizeof text}, &names, &q, why));
-    TEST_ASSERT_EQUAL_STRING("nested more than 64 deep", why);
+    TEST_ASSERT_EQUAL_STRING(
+        "parentheses or signs are nested more than 64 deep; use [constants] for parts of it", why);
     memset(text, '-', sizeof text);
     TEST_ASSERT_FALSE(expr_value((struct slice){text, sizeof text}, &names, &q, why));
-    TEST_ASSERT_EQUAL_STRING("nested more than 64 deep", why);
+    TEST_ASSERT_EQUAL_STRING(
+        "parentheses or signs are nested more than 64 deep; use [constants] for parts of it", why);
     memset(text, '9', sizeof text);
     TEST_ASSERT_FALSE(expr_value((struct slice){text, sizeof text}, &names, &q, why));
-    TEST_ASSERT_EQUAL_STRING("a number of more than 60 characters", why);
+    TEST_ASSERT_EQUAL_STRING("the number has more than 60 characters; shorten it", why);
     for (size_t k = 0; k + 1 < sizeof text; k += 2) memcpy(text + k, "x+", 2);
     struct expr *e;
     struct dim dim;
     struct diag d = {0};
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, expr_compile(&e, (struct slice){text, sizeof text - 1}, &names,
                                                   &dim, &arena, why, &d));
-    TEST_ASSERT_EQUAL_STRING("longer than 1024 operations", why);
+    TEST_ASSERT_EQUAL_STRING(
+        "the expression has more than 1024 operations; use [constants] for parts of it", why);
 }
 
 int main(void)

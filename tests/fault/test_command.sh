@@ -50,7 +50,7 @@ sed 's/^density = .*/density = 1 foot/; s/^young/yuong/' gate.cfg >wrong.cfg
 [ $? = 1 ] && [ "$(grep -c '^sphfsi: wrong.cfg:' err)" = 3 ] || fail "three mistakes: $(cat err)"
 [ ! -e runs/wrong ] || fail "a wrong case leaves a folder"
 refuses 1 "nearest one is --preview" --previw gate.cfg
-refuses 1 "takes no operand" --keys=all
+refuses 1 "takes no value" --keys=all
 
 "$sphfsi" cantilever.cfg --quiet --until 1e-3 --threads 1 >out 2>&1 || fail "a short run"
 [ ! -s out ] || fail "--quiet says: $(cat out)"
@@ -60,7 +60,7 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 
 "$sphfsi" --cite cantilever.cfg >out && grep -q "Ganzenm" out || fail "--cite"
 "$sphfsi" --keys | grep -qF '| `end_time` | number | s | **needed** |' || fail "--keys"
-"$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "effects that are on" out || fail "--explain"
+"$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "enabled effects" out || fail "--explain"
 "$sphfsi" --explain cantilever.cfg --set "plate.lattice_angle=20 deg" --threads 1 >out 2>err &&
     grep -q "solid plate\] lattice at 20 degrees, cells of .* area off by .* bending stiffness" out ||
     fail "--explain of a turned lattice"

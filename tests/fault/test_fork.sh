@@ -8,14 +8,14 @@ expect 0 'simulated' "$case" --threads 1 --out "$run"
 ckpt=$(ls "$run"/*.ckpt)
 
 # --- inspect ---
-expect 0 'a sound checkpoint' --inspect "$ckpt"
+expect 0 'a valid checkpoint' --inspect "$ckpt"
 for words in 'time 0.02 s, 200 steps' 'fluid *100 particles' 'run *sorts' 'solid *ux *45 double' \
     'case *case' 'dp = 0.01 m'; do
     grep -q -- "$words" "$dir/output" || fail "--inspect does not say '$words'"
 done
-expect 1 'not a sound checkpoint' --inspect "$case"
+expect 1 'not a valid checkpoint' --inspect "$case"
 expect 1 'nowhere.ckpt' --inspect "$dir/nowhere.ckpt"
-expect 1 'operand is missing' --inspect
+expect 1 'needs a value' --inspect
 
 # --- other formats, byte orders, versions: put at their place in the header ---
 patched() {

@@ -99,7 +99,7 @@ rm -rf "$dir/whole"
     ulimit -f 120
     exec "$sphfsi" "${arguments[@]}" --out "$dir/rows" --set output.snapshot_failure=go_on
 ) >"$dir/output" 2>&1 || fail "snapshot_failure = go_on: exit status $?"
-grep -q 'warning: the snapshot at .* is left out, the run continues' "$dir/output" ||
+grep -q 'warning: the snapshot at .* is missing, the run continues' "$dir/output" ||
     fail "snapshot_failure = go_on: no warning"
 grep -q '"snapshots_missed": [1-9]' "$dir/rows/summary.json" || fail "snapshots_missed"
 [ "$(hash "$dir/rows")" = "$(hash "$dir/whole")" ] || fail "snapshot_failure = go_on: other bits"

@@ -43,7 +43,7 @@ printf 'dp = 1 \0mm\n' >"$dir/nul.cfg"
 expect 1 'nul.cfg:1: a byte of value 0; a case file is plain text' "$dir/nul.cfg" --out "$dir/no"
 head -c 300000 /dev/urandom >"$dir/noise.cfg"
 expect 1 'noise.cfg:[0-9]*: ' "$dir/noise.cfg" --out "$dir/no"
-expect 1 'not a sound checkpoint\|byte of value 0' "$(ls "$dir"/whole/*.ckpt)" --out "$dir/no"
+expect 1 'not a valid checkpoint\|byte of value 0' "$(ls "$dir"/whole/*.ckpt)" --out "$dir/no"
 ln -s loop.cfg "$dir/loop.cfg"
 expect 1 'loop.cfg: cannot be opened' "$dir/loop.cfg" --out "$dir/no"
 if [ "$(id -u)" != 0 ]; then
@@ -63,13 +63,13 @@ expect 0 '' "$dir/windows.cfg" --out "$dir/windows"
 
 # --- names ---
 cp "$case" "$dir/...cfg"
-(cd "$dir" && mkdir -p sub && cd sub && expect 1 "'..' is none; choose one with --out" ../...cfg &&
+(cd "$dir" && mkdir -p sub && cd sub && expect 1 "'..' cannot be the name of the folder" ../...cfg &&
     [ -z "$(ls)" ] || fail "a case named by dots: wrote beside itself")
 long=$(printf 'x%.0s' {1..300})
 expect 1 'File name too long' "$case" --out "$dir/$long"
 longer=$(for _ in {1..13}; do printf '%s/' "$long"; done)
-expect 1 'characters, from 1 to' "$case" --out "$dir/$longer"
-expect 1 'characters, from 1 to' "$case" --out ''
+expect 1 'characters, but 1 to' "$case" --out "$dir/$longer"
+expect 1 'characters, but 1 to' "$case" --out ''
 expect 0 '' "$case" --out "$dir/"$'a name\nwith "odd" \\ signs\t%s'
 "${PYTHON:-python3}" -c 'import json, sys; json.load(open(sys.argv[1]))' \
     "$dir/"$'a name\nwith "odd" \\ signs\t%s/summary.json' || fail "summary.json of an odd folder"
@@ -123,7 +123,7 @@ mkfifo "$dir/run/step-000000160.ckpt"
 : >"$dir/run/step-99999999999999999999.ckpt"
 : >"$dir/run/step-000000170.ckpt"
 echo torn >"$dir/run/step-000000180.ckpt.part"
-expect 0 'step-000000170.ckpt: is not a sound checkpoint: .*; the one before it is tried' "$case" \
+expect 0 'step-000000170.ckpt: is not a valid checkpoint: .*; the one before it is tried' "$case" \
     --out "$dir/run" --restart
 [ "$(hash "$dir/run")" = "$(hash "$dir/whole")" ] || fail "strangers beside checkpoints change the bits"
 [ ! -e "$dir/run/step-000000180.ckpt.part" ] || fail "an unfinished checkpoint stays for ever"

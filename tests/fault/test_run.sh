@@ -10,26 +10,26 @@ expect 0 '^[0-9]*\.[0-9]*\.[0-9]' --version
 expect 1 'no case is given'
 expect 1 'nearest one is --threads' "$case" --thread 2
 expect 1 'unknown option -x' "$case" -x
-expect 1 '--out: its operand is missing' "$case" --out
+expect 1 '--out needs a value' "$case" --out
 expect 1 'from 1 to 4096' "$case" --threads 0
 expect 1 'from 1 to 4096' "$case" --threads many
 expect 1 'above 0' "$case" --until -1
 expect 1 'key=value' "$case" --set dp
-expect 1 'takes no operand' "$case" --quiet=yes
-expect 1 'one case at a time' "$case" "$case"
+expect 1 'takes no value' "$case" --quiet=yes
+expect 1 'only one case can be given' "$case" "$case"
 expect 1 'nowhere.cfg' "$dir/nowhere.cfg" --out "$dir/none"
 expect 1 'dp' "$case" --set dp=-1 --out "$dir/none"
 expect 1 'dpp' "$case" --set dpp=1 --out "$dir/none"
-expect 1 'fixed_step = 1e-300 s means 2e+298 steps until 0.02 s' "$case" --out "$dir/none" \
+expect 1 'fixed_step = 1e-300 s gives 2e+298 steps until 0.02 s' "$case" --out "$dir/none" \
     --set numerics.fixed_step=1e-300
-expect 1 'ledger_interval = 1e-12 s means 2e+10 rows' "$case" --out "$dir/none" \
+expect 1 'ledger_interval = 1e-12 s gives 2e+10 rows' "$case" --out "$dir/none" \
     --set output.ledger_interval=1e-12
-expect 1 'ledger_interval = 1e-11 s means 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
+expect 1 'ledger_interval = 1e-11 s gives 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
     --set output.ledger_interval=1e-11 --until 1000
 [ ! -e "$dir/none" ] || fail "wrong input made a folder"
 
 # --- explaining writes nothing ---
-expect 0 'binds' "$case" --explain --out "$dir/none"
+expect 0 'limits the step' "$case" --explain --out "$dir/none"
 [ ! -e "$dir/none" ] || fail "--explain made a folder"
 
 # --- a run, its files, no overwriting ---
@@ -58,7 +58,7 @@ expect 1 'no such folder' "$case" --out "$dir/none" --restart
 expect 1 'the case has changed.*young' "$case" --out "$run" --restart --set gate.young=2e6
 expect 1 'beyond the end' "$case" --out "$run" --restart --until 0.01
 expect 1 'nowhere.ckpt' "$case" --out "$run" --restart "$dir/nowhere.ckpt"
-expect 1 'not a sound checkpoint' "$case" --out "$run" --restart "$case"
+expect 1 'not a valid checkpoint' "$case" --out "$run" --restart "$case"
 cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused restart changed its files"
 expect 0 'restart from' "$case" --out "$run" --restart --until 0.03
 [ "$(wc -l <"$run/probes.csv")" = 302 ] || fail "a longer run has $(wc -l <"$run/probes.csv") rows"
@@ -156,8 +156,8 @@ sed -i '/-0.03, -0.03/d' "$dir/leak.cfg"
 expect 0 '50 of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/dry"
 grep -q 'gained' "$dir/output" && fail "a run without its fluid gained energy"
 
-# --- a guard: the last sound state and the state at the stop are left ---
-expect 2 'last sound state is in' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"
+# --- a guard: the last valid state and the state at the stop are left ---
+expect 2 'last valid state, for a restart' "$still" --set numerics.fixed_step=5ms --out "$dir/guard"
 compgen -G "$dir/guard/*.ckpt" >/dev/null || fail "guard: no checkpoint"
 [ -s "$dir/guard/fields.vtkhdf" ] || fail "guard: no snapshot"
 grep -q '"exit_reason": "guard"' "$dir/guard/summary.json" || fail "guard: no summary"

@@ -222,12 +222,12 @@ static void test_refused(void)
         {LEFT, "[inflow left] needs `speed`, `velocity`, `pressure` or `level`"},
         {LEFT "speed = 1\npressure = 0\n", "has more than one of `speed`, `velocity` and"},
         {LEFT "level = 0.3\n", "needs gravity that points down"},
-        {LEFT "speed = 1\nabsorb = 1\n", "`absorb` goes with a pressure"},
+        {LEFT "speed = 1\nabsorb = 1\n", "`absorb` needs `pressure` or `level`"},
         {"[inflow i]\nspeed = 1\n", "needs `from` and `to`"},
         {LEFT "speed = -1\n",
          "points out of the fluid everywhere and at all times, by up to 1 m/s"},
         {RIGHT "velocity = -1, 0\n", "points into the fluid everywhere and at all times"},
-        {LEFT "speed = 1/(t - 5)\n", "speed has no finite value"},
+        {LEFT "speed = 1/(t - 5)\n", "speed is not finite"},
         {LEFT "speed = 1\nside = right\n", "[inflow left] has fluid behind its line"},
         {"[inflow i]\nfrom = -3, 0.5\nto = -3, 0\nspeed = 1\n", "has no fluid along its line"},
         {"[inflow i]\nfrom = 0, 0.7\nto = 0, 0\nspeed = 1\n", "[inflow i] lies in a wall"},
@@ -241,7 +241,7 @@ static void test_refused(void)
     }
     rig_refuses("dp = 0.05\nend_time = 1\n[solid s]\nshape = box 0, 0, 1, 0.3\ndensity = 1\n"
                 "young = 1\npoisson = 0\n" LEFT "speed = 1\n",
-                "calls for INFLOW, which needs FLUID");
+                "enables the effect INFLOW, which needs FLUID");
 }
 
 int main(void)

@@ -123,8 +123,7 @@ static void test_bad_input(void)
         struct scene scene;
         struct diag d = {0};
         TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, tank, "t.cfg", 1, &wrong[k], &d));
-        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text,
-                                            "must lie between a third of the dp at the top"),
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, "must be between a third of the dp at the top"),
                                      d.text);
     }
 }

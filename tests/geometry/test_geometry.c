@@ -172,7 +172,7 @@ static void test_clamp_takes_the_place_of_the_wall(void)
 static void test_a_solid_off_the_lattice_keeps_its_corner(void)
 {
     must_read(gate, "x0=20.3 mm");
-    TEST_ASSERT_NOT_NULL(strstr(warnings, "its own lattice begins there"));
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "so it has its own lattice, which begins there"));
     TEST_ASSERT_TRUE(scene.off_lattice);
     TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 20.8e-3, scene.points[KIND_SOLID].x[0]);
@@ -212,7 +212,7 @@ static void test_thin_walls_and_slits_are_told(void)
               NULL);
     TEST_ASSERT_NOT_NULL(strstr(warnings, "[wall a] is 0.002 m thick, less than the kernel's reach "
                                           "2 h = 0.004 m"));
-    TEST_ASSERT_NOT_NULL(strstr(warnings, "between [wall a] and [wall b] is a slit of 0.0004 m"));
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "the gap between [wall a] and [wall b] is 0.0004 m"));
 }
 
 static void test_domain_holds_moving_walls(void)

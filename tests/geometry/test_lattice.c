@@ -166,7 +166,7 @@ static void test_area_is_told(void)
     snprintf(expected, sizeof expected, "cover %.2g %% %s than its area", 100 * fabs(ratio - 1),
              ratio > 1 ? "more" : "less");
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, expected), warnings);
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "a thin body is then about"), warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "so a thin body is about"), warnings);
 }
 
 /* --- layers --- */

@@ -144,8 +144,8 @@ static void says_what_it_is(void)
 static void cells_of_another_grid_are_refused(void)
 {
     const int32_t wrong[] = {-2, 0, INT32_MAX};
-    const char *const why[] = {"is in cell -2", "is too far from its cell, 0",
-                               "is in cell 2147483647"};
+    const char *const why[] = {"has cell number -2", "is too far from its cell, 0",
+                               "has cell number 2147483647"};
     for (int k = 0; k < 3; k++) {
         open_with(0, NULL);
         step(&first, 3);
@@ -183,16 +183,16 @@ static void numbers_that_no_run_has_are_refused(void)
     open_with(0, NULL);
     step(&first, 3);
 #define STATE(type, name, low, high, unit, meaning) \
-    REFUSES(name, (type)((low) > -2 ? -3.0 : -2 * FINITE), "block " #name " holds ");
+    REFUSES(name, (type)((low) > -2 ? -3.0 : -2 * FINITE), #name " = ");
 #include "time/state.def"
 #undef STATE
-    REFUSES(solid_slowing, 0, "block solid_slowing holds 0, and from 1e-09 to 1e+09");
-    REFUSES(solid_stiffening, 0, "block solid_stiffening holds 0");
-    REFUSES(wall_work, (double)INFINITY, "block wall_work holds inf");
-    REFUSES(energy_start, (double)NAN, "block energy_start holds nan");
-    REFUSES(steps, INT64_MAX, "block steps holds 9.22337e+18");
-    REFUSES(bound_steps[2], INT64_MAX - 1, "block bound_steps holds");
-    REFUSES(account.put[1], (double)NAN, "block account holds nan");
+    REFUSES(solid_slowing, 0, "solid_slowing = 0 is outside the valid range 1e-09 to 1e+09");
+    REFUSES(solid_stiffening, 0, "solid_stiffening = 0");
+    REFUSES(wall_work, (double)INFINITY, "wall_work = inf");
+    REFUSES(energy_start, (double)NAN, "energy_start = nan");
+    REFUSES(steps, INT64_MAX, "steps = 9.22337e+18");
+    REFUSES(bound_steps[2], INT64_MAX - 1, "bound_steps = ");
+    REFUSES(account.put[1], (double)NAN, "account = nan");
     first.kind[KIND_FLUID].ax[7] = (double)NAN;
     refuses("block ax holds nan for fluid particle 7");
     first.kind[KIND_FLUID].ax[7] = 0;
@@ -211,7 +211,7 @@ static void missed_snapshots_are_counted_on(void)
     image.snapshots_missed = -2;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, checkpoint_missed(&image, &missed, &diag));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed holds -2"), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "snapshots_missed = -2"), diag.text);
 }
 
 /* --- damage: two checkpoints of a small run, of which the newer one is damaged --- */
@@ -221,7 +221,7 @@ static int warnings;
 static void count_warning(void *context, const char *text)
 {
     (void)context;
-    warnings += strstr(text, "step-000000003.ckpt: is not a sound checkpoint: ") != NULL ||
+    warnings += strstr(text, "step-000000003.ckpt: is not a valid checkpoint: ") != NULL ||
                 strstr(text, "step-000000003.ckpt: has format") != NULL ||
                 strstr(text, "step-000000003.ckpt: has big-endian byte order") != NULL;
 }

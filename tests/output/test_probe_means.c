@@ -128,10 +128,11 @@ static void refused_probes(void)
 {
     static const char *const wrong[][2] = {
         {"[probe Z]\nquantity = pressure\non = gat\n", "on = gat: there is no [solid] or [wall]"},
-        {"[probe Z]\nquantity = flux\non = gate\nto = 1, 0\n", "leave `on` out"},
-        {"[probe Z]\nbody = gate\npoint = 0.13, 0\naverage = 1 ms\n", "`interval = 0.001 s`"},
+        {"[probe Z]\nquantity = flux\non = gate\nto = 1, 0\n",
+         "only for pressure, level and velocity"},
+        {"[probe Z]\nbody = gate\npoint = 0.13, 0\naverage = 1 ms\n", "`interval` to 0.001 s"},
         {"[probe Z]\nquantity = force\nbody = gate, tan\n", "body = tan: there is no"},
-        {"[probe Z]\nquantity = force\nbody = gate, gate\n", "stands there twice"},
+        {"[probe Z]\nquantity = force\nbody = gate, gate\n", "is listed twice"},
         {"[probe Z]\nquantity = force\nbody = gate,\n", "there is no [solid] or [wall]"},
         {"[solid post]\nlike = gate\nshape = box 0.3, 0, 0.33, 0.1\n"
          "[probe Z]\nquantity = reaction\nbody = post\n",

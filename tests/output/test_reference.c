@@ -121,14 +121,14 @@ static void test_malformed_row(void)
 {
     put("r.csv", "time_s,value\n0,1\n0.1,two\n");
     refuses("file = r.csv\n", "time_s,P_dx_m",
-            "r.csv:3: '0.1,two' is no row of a reference; write two numbers, time (s) "
-            "and value (SI)");
+            "r.csv:3: '0.1,two' is not a row of a reference; write two numbers, time (s) and value "
+            "(SI)");
 }
 
 static void test_third_column(void)
 {
     put("r.csv", "0,1,2\n");
-    refuses("file = r.csv\n", "time_s,P_dx_m", "r.csv:1: '0,1,2' is no row");
+    refuses("file = r.csv\n", "time_s,P_dx_m", "r.csv:1: '0,1,2' is not a row");
 }
 
 static void test_empty_file(void)

@@ -199,7 +199,8 @@ static void test_bad_input(void)
                 "did you mean `bar`");
     rig_refuses(LOAD "body = bar\nforce = 1, 0\n", "needs a `shape`");
     rig_refuses(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "one of `force` and `traction`");
-    rig_refuses(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n", "holds no particle");
+    rig_refuses(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n",
+                "contains no particle");
     rig_refuses(BAR "velocity = t, 0\n", "`t`");
     rig_refuses(BAR "clamp = box 0, 0, 0.02, 0.04\nclamp_motion = m\n", "no [motion] of that name");
     rig_refuses(BAR "clamp_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `clamp`");

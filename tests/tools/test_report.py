@@ -65,9 +65,10 @@ def check_restart(top):
 def check_explain(top):
     text = subprocess.run([SPHFSI, CASE, "--explain", "--out", str(top / "none")], check=True,
                           capture_output=True, text=True).stdout
-    for words in ("100 particles", "effects that are on", "COUPLING", "effects that are off",
-                  "MOTION", "bytes a particle", "kernel of the fluid", "<- binds", "Eq. 28b",
-                  "ns a fluid particle and evaluation", "steps of the solid", "on this machine when idle",
+    for words in ("100 particles", "enabled effects", "COUPLING", "disabled effects",
+                  "MOTION", "bytes per particle", "compiled loops of the fluid",
+                  "<- limits the step", "Eq. 28b",
+                  "ns per fluid particle and evaluation", "solid sub-step", "on this machine when idle",
                   "MB"):
         assert words in text, f"--explain does not say {words!r}:\n{text}"
     assert not (top / "none").exists()
