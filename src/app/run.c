@@ -444,10 +444,10 @@ static enum err load_checkpoint(struct run *r)
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)
              : checkpoint_apply(&r->image, r->s, r->diag));
     if (r->s->state.time > r->session.scene.top.end_time)
-        return diag_fail(r->diag, ERR_INPUT,
-                         "%s: %s is at %.6g s, beyond the end at %.6g s; choose a later end_time "
-                         "or --until",
-                         what, r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
+        return diag_fail(
+            r->diag, ERR_INPUT,
+            "%s: %s is at %.6g s, after the end at %.6g s; choose a later end_time or --until",
+            what, r->restarted_from, r->s->state.time, r->session.scene.top.end_time);
     session_say(r->options, "%s from %s at %.6g s, step %lld", what, r->restarted_from,
                 r->s->state.time, (long long)r->s->state.steps);
     return ERR_OK;

@@ -357,8 +357,8 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
         if (e == ERR_MEMORY) return diag_fail(d, e, "%s", why.text);
         diag_warn(d, "%s; the one before it is tried", why.text);
     }
-    return diag_fail(d, ERR_IO, "%s: holds no %scheckpoint (step-*.ckpt) to restart from", folder,
-                     damaged_ones ? "sound " : "");
+    return diag_fail(d, ERR_IO, "%s: contains no %scheckpoint (step-*.ckpt) to restart from",
+                     folder, damaged_ones ? "valid " : "");
 }
 
 static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)

@@ -72,7 +72,7 @@ static enum err read_rows(struct reference *r, const char *path, const char *tex
         if (got > 0) insert_row(r, row);
         if (got > 0 || isalpha((unsigned char)*at)) names_allowed = false;
     }
-    if (r->n == 0) return diag_fail(d, ERR_INPUT, "%s: holds no row of time and value", path);
+    if (r->n == 0) return diag_fail(d, ERR_INPUT, "%s: contains no row of time and value", path);
     return ERR_OK;
 }
 

@@ -14,17 +14,17 @@ struct ledger {
 #define LEDGER_COLUMNS(LEDGER)                                                                    \
     LEDGER(time, "s", "simulated time")                                                           \
     LEDGER(kinetic, "J_per_m", "kinetic energy of fluid and solid")                               \
-    LEDGER(potential, "J_per_m", "potential energy in gravity at t = 0, from the origin")                  \
+    LEDGER(potential, "J_per_m", "potential energy in gravity at t = 0, relative to the origin")  \
     LEDGER(internal, "J_per_m", "compression energy of the fluid")                                \
     LEDGER(elastic, "J_per_m", "strain energy of the solid")                                      \
     LEDGER(hourglass, "J_per_m", "energy of the hourglass force")                                 \
-    LEDGER(contact, "J_per_m", "energy of bodies pressed onto each other or a wall")              \
-    LEDGER(dissipated, "J_per_m", "energy at the start and work of walls, less all that is left") \
+    LEDGER(contact, "J_per_m", "energy of the contact forces")                                    \
+    LEDGER(dissipated, "J_per_m", "energy at the start plus external work, minus all of the above") \
     LEDGER(momentum_x, "Ns_per_m", "momentum of fluid and solid, x")                              \
     LEDGER(momentum_y, "Ns_per_m", "momentum of fluid and solid, y")                              \
     LEDGER(mass, "kg_per_m", "mass of fluid and solid")                                           \
-    LEDGER(dens_extreme, "1", "largest |rho/rho0 - 1| of the fluid now")                          \
-    LEDGER(det_low, "1", "smallest det F now")                                                    \
+    LEDGER(dens_extreme, "1", "current largest |rho/rho0 - 1| of the fluid")                      \
+    LEDGER(det_low, "1", "current smallest det F")                                                \
     LEDGER(dt, "s", "last time step")
 /* clang-format on */
 

@@ -131,7 +131,7 @@ expect 0 'step-000000170.ckpt: is not a valid checkpoint: .*; the one before it 
 expect 1 'is not a file' "$case" --out "$dir/run" --restart "$dir/run/step-000000150.ckpt"
 expect 1 'is not a file' "$case" --out "$dir/run" --restart "$dir/run/step-000000160.ckpt"
 expect 1 'is not a file' --inspect "$dir/run/step-000000160.ckpt"
-expect 1 'holds no sound checkpoint\|holds no checkpoint' "$case" --fork "$dir/sub" --out "$dir/no"
+expect 1 'contains no valid checkpoint\|contains no checkpoint' "$case" --fork "$dir/sub" --out "$dir/no"
 
 # --- from an older one: the later one belongs to a future that is run anew ---
 expect 0 '' "$case" --out "$dir/older" --set output.checkpoint_interval=10ms

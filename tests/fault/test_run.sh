@@ -56,7 +56,7 @@ hash() { sed -n 's/.*"state_hash": "\(.*\)".*/\1/p' "$1/summary.json"; }
 # --- restart: what may change and what not ---
 expect 1 'no such folder' "$case" --out "$dir/none" --restart
 expect 1 'the case has changed.*young' "$case" --out "$run" --restart --set gate.young=2e6
-expect 1 'beyond the end' "$case" --out "$run" --restart --until 0.01
+expect 1 'after the end' "$case" --out "$run" --restart --until 0.01
 expect 1 'nowhere.ckpt' "$case" --out "$run" --restart "$dir/nowhere.ckpt"
 expect 1 'not a valid checkpoint' "$case" --out "$run" --restart "$case"
 cmp -s "$run/summary.json" "$dir/summary.json" || fail "a refused restart changed its files"

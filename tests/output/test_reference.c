@@ -134,7 +134,7 @@ static void test_third_column(void)
 static void test_empty_file(void)
 {
     put("r.csv", "# nothing\ntime_s,value\n");
-    refuses("file = r.csv\n", "time_s,P_dx_m", "holds no row of time and value");
+    refuses("file = r.csv\n", "time_s,P_dx_m", "contains no row of time and value");
 }
 
 static void test_unknown_column(void)
