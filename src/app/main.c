@@ -205,12 +205,6 @@ static int read_duration(const char *text, double *seconds)
     return complain("--budget %s: give a time such as 90s, 10min or 2h%s", text, "");
 }
 
-static int is_checkpoint(const char *text)
-{
-    const size_t n = strlen(text);
-    return n > 5 && strcmp(text + n - 5, ".ckpt") == 0;
-}
-
 static int apply(struct command *c, const struct option *option, const char *operand)
 {
     struct sphfsi_options *o = &c->options;
@@ -272,7 +266,9 @@ static int unknown_option(const char *argument)
 static int is_operand(const struct command *c, const struct option *option, const char *next)
 {
     if (!next || next[0] == '-') return 0;
-    return option->mode == NEW || c->options.case_path || is_checkpoint(next);
+    const size_t n = strlen(next);
+    const int checkpoint = n > 5 && strcmp(next + n - 5, ".ckpt") == 0;
+    return option->mode == NEW || c->options.case_path || checkpoint;
 }
 
 static int parse_option(struct command *c, const char *argument, const char *next, int *used_next)

@@ -453,13 +453,6 @@ static enum err check_gravity(struct reader *r)
     return ERR_OK;
 }
 
-/* The largest steps at which each integrator is accurate. */
-static void choose_cfl(struct scene *s)
-{
-    if (s->numerics.cfl != 0) return;
-    s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
-}
-
 /* 0 stands for h_over_dp, which has the same bounds. */
 static enum err check_solid_h(struct reader *r)
 {
@@ -476,7 +469,8 @@ static enum err check_solid_h(struct reader *r)
 enum err case_check(struct reader *r)
 {
     struct scene *const s = r->scene;
-    choose_cfl(s);
+    if (s->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
+        s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
     TRY(check_solid_h(r));
     if (s->n_fluid == 0 && s->n_solid == 0)
         return bad_line(r, 1,

@@ -121,11 +121,6 @@ static bool follows(double from, double to, double slope_from, double slope_to, 
            0.1 * slopes * dt + 1e-12 * (fabs(from) + fabs(to));
 }
 
-static bool smooth(const struct expr_jet *a, const struct expr_jet *b, double dt)
-{
-    return follows(a->value, b->value, a->d1, b->d1, dt) && follows(a->d1, b->d1, a->d2, b->d2, dt);
-}
-
 /* Jump of the value and of the velocity: a pole of even order has the same value and no net
  * velocity on its two sides. */
 static double mismatch(const struct expr_jet *a, const struct expr_jet *b, double dt)
@@ -139,7 +134,9 @@ bool expr_jumps(const struct expr *e, double from, double to, double size, doubl
     enum { HALVINGS = 30 };
     struct expr_jet a = expr_jet_at(e, from), b = expr_jet_at(e, to);
     for (int k = 0; k < HALVINGS; k++) {
-        if (smooth(&a, &b, to - from)) return false;
+        const double dt = to - from;
+        if (follows(a.value, b.value, a.d1, b.d1, dt) && follows(a.d1, b.d1, a.d2, b.d2, dt))
+            return false;
         const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
         const struct expr_jet m = expr_jet_at(e, middle);
         *at = middle;

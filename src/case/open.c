@@ -6,13 +6,6 @@
 
 int scene_open_count(const struct scene *s) { return s->n_inflow + s->n_outflow; }
 
-/* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
- * buffer, and one of the buffer that has entered and is not yet relabelled. */
-static double depth_of(const struct scene *s)
-{
-    return ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
-}
-
 #define OPEN_OF(section)                                                                           \
     (struct scene_open)                                                                            \
     {                                                                                              \
@@ -29,7 +22,9 @@ struct scene_open scene_open_at(const struct scene *s, int k)
     const bool inflow = k < s->n_inflow;
     struct scene_open o = inflow ? OPEN_OF(&s->inflow[k]) : OPEN_OF(&s->outflow[k - s->n_inflow]);
     o.length = hypot(o.along[0], o.along[1]);
-    o.depth = depth_of(s);
+    /* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
+     * buffer, and one of the buffer that has entered and is not yet relabelled. */
+    o.depth = ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
     o.along[0] /= o.length;
     o.along[1] /= o.length;
     o.inward[0] = -o.sense * o.along[1];

@@ -161,11 +161,6 @@ static void warn_of_lost_clamp(struct reader *r, int section, const struct entry
     }
 }
 
-static enum err given_twice(struct reader *r, const struct entry *e, int line)
-{
-    return bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out", e->key, line);
-}
-
 static enum err read_section(struct reader *r, int section)
 {
     const struct case_section *cs = &r->sections[section];
@@ -189,7 +184,9 @@ static enum err read_section(struct reader *r, int section)
         }
         const struct entry **before = &given[p - param_table];
         if (*before && p->type != PARAM_SHAPES) {
-            TRY(case_go_on(r, given_twice(r, e, (*before)->line)));
+            TRY(case_go_on(r,
+                           bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
+                                     e->key, (*before)->line)));
             continue;
         }
         *before = e;

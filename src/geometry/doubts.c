@@ -7,13 +7,6 @@
 
 #include <math.h>
 
-static void warn(const struct scene *s, int line, struct diag *d, const char *text)
-{
-    char place[LOCATION_TEXT];
-    scene_location(s, line, place);
-    diag_warn(d, "%s: %s", place, text);
-}
-
 /* For each strip of width dp along gravity: the coordinate along gravity of the last wall or body
  * particle in it. */
 struct supports {
@@ -96,11 +89,16 @@ static void warn_of_surface(struct sampler *g)
     for (int f = 0; f < s->n_fluid; f++) {
         const struct scene_fluid *const fluid = &s->fluid[f];
         if (isnan(fluid->surface)) continue;
-        if (s->top.gravity[1] > 0)
-            warn(
-                s, fluid->common.line, g->diag,
+        if (s->top.gravity[1] > 0) {
+            char place[LOCATION_TEXT];
+            scene_location(s, fluid->common.line, place);
+            diag_warn(
+                g->diag,
+                "%s: "
                 "`surface` with upward gravity: the initial pressure decreases with depth, and the "
-                "water will be torn apart; for gravity that points down, use gravity = 0, -9.81");
+                "water will be torn apart; for gravity that points down, use gravity = 0, -9.81",
+                place);
+        }
         int64_t above = 0;
         double top = -HUGE_VAL;
         for (int64_t k = 0; k < p->n; k++) {

@@ -31,18 +31,13 @@ static void left_normal(const struct shape *p, int k, double normal[2])
     normal[1] = dx / length;
 }
 
-static bool polyline_closed(const struct shape *p)
-{
-    const double *a = p->pt[0], *b = p->pt[p->n - 1];
-    return p->n > 3 && a[0] == b[0] && a[1] == b[1];
-}
-
 /* The point opposite to point k on the far side, on the bisector of its two segments; false: too
  * sharp. */
 static bool mitre(const struct shape *p, int k, double far[2])
 {
-    const bool closed = polyline_closed(p);
     const int last = p->n - 2; /* segment */
+    const double *const first = p->pt[0], *const end = p->pt[p->n - 1];
+    const bool closed = p->n > 3 && first[0] == end[0] && first[1] == end[1];
     int before = k - 1, after = k;
     if (k == 0) before = closed ? last : 0;
     if (k == p->n - 1) after = closed ? 0 : last;

@@ -26,13 +26,6 @@ static int64_t integer_value(enum data what, const struct simulation *s, enum ki
     }
 }
 
-/* Positions beside single-precision fields are rounded to this, m: a power of two near 1e-6 dp. Bits
- * below carry no information, and would take as long to compress as all other fields together. */
-static double position_unit(const struct scene *scene)
-{
-    return ldexp(1, ilogb(scene->top.dp) - 20);
-}
-
 /* The source of a snapshot. */
 struct source {
     const struct simulation *s;
@@ -106,7 +99,10 @@ static bool append_snapshot(const struct snapshot_layout *layout, hid_t file, st
 {
     int64_t rows[D_COUNT];
     const int64_t n = count_points(s), steps = snapshot_file_steps(file);
-    const struct source source = {s, layout->doubles ? 0 : position_unit(s->scene)};
+    /* With single-precision fields, positions are rounded to a power of two near 1e-6 dp. Bits below
+     * carry no information, and would take as long to compress as all other fields together. */
+    const double unit = layout->doubles ? 0 : ldexp(1, ilogb(s->scene->top.dp) - 20);
+    const struct source source = {s, unit};
     const hid_t root = H5Gopen2(file, "VTKHDF", H5P_DEFAULT);
     const bool ok = root >= 0 && steps >= 0 && snapshot_file_rows(file, steps, rows) &&
                     append_step_rows(root, s->state.time, n, steps, rows[D_POINTS]) &&

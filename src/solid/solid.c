@@ -176,11 +176,6 @@ static struct chunk chunk_of(const struct solid *s, struct particles *p)
     return (struct chunk){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads, NULL};
 }
 
-static struct chunk chunk_of_part(struct solid_part *part)
-{
-    return (struct chunk){&part->solid, &part->p, 0, part->solid.n_packs, part};
-}
-
 static void sweep(const struct chunk *own, solid_sweep *f)
 {
     f(own->s, own->p, own->first, own->last);
@@ -275,15 +270,10 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
     }
 }
 
-/* The end of a thread's particles, and the first of them. */
+/* The end of a thread's particles. */
 static int64_t end_of(const struct chunk *own)
 {
     return own->last < own->s->n_packs ? own->s->pack[own->last].i : own->p->n;
-}
-
-static int64_t first_of(const struct chunk *own)
-{
-    return own->first < own->last ? own->s->pack[own->first].i : end_of(own);
 }
 
 /* Packs new positions and velocities for the sweeps immediately. */
@@ -298,8 +288,9 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
 {
     const struct particles *const p = own->p;
     const int64_t end = end_of(own);
+    const int64_t first = own->first < own->last ? own->s->pack[own->first].i : end;
 #pragma omp simd
-    for (int64_t i = first_of(own); i < end; i++) {
+    for (int64_t i = first; i < end; i++) {
         const double before = impeded ? p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i] : 0;
         p->vx[i] += kick * p->sx[i];
         p->vy[i] += kick * p->sy[i];
@@ -308,16 +299,6 @@ SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double d
         p->uy[i] += drift * p->vy[i];
     }
     pack_motion(own);
-}
-
-static void move(const struct chunk *own, double kick, double drift)
-{
-    kick_and_drift(own, kick, drift, false);
-}
-
-static void move_impeded(const struct chunk *own, double kick, double drift)
-{
-    kick_and_drift(own, kick, drift, true);
 }
 
 void solid_stress(struct solid *s, struct particles *p)
@@ -369,30 +350,26 @@ static void place_clamps(const struct chunk *own, double time)
     pack_motion(own);
 }
 
-static void book_work(struct solid *s, const struct particles *p, double dt)
-{
-    if (!s->contact && !s->loads) return;
-#pragma omp single
-    solid_book_work(s, p, p->vx, p->vy, dt);
-}
-
 /* The sub-steps of solid_advance by one of its threads; s is the whole. */
 static void substeps(struct solid *s, const struct chunk *own, double dt, int n, bool centred)
 {
     struct particles *const p = own->p;
     const double first = centred ? 0.5 * dt : 0;
-    move(own, 0, first);
+    kick_and_drift(own, 0, first, false);
     if (centred) place_clamps(own, s->time + first);
     for (int k = 0; k < n; k++) {
         stress_sweeps(own);
         force_sweeps(own);
         outer_forces(s, p, s->time + k * dt + first);
-        book_work(s, p, dt);
+        if (s->contact || s->loads) {
+#pragma omp single
+            solid_book_work(s, p, p->vx, p->vy, dt);
+        }
         const double drift = k + 1 < n ? dt : dt - first;
         if (s->impedance > 0)
-            move_impeded(own, dt, drift);
+            kick_and_drift(own, dt, drift, true);
         else
-            move(own, dt, drift);
+            kick_and_drift(own, dt, drift, false);
         place_clamps(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
     }
 }
@@ -423,7 +400,7 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
         if (s->impedance > 0) begin_impedance(s, p, dt, n);
         if (steps_parts(s, n)) {
             struct solid_part *const part = &s->part[thread_index()];
-            const struct chunk own = chunk_of_part(part);
+            const struct chunk own = {&part->solid, &part->p, 0, part->solid.n_packs, part};
             solid_part_load(part, p);
             substeps(s, &own, dt, n, centred);
             solid_part_store(part, p);

@@ -48,14 +48,6 @@ static void add_external(struct simulation *s, double time)
     s->fluid.extremes.acceleration2 = top;
 }
 
-/* The force arrays still hold the interface impulse applied in the last step. Particles without
- * fluid nearby get no new force from an evaluation, so clear them all. */
-static void clear_applied_impulse(struct particles *p)
-{
-    memset(p->fx, 0, (size_t)p->n * sizeof *p->fx);
-    memset(p->fy, 0, (size_t)p->n * sizeof *p->fy);
-}
-
 /* The predictor's state, half a step ahead, adds nothing to the energy account. */
 static void set_buffers(struct simulation *s, double time)
 {
@@ -70,7 +62,13 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
-    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) clear_applied_impulse(&s->kind[KIND_SOLID]);
+    /* The force arrays still hold the interface impulse applied in the last step. Particles without
+     * fluid nearby get no new force from an evaluation, so clear them all. */
+    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) {
+        const struct particles *const solid = &s->kind[KIND_SOLID];
+        memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
+        memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
+    }
     if (s->effects & FX_OPEN) set_buffers(s, time);
     const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
     s->fluid.counts_touch = !predicts || time != s->state.time; /* symplectic: of the corrector */

@@ -356,12 +356,6 @@ static double shift_fluid(struct simulation *s, double clock)
     return phase_add(s, PHASE_shift, clock);
 }
 
-/* Work of moving walls on the fluid in the last step. */
-static void add_wall_work(struct simulation *s)
-{
-    s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
-}
-
 /* Adds the work on a particle of a solid to the account of its section (T-70). */
 static void book_gravity(struct simulation *s, const struct particles *p, int64_t i, double mass,
                          const double g[2])
@@ -457,7 +451,8 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
     show_strain(s);
     const enum err e = guards_check(s, d);
     find_speed(s);
-    if (s->effects & FX_MOTION) add_wall_work(s);
+    if (s->effects & FX_MOTION)
+        s->state.wall_work += s->state.dt * wall_motion_power(&s->wall_motion, &s->kind[KIND_WALL]);
     if (s->effects & FX_OPEN) {
         open_book(&s->open, s->state.dt);
         book_open(s);
