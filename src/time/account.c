@@ -334,8 +334,17 @@ static void name_cause(struct gain *g, const double gained[ACCOUNT_TERMS])
         g->term = (enum account_term)largest;
 }
 
+/* Energy of a flow at a tenth of the speed of sound (Eq. 3), which open boundaries drive. Beside it the
+ * energy at the start from rest says nothing. */
+static double driven_energy(const struct simulation *s)
+{
+    if (!(s->effects & FX_OPEN)) return 0;
+    return 0.5 * s->fluid.k.mass * (double)s->kind[KIND_FLUID].n * square(0.1 * s->fluid.k.c0);
+}
+
 /* The term of a region that has gained the largest fraction. */
-static struct gain gain_of(struct account *a, int region, const struct region_sums *sum)
+static struct gain gain_of(struct account *a, int region, const struct region_sums *sum,
+                           double driven)
 {
     const struct energies *const e = &sum->energies;
     struct gain worst = {.entry = -1,
@@ -345,7 +354,7 @@ static struct gain gain_of(struct account *a, int region, const struct region_su
                          .elastic = e->elastic,
                          .hourglass = e->hourglass};
     a->lowest[region] = min2(a->lowest[region], e->potential);
-    const double active = in_play(e) + e->potential - a->lowest[region];
+    const double active = driven + in_play(e) + e->potential - a->lowest[region];
     double gained[ACCOUNT_TERMS];
     a->top = max2(a->top, active);
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
@@ -377,6 +386,7 @@ struct gain account_look(struct simulation *s)
     struct energies of[ACCOUNT_ENTRIES];
     double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
     struct gain worst = {.entry = -1, .play = 1};
+    const double driven = driven_energy(s);
     find_energies(s, of);
     join_at_once(s, of[account_entry(KIND_SOLID, 0)].contact);
     join_neighbours(s);
@@ -388,7 +398,7 @@ struct gain account_look(struct simulation *s)
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         if (region_of(a, k) != k) continue;
         const struct region_sums sum = sum_region(a, k, of, terms);
-        const struct gain g = gain_of(a, k, &sum);
+        const struct gain g = gain_of(a, k, &sum, in_region(a, KIND_FLUID, 0, k) ? driven : 0);
         if (g.entry >= 0 && (worst.entry < 0 || g.energy * worst.play > worst.energy * g.play))
             worst = g;
     }
