@@ -181,9 +181,10 @@ static vdouble axial_stiffness(const struct solid_body *b, vdouble first, vdoubl
     return larger(material_pk1(b, along).xx - P.xx, material_pk1(b, across).yy - P.yy) / delta;
 }
 
-/* Principal stretches of LANES particles from i on; whether one of the first n is stretched or compressed by
- * some 5 %. */
-static bool stretches(const struct particles *p, int64_t i, int n, vdouble *first, vdouble *second)
+/* Principal stretches of LANES particles from i on. `beyond`: which of the first n are stretched or
+ * compressed by some 5 %; returns whether one is. */
+static bool stretches(const struct particles *p, int64_t i, int n, vdouble *first, vdouble *second,
+                      bool beyond[LANES])
 {
     const struct vtensor2 F =
         deformation((struct vtensor2){vload_double(&p->Uxx[i]), vload_double(&p->Uxy[i]),
@@ -191,7 +192,8 @@ static bool stretches(const struct particles *p, int64_t i, int n, vdouble *firs
     const vdouble det = vtensor2_det(F);
     const vdouble trace = F.xx * F.xx + F.xy * F.xy + F.yx * F.yx + F.yy * F.yy;
     bool any = false;
-    for (int l = 0; l < n; l++) any |= !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
+    for (int l = 0; l < n; l++)
+        any |= beyond[l] = !(trace[l] < 2.1 && trace[l] < 2.1 * det[l] * det[l]);
     if (!any) return false;
     const vdouble sum = vsqrt_double(larger(trace + 2.0 * det, vset_double(0)));
     const vdouble difference = vsqrt_double(larger(trace - 2.0 * det, vset_double(0)));
@@ -200,7 +202,8 @@ static bool stretches(const struct particles *p, int64_t i, int n, vdouble *firs
     return true;
 }
 
-/* The largest of the axial stiffnesses in a pack. */
+/* The largest of the axial stiffnesses in a pack. Each particle counts by itself: who shares its vector
+ * depends on the machine. */
 static double stiffest(const struct solid *s, const struct particles *p,
                        const struct solid_pack *pack)
 {
@@ -208,9 +211,11 @@ static double stiffest(const struct solid *s, const struct particles *p,
     for (int from = 0; from < pack->lanes; from += LANES) {
         const int n = pack->lanes - from < LANES ? pack->lanes - from : LANES;
         vdouble first, second;
-        if (!stretches(p, pack->i + from, n, &first, &second)) continue;
+        bool beyond[LANES];
+        if (!stretches(p, pack->i + from, n, &first, &second, beyond)) continue;
         const vdouble now = axial_stiffness(&s->body[pack->body], first, second);
-        for (int l = 0; l < n; l++) top = max2(top, now[l]);
+        for (int l = 0; l < n; l++)
+            if (beyond[l]) top = max2(top, now[l]);
     }
     return top;
 }
