@@ -3,6 +3,7 @@
 #include "app/call.h"
 #include "app/due.h"
 #include "output/probes.h"
+#include "time/relax.h"
 #include "app/session.h"
 #include "output/point_data.h"
 #include "time/guards.h"
@@ -121,7 +122,8 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
                          "step: the limit must be later than the simulated time: it is %.17g s, "
                          "and the time is %.17g s",
                          limit, sim->state.time);
-    enum err e = simulation_step(sim, limit, d);
+    enum err e = relax_to_rest(sim, d);
+    if (!e) e = simulation_step(sim, limit, d);
     if (!e) probes_follow(&s->probes, sim);
     s->stopped = e == ERR_GUARD;
     return e;

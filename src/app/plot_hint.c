@@ -1,33 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/plot_hint.h"
 
+#include "app/shell.h"
+
 #include "base/files.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { QUOTED_BYTES = 4 * PATH_BYTES };
-
-/* A path as a word of a shell. */
-static void quote(char out[QUOTED_BYTES], const char *path)
-{
-    static const char plain[] =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=+,";
-    size_t n = 0;
-    if (path[0] && strspn(path, plain) == strlen(path)) {
-        snprintf(out, QUOTED_BYTES, "%s", path);
-        return;
-    }
-    out[n++] = '\'';
-    for (; *path && n < QUOTED_BYTES - 6; path++)
-        if (*path == '\'')
-            n += (size_t)snprintf(out + n, QUOTED_BYTES - n, "'\\''");
-        else
-            out[n++] = *path;
-    out[n++] = '\'';
-    out[n] = '\0';
-}
 
 /* Cuts the last `names` names off a path; false: it has fewer. */
 static bool cut_names(char *path, int names)
@@ -76,21 +56,21 @@ void say_plot_hint(const char *folder, const struct sphfsi_options *o)
 {
     char root[PATH_BYTES], python[PATH_BYTES], path[PATH_BYTES + 32], found[QUOTED_BYTES];
     char run[QUOTED_BYTES], tool[QUOTED_BYTES], setup[QUOTED_BYTES];
-    quote(run, folder);
+    shell_quote(run, folder);
     if (!find_clone(root)) {
         session_say(o, "plot it with: python3 -m sphfsi plot %s (needs the Python package)", run);
         return;
     }
     snprintf(path, sizeof path, "%stools/plot_probes.py", root);
-    quote(tool, path);
+    shell_quote(tool, path);
     if (find_python(root, python)) {
-        quote(setup, python);
+        shell_quote(setup, python);
         session_say(o, "plot it with: %s %s %s", setup, tool, run);
         return;
     }
     snprintf(path, sizeof path, "%stools/setup.sh", root);
-    quote(setup, path);
+    shell_quote(setup, path);
     snprintf(path, sizeof path, "%sbuild/python", root);
-    quote(found, path);
+    shell_quote(found, path);
     session_say(o, "plot it with: %s plot && \"$(cat %s)\" %s %s", setup, found, tool, run);
 }

@@ -2,6 +2,7 @@
 #include "app/run.h"
 
 #include "app/case_change.h"
+#include "app/closing.h"
 #include "app/due.h"
 #include "app/forecast.h"
 #include "app/plot_hint.h"
@@ -12,6 +13,7 @@
 #include "output/series.h"
 #include "output/snapshot.h"
 #include "time/guards.h"
+#include "time/relax.h"
 
 #include <errno.h>
 #include <math.h>
@@ -57,10 +59,13 @@ static const char ledger_header[] =
 
 /* --- output times --- */
 
+/* Whether there are rows already: a run that is stopped while it seeks rest has none. */
+static bool goes_on(const struct run *r) { return r->options->restart && !relax_due(r->s); }
+
 static void set_intervals(struct run *r, double time)
 {
     const struct scene_output *out = &r->session.scene.output;
-    const bool restart = r->options->restart;
+    const bool restart = goes_on(r);
     const double interval[OUT_COUNT] = {
         [OUT_LEDGER] = out->ledger_interval,
         [OUT_SNAPSHOT] = out->snapshot_interval,
@@ -279,9 +284,26 @@ static enum err between_steps(struct run *r)
                      (int)request->stop, r->s->state.time, r->checkpoint);
 }
 
+/* T-78. The rows begin with the state that is found. */
+static enum err relax(struct run *r)
+{
+    char found[RELAX_TEXT];
+    if (!relax_due(r->s)) return ERR_OK;
+    session_say(r->options, "seeking a state of rest before t = 0");
+    while (relax_due(r->s)) {
+        TRY(relax_step(r->s, r->diag));
+        TRY(between_steps(r));
+    }
+    relax_text(r->s, found);
+    session_say(r->options, "%s", found);
+    r->record.first = simulation_ledger(r->s);
+    return ERR_OK;
+}
+
 static enum err advance(struct run *r)
 {
     const double end = r->session.scene.top.end_time;
+    TRY(relax(r));
     probes_follow(&r->probes, r->s);
     TRY(write_due(r, false));
     while (r->s->state.time < end) {
@@ -319,6 +341,8 @@ static void save_last_state(struct run *r, enum err why)
     if (why == ERR_GUARD && r->checkpoint[0])
         session_say(r->options, "last valid state, for a restart: %s; state at the stop: %s",
                     r->checkpoint, r->snapshots.path);
+    if (r->checkpoint[0] && (why == ERR_GUARD || why == ERR_INTERRUPT))
+        closing_command(r->options, r->s, r->folder.path, r->checkpoint, why == ERR_GUARD);
 }
 
 /* --- start --- */
@@ -464,7 +488,7 @@ static enum err begin(struct run *r)
         return e;
     }
     TRY(put_case(r, part));
-    TRY(r->options->restart ? start_restart(r) : start_fresh(r));
+    TRY(goes_on(r) ? start_restart(r) : start_fresh(r));
     const double time = r->s->state.time;
     set_intervals(r, time);
     r->record.version = SPHFSI_VERSION;
@@ -476,39 +500,6 @@ static enum err begin(struct run *r)
     r->wall_start = r->wall_checkpoint = wall_clock();
     forecast_say_preset(&r->session.scene, r->options);
     return ERR_OK;
-}
-
-/* Prints the cost by phase, and the deviations from references. */
-static void say_results(const struct run *r)
-{
-    char text[1024] = "";
-    size_t at = 0;
-    double all = 0;
-    for (int k = 0; k < PHASE_COUNT; k++) all += r->s->phase_seconds[k];
-    for (int k = 0; k < PHASE_COUNT && all > 0; k++)
-        if (r->s->phase_seconds[k] >= 0.005 * all)
-            at += (size_t)snprintf(text + at, sizeof text - at, "%s%s %.0f %%", at ? ", " : "",
-                                   phase_table[k].name, 100 * r->s->phase_seconds[k] / all);
-    if (r->s->state.particle_steps > r->record.start_particle_steps)
-        session_say(r->options, "%.3g million particle steps a second: %s",
-                    1e-6 * report_rate(r->s, &r->record), text);
-    session_say(r->options, "spurious energy gain: at most %.3g J/m, %.2g %% of its region's",
-                r->s->state.gain, 100 * r->s->state.gain_share);
-    for (int k = 0; k < r->references.n && r->record.score; k++) {
-        reference_line(&r->references.item[k], &r->score[k], text, sizeof text);
-        session_say(r->options, "%s", text);
-    }
-}
-
-static void warn_of_losses(const struct run *r)
-{
-    const struct simulation *const s = r->s;
-    const int64_t lost = s->state.lost, left = s->kind[KIND_FLUID].n;
-    if (lost > 0)
-        diag_warn(r->diag,
-                  "%lld of %lld fluid particles have left the domain, so their mass and pressure "
-                  "are missing; close the gap with a [wall] or enlarge [domain]",
-                  (long long)lost, (long long)(lost + left));
 }
 
 static enum err simulate(struct run *r)
@@ -524,8 +515,7 @@ static enum err simulate(struct run *r)
     session_say(r->options, "%s: %.6g s simulated in %lld steps, %.1f s of wall time",
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
-    say_results(r);
-    warn_of_losses(r);
+    closing_say(r->options, r->s, &r->record);
     if (r->session.scene.n_probe > 0) say_plot_hint(r->folder.path, r->options);
     return ERR_OK;
 }

@@ -453,6 +453,22 @@ static enum err check_gravity(struct reader *r)
     return ERR_OK;
 }
 
+/* A [relax] section is enough to seek rest. Motions are at rest before t = 0. */
+static enum err check_relax(struct reader *r)
+{
+    struct scene *const s = r->scene;
+    struct scene_relax *const x = &s->relax;
+    if (x->common.line > 0 && !scene_given(s, SECTION_relax, 0, "tolerance"))
+        x->tolerance = s->n_fluid > 0 ? 0.05 : 0.001; /* water keeps slow currents */
+    for (int k = 0; x->tolerance > 0 && k < s->n_motion; k++)
+        if (s->motion[k].start < 0)
+            return bad_line(r, s->motion[k].common.line,
+                            "[motion %s] start = %g s: with [relax] no motion may begin before "
+                            "t = 0",
+                            s->motion[k].common.name, s->motion[k].start);
+    return ERR_OK;
+}
+
 /* 0 stands for h_over_dp, which has the same bounds. */
 static enum err check_solid_h(struct reader *r)
 {
@@ -477,6 +493,7 @@ enum err case_check(struct reader *r)
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");
     TRY(case_go_on(r, check_gravity(r)));
+    TRY(case_go_on(r, check_relax(r)));
     TRY(case_go_on(r, check_fluids(r)));
     TRY(check_moved(r));
     for (int k = 0; k < s->n_motion; k++) TRY(case_go_on(r, check_motion(r, &s->motion[k])));

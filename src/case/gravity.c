@@ -12,6 +12,7 @@ bool scene_gravity_varies(const struct scene *s)
 void scene_gravity_at(const struct scene *s, double t, double g[2])
 {
     const struct scene_table *const table = &s->gravity_data;
+    t = max2(t, 0); /* while rest is sought (T-78) */
     for (int c = 0; c < 2; c++) {
         const struct expr *const e = s->top.gravity_in_time.e[c];
         g[c] = e ? scene_expr_at(e, t, 0) : s->top.gravity[c];

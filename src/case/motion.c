@@ -176,6 +176,7 @@ static struct motion_state prescribed_at(const struct scene *s, int motion_index
     if (motion_index < 0 || motion_index >= s->n_motion) return m;
     const struct motion_hook *const hook = s->motion_hook ? &s->motion_hook[motion_index] : NULL;
     if (hook && hook->at) {
+        if (time < 0) return m; /* while rest is sought (T-78) */
         hook->at(hook->context, time, m.d, m.v, m.a);
         return m;
     }

@@ -86,6 +86,13 @@ struct scene_output {
 };
 #undef ONLY_output
 
+#define ONLY_relax 1
+struct scene_relax {
+    struct scene_section_common common;
+#include "case/params.def"
+};
+#undef ONLY_relax
+
 #define ONLY_fluid 1
 struct scene_fluid {
     struct scene_section_common common;

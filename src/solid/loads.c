@@ -164,7 +164,7 @@ void loads_forces(struct loads *v, const struct solid *s, struct particles *p, d
 {
     for (int n = 0; n < v->n_loads; n++) {
         const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
-        const double factor = v->factor[n] = history ? scene_expr_at(history, time, 0) : 1;
+        const double factor = v->factor[n] = history ? scene_expr_at(history, max2(time, 0), 0) : 1;
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];
             const double per_mass = factor * p->free[i] / s->body[p->body[i]].mass;

@@ -8,6 +8,7 @@
 #include "solid/loads.h"
 #include "solid/interface.h"
 #include "base/barrier.h"
+#include "case/effects.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
 #include "solid/parts.h"
@@ -31,6 +32,7 @@ static struct solid_body body_of(const struct scene *scene, int k)
         .viscosity = c->artificial_viscosity * sqrt(bulk / c->density) * h,
         .kappa = c->hourglass,
         .damping_time = c->damping_time,
+        .mass_damping = c->mass_damping,
         .gravity = {on * scene->top.gravity[0], on * scene->top.gravity[1]},
         .law = c->law,
         .plane = c->plane,
@@ -135,6 +137,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         warn_of_flutter(&s->body[k], scene->solid[k].common.name, d);
         s->variational |= s->body[k].variational;
         s->kelvin_voigt |= s->body[k].damping_time > 0;
+        s->mass_damped |= s->body[k].mass_damping > 0;
         s->paper_step =
             min2(s->paper_step, 0.6 * s->body[k].h / s->body[k].sound_speed); /* Eq. 29 */
         s->dp = min2(s->dp, s->body[k].dp);
@@ -202,6 +205,9 @@ static void stress_sweeps(const struct chunk *own)
     together(own, s->variational ? HALO_STRESS : HALO_GRADIENT | HALO_STRESS);
 }
 
+/* T-77: acceleration by mass-proportional damping. */
+SPHFSI_INLINE double mass_damping(double beta, double v) { return -beta * v; }
+
 /* Forces other than those of neighbours; clamped particles do not move. */
 static void add_own_forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
@@ -219,6 +225,10 @@ static void add_own_forces(const struct solid *s, struct particles *p, int64_t f
             if (s->external[0]) {
                 ax += s->external[0][i];
                 ay += s->external[1][i];
+            }
+            if (FX_MASS_DAMPING && s->mass_damped) {
+                ax += mass_damping(body->mass_damping, p->vx[i]);
+                ay += mass_damping(body->mass_damping, p->vy[i]);
             }
             p->sx[i] = (ax + body->gravity[0]) * p->free[i];
             p->sy[i] = (ay + body->gravity[1]) * p->free[i];

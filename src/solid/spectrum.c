@@ -125,6 +125,7 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     bare.loads = NULL;
     bare.gravity = NULL;
     bare.external[0] = bare.external[1] = NULL;
+    bare.mass_damped = false; /* its rate is known */
 
     const size_t bytes = (size_t)p->n * sizeof *p->vx;
     double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};
@@ -152,6 +153,9 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     for (int k = 0; k < s->n_bodies; k++)
         if (s->body[k].viscosity + s->body[k].damping_time > 0 && *damping == 0)
             *damping = largest_factor(&bare, p, v, base, amplitude * *omega, true);
+    double rate = 0;
+    for (int k = 0; k < s->n_bodies; k++) rate = max2(rate, s->body[k].mass_damping);
+    *damping += rate;
     keep(v, kept[0], kept[1], p->n);
     /* Later readers get the fields of the body, not of a trial. */
     solid_stress(s, p);

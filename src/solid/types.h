@@ -18,6 +18,7 @@ struct solid_body {
     double sound_speed;  /* c_s of Eq. 29 */
     double kappa;        /* Eq. 17 */
     double damping_time; /* of Kelvin and Voigt, s; 0: none */
+    double mass_damping; /* beta of T-77, 1/s; 0: none */
     double gravity[2];
     int law, plane, gradient;
     int bond;       /* the same number for bodies joined to each other: that of the first of them */
@@ -109,6 +110,7 @@ struct solid {
     bool coupled;                 /* meets fluid */
     bool variational;             /* some body has its hourglass force from an energy */
     bool kelvin_voigt;            /* some body has a damping_time */
+    bool mass_damped;             /* some body has a mass_damping */
     double omega_max;             /* largest frequency of the linearised operator, 1/s */
     double damping_max;           /* largest rate of its viscous part, 1/s */
     double stable_step;           /* the largest stable step that follows from both, s */

@@ -360,6 +360,7 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
     const int64_t count = monitor_crossed(s, &first);
     const struct particles *const p = &s->kind[KIND_FLUID];
     if (count == 0) return ERR_OK;
+    s->state.entered = s->state.entered > count ? s->state.entered : count;
     if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
         return diag_fail(
             d, ERR_GUARD,

@@ -271,6 +271,14 @@ static enum err create_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+void simulation_begin_account(struct simulation *s)
+{
+    const struct ledger start = simulation_ledger(s);
+    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
+                            start.hourglass + start.contact;
+    account_begin(s);
+}
+
 static enum err build(struct simulation *s, struct diag *d)
 {
     simulation_warn_of_scene(s, d);
@@ -307,10 +315,7 @@ static enum err build(struct simulation *s, struct diag *d)
     update_extremes(s);
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
-    const struct ledger start = simulation_ledger(s);
-    s->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
-                            start.hourglass + start.contact;
-    account_begin(s);
+    simulation_begin_account(s);
     open_forget(&s->open); /* particles created in the buffers belong to the start */
     s->state.det_low = 1;
     s->evaluated = false; /* the caller may add to the scene before the first step */

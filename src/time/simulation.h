@@ -96,6 +96,9 @@ void simulation_refresh(struct simulation *s);
 /* Present energy, momentum and extremes; calls simulation_refresh. */
 struct ledger simulation_ledger(struct simulation *s);
 
+/* The account of energy begins with the present state. */
+void simulation_begin_account(struct simulation *s);
+
 /* Hash of every STATE field and state scalar; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *s);
 

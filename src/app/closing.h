@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT
+ * What a run says at its end: cost, losses, energy, differences from references; and how a stopped
+ * one goes on. */
+#ifndef SPHFSI_APP_CLOSING_H
+#define SPHFSI_APP_CLOSING_H
+
+#include "app/session.h"
+#include "output/report.h"
+
+void closing_say(const struct sphfsi_options *o, const struct simulation *s,
+                 const struct record *r);
+
+/* Prints the command that continues a stopped run: after a guard a fork of the checkpoint with steps
+ * half as long, else a restart. */
+void closing_command(const struct sphfsi_options *o, const struct simulation *s, const char *folder,
+                     const char *checkpoint, bool guard);
+
+#endif

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT
+ * The search for a state of rest (T-78) by kinetic damping: where the kinetic energy has passed a
+ * maximum, all velocities are set to zero. Forces are those at t = 0, because each step begins
+ * before that and the clock is set back after it. */
+#include "time/relax.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "time/integrators.h"
+#include "time/timestep.h"
+
+bool relax_due(const struct simulation *s)
+{
+    return s->effects & FX_RELAX && !s->state.relaxed && s->state.time == 0;
+}
+
+static double kinetic_energy(const struct simulation *s)
+{
+    const struct particles *const f = &s->kind[KIND_FLUID], *const p = &s->kind[KIND_SOLID];
+    double fluid = 0, solid = 0;
+    for (int64_t i = 0; i < f->n; i++)
+        fluid += (f->m ? f->m[i] : 1) * (square(f->vx[i]) + square(f->vy[i]));
+    for (int64_t i = 0; i < p->n; i++)
+        solid += s->solid.body[p->body[i]].mass * (square(p->vx[i]) + square(p->vy[i]));
+    return 0.5 * (s->fluid.k.mass * fluid + solid);
+}
+
+static void clear(double *field, int64_t n)
+{
+    if (field && n > 0) memset(field, 0, (size_t)n * sizeof *field);
+}
+
+/* Except with the predictor-corrector a solid's velocity is half a step behind its position: at rest
+ * it is that of half a step before. Zero instead would put energy into the fastest modes. */
+static void stop_solid(struct simulation *s)
+{
+    struct particles *const p = &s->kind[KIND_SOLID];
+    const double back = -0.5 * s->state.dt / s->substeps;
+    clear(p->vx, p->n);
+    clear(p->vy, p->n);
+    clear(p->wx, p->n);
+    clear(p->wy, p->n);
+    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC || p->n == 0) return;
+    solid_stress(&s->solid, p);
+    solid_forces(&s->solid, p);
+    for (int64_t i = 0; i < p->n; i++) {
+        p->vx[i] = back * p->sx[i];
+        p->vy[i] = back * p->sy[i];
+    }
+}
+
+/* The integrators' memories of earlier steps end with the motion. */
+static void stop(struct simulation *s)
+{
+    const struct particles *const f = &s->kind[KIND_FLUID];
+    double *const of_fluid[] = {f->vx,     f->vy,     f->vx_half,   f->vy_half,
+                                f->vx_old, f->vy_old, f->ddens_old, f->ddens_older};
+    for (size_t k = 0; k < COUNT_OF(of_fluid); k++) clear(of_fluid[k], f->n);
+    if (s->effects & FX_SOLID) stop_solid(s);
+    s->state.verlet_count = 0; /* the next step is an Euler step */
+    s->state.relax_energy = 0;
+    s->evaluated = false;
+}
+
+/* The run begins with what has been found. */
+static void begin_run(struct simulation *s)
+{
+    struct state *const st = &s->state;
+    stop(s);
+    st->relaxed = 1;
+    st->lost_energy = st->periodic_energy = st->wall_work = st->exchanged = 0;
+    st->dens_low = st->dens_high = st->speed_high = 0;
+    st->det_low = 1;
+    simulation_begin_account(s);
+}
+
+/* T-78: judges the motion after a step of the search. */
+static void judge(struct simulation *s, double elapsed)
+{
+    struct state *const st = &s->state;
+    const double energy = kinetic_energy(s), before = st->relax_energy;
+    st->relax_time += elapsed;
+    st->relax_energy = energy;
+    st->relax_most = max2(st->relax_most, energy);
+    const double tolerated = square(s->scene->relax.tolerance) * st->relax_most;
+    if (energy > tolerated) st->relax_quiet = st->relax_time;
+    if (before > tolerated && energy < before) {
+        stop(s);
+        st->relax_left = before;
+        st->relax_swings++;
+        st->relax_longest = max2(st->relax_longest, st->relax_time - st->relax_swing);
+        st->relax_swing = st->relax_quiet = st->relax_time;
+    }
+    const double still = st->relax_time - st->relax_quiet;
+    const bool never = st->relax_most == 0;
+    if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) begin_run(s);
+}
+
+enum err relax_step(struct simulation *s, struct diag *d)
+{
+    enum { BATCH = 16 }; /* steps of a solid alone in a call */
+    struct state *const st = &s->state;
+    const double fixed = s->scene->numerics.fixed_step;
+    const double limit = s->effects & FX_FLUID ? timestep_fluid_limit(s) : BATCH * s->dt_solid;
+    const double begin = -1.01 * max2(limit, BATCH * fixed);
+    st->time = begin;
+    if (s->effects & FX_CLAMP_MOTION) solid_place_clamps(&s->solid, &s->kind[KIND_SOLID], begin);
+    if (s->effects & FX_MOTION) move_walls(s, begin);
+    const enum err e = simulation_step(s, begin + 1e6 * limit, d);
+    const double elapsed = st->time - begin;
+    st->time = 0;
+    st->substeps_needed = max2(st->substeps_needed, 0);
+    TRY(e);
+    judge(s, elapsed);
+    const double longest = st->relax_longest, most = s->scene->relax.limit * longest;
+    if (st->relaxed || st->relax_swings == 0 || st->relax_time < most) return ERR_OK;
+    return diag_fail(
+        d, ERR_GUARD,
+        "[relax]: no rest within %.3g s, %g times the longest swing of %.3g s: %.2g of "
+        "the first motion is left; a larger tolerance or limit, "
+        "`mass_damping` in a [solid]%s may help",
+        st->relax_time, s->scene->relax.limit, longest, sqrt(st->relax_left / st->relax_most),
+        s->effects & FX_FLUID && s->scene->top.scheme == SCHEME_PAPER
+            ? " or `scheme = standard`, which keeps water still,"
+            : "");
+}
+
+enum err relax_to_rest(struct simulation *s, struct diag *d)
+{
+    while (relax_due(s)) TRY(relax_step(s, d));
+    return ERR_OK;
+}
+
+void relax_text(const struct simulation *s, char text[RELAX_TEXT])
+{
+    const struct state *const st = &s->state;
+    if (st->relax_swings == 0)
+        snprintf(text, RELAX_TEXT, "nothing moves: the state at the start is one of rest");
+    else
+        snprintf(
+            text, RELAX_TEXT,
+            "at rest after %.3g s and %lld swings: over the last %.3g s, twice the longest swing, "
+            "the motion stayed below %g of the first one",
+            st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
+            s->scene->relax.tolerance);
+}
