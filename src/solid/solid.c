@@ -226,12 +226,22 @@ static void add_own_forces(const struct solid *s, struct particles *p, int64_t f
                 ax += s->external[0][i];
                 ay += s->external[1][i];
             }
-            if (FX_MASS_DAMPING && s->mass_damped) {
-                ax += mass_damping(body->mass_damping, p->vx[i]);
-                ay += mass_damping(body->mass_damping, p->vy[i]);
-            }
             p->sx[i] = (ax + body->gravity[0]) * p->free[i];
             p->sy[i] = (ay + body->gravity[1]) * p->free[i];
+        }
+    }
+}
+
+/* A pass of its own: nothing where no body has it. */
+static void add_mass_damping(const struct solid *s, struct particles *p, int64_t first,
+                             int64_t last)
+{
+    for (int64_t k = first; k < last; k++) {
+        const struct solid_pack *const pack = &s->pack[k];
+        const double beta = s->body[pack->body].mass_damping;
+        for (int64_t i = pack->i; i < pack->i + pack->lanes; i++) {
+            p->sx[i] += p->free[i] * mass_damping(beta, p->vx[i]);
+            p->sy[i] += p->free[i] * mass_damping(beta, p->vy[i]);
         }
     }
 }
@@ -240,6 +250,7 @@ static void force_sweeps(const struct chunk *own)
 {
     sweep(own, own->s->sweeps->forces);
     sweep(own, add_own_forces);
+    if (FX_MASS_DAMPING && own->s->mass_damped) sweep(own, add_mass_damping);
     if (!own->part) barrier_wait(own->s->barrier);
 }
 
