@@ -32,8 +32,8 @@ static void clear(double *field, int64_t n)
     if (field && n > 0) memset(field, 0, (size_t)n * sizeof *field);
 }
 
-/* Except with the predictor-corrector a solid's velocity is half a step behind its position: at rest
- * it is that of half a step before. Zero instead would put energy into the fastest modes. */
+/* With `verlet` a solid's velocity is half a step behind its position: at rest it is that of half a
+ * step before. Zero instead would put energy into the fastest modes. */
 static void stop_solid(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
@@ -42,7 +42,7 @@ static void stop_solid(struct simulation *s)
     clear(p->vy, p->n);
     clear(p->wx, p->n);
     clear(p->wy, p->n);
-    if (s->scene->top.integrator == INTEGRATOR_SYMPLECTIC || p->n == 0) return;
+    if (s->scene->top.integrator != INTEGRATOR_VERLET || p->n == 0) return;
     solid_stress(&s->solid, p);
     solid_forces(&s->solid, p);
     for (int64_t i = 0; i < p->n; i++) {
@@ -72,6 +72,7 @@ static void begin_run(struct simulation *s)
     st->relaxed = 1;
     st->lost_energy = st->periodic_energy = st->wall_work = st->exchanged = 0;
     st->dens_low = st->dens_high = st->speed_high = 0;
+    st->gain = st->gain_share = st->gain_since = 0;
     st->det_low = 1;
     simulation_begin_account(s);
 }
@@ -112,6 +113,7 @@ enum err relax_step(struct simulation *s, struct diag *d)
     const double elapsed = st->time - begin;
     st->time = 0;
     st->substeps_needed = max2(st->substeps_needed, 0);
+    st->gain_since = max2(st->gain_since, 0);
     TRY(e);
     judge(s, elapsed);
     const double longest = st->relax_longest, most = s->scene->relax.limit * longest;
