@@ -109,6 +109,7 @@ static enum err check_fluid(struct reader *r, const struct scene_fluid *f, doubl
         {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
         {"tensile_control", f->tensile_control, first->tensile_control},
         {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
+        {"wall_damping", f->wall_damping, first->wall_damping},
         {"acoustic_damper", f->acoustic_damper, first->acoustic_damper},
         {"shifting", f->shifting, first->shifting},
         {"shifting_speed", f->shifting_speed, first->shifting_speed},

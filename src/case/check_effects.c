@@ -76,8 +76,9 @@ static bool set_by_scheme(const struct scene *s, const struct param *p, const vo
 {
     double value;
     const void *const at = (const char *)section + p->offset;
-    return p->type == PARAM_CHOICE && scene_scheme_sets(s, p->section, p->key, &value) &&
-           *(const int *)at == (int)value;
+    if (!scene_scheme_sets(s, p->section, p->key, &value)) return false;
+    return p->type == PARAM_CHOICE ? *(const int *)at == (int)value
+                                   : p->type == PARAM_REAL && *(const double *)at == value;
 }
 
 static enum err check_owned(struct reader *r, const struct owned *row)

@@ -120,6 +120,8 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
                     q.p + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
             if (effects & FX_REPULSION)
                 stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+            if (effects & FX_WALL_DAMPING)
+                stress = stress + fx_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.vx, k);
             const vreal g = q.slope * stress;
             sum_x[part] = vfma(g, q.x, sum_x[part]);
             sum_y[part] = vfma(g, q.y, sum_y[part]);
@@ -219,7 +221,8 @@ SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
     for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
         const real *const own = d->packed + r;
         struct receiver s = receiver_at(sides, own);
-        s.u = s.v = vset(0);
+        s.u = vspread(own + PACKED_U * CLUSTER);
+        s.v = vspread(own + PACKED_V * CLUSTER);
         s.p = vspread(own + PACKED_P * CLUSTER);
         double volume[GROUPS];
         for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];

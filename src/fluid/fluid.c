@@ -32,6 +32,7 @@ static struct fluid_constants constants_of(const struct scene *s)
         .nu = fluid->laminar_viscosity,
         .delta = fluid->density_diffusion,
         .damper = fluid->acoustic_damper,
+        .wall_damping = fluid->wall_damping,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
         .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
     };
@@ -147,6 +148,14 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
     return sqrt(longest2);
+}
+
+/* T-9b by backward Euler. */
+void fluid_follow_density(const struct fluid *f, struct particles *p, double dt)
+{
+    const double share = dt / (dt + f->k.damper * f->k.h / f->k.c0);
+#pragma omp parallel for simd schedule(static) num_threads(f->threads)
+    for (int64_t i = 0; i < p->n; i++) p->dens_slow[i] += share * (p->dens[i] - p->dens_slow[i]);
 }
 
 /* Marks the nine cells around a cell of walls or structures; returns whether any of them contains

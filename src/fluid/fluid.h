@@ -16,10 +16,11 @@ struct fluid_constants {
     double dp;             /* particle spacing, m */
     double shifting;       /* A of Lind et al. 2012 */
     double shifting_speed; /* m/s, the same for all particles; 0: each particle's own speed */
-    bool fills_domain; /* the fluid has no free surface: a shift takes the density along (L-9) */
-    double nu;         /* laminar viscosity, m^2/s */
-    double delta;      /* Eq. 6 */
-    double damper;     /* alpha_D of the acoustic damper */
+    bool fills_domain;   /* the fluid has no free surface: a shift takes the density along (L-9) */
+    double nu;           /* laminar viscosity, m^2/s */
+    double delta;        /* Eq. 6 */
+    double damper;       /* alpha_D of the acoustic damper */
+    double wall_damping; /* zeta of fx_wall_damping */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, least pressure of dummies; -INFINITY: no limit */
 };
@@ -94,7 +95,7 @@ struct fluid_sweeps {
 /* Pair effects that kernels are specialised for. */
 #define PAIR_EFFECTS                                                                      \
     (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING | \
-     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_ONE_SIDED)
+     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_ONE_SIDED)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
@@ -161,6 +162,9 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
 /* Moves particles by A h |v| dt down the gradient of their concentration at the last evaluation,
  * except those at the free surface. Returns the largest shift, m. */
 double fluid_shift(const struct fluid *f, struct particles *p, double dt);
+
+/* The density that the acoustic damper remembers moves towards the present one. */
+void fluid_follow_density(const struct fluid *f, struct particles *p, double dt);
 
 /* After sorting: finds the cells of walls and solids that have fluid within reach, and the reverse. */
 void fluid_find_near(struct fluid *f, const struct cells *c);

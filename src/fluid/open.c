@@ -265,6 +265,7 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
     p->vx[i] = v[0];
     p->vy[i] = v[1];
     p->dens[i] = eos_dens(pressure, k->rho0, k->c0);
+    if (p->dens_slow) p->dens_slow[i] = p->dens[i];
     if (p->vx_half) {
         p->vx_half[i] = v[0];
         p->vy_half[i] = v[1];

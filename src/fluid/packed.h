@@ -55,11 +55,11 @@ SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_const
     return pressure;
 }
 
-/* Acoustic damper (Sun, Pilloton, Antuono and Colagrossi 2023; T-9a): the pressure -alpha_D rho0 c0 h div v
- * of four, where -div v = `swell` is the relative rate of the density. */
-SPHFSI_INLINE four_double damper_pressure(four_double swell, const struct fluid_constants *k)
+/* Acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a): the pressure psi of four, where `excess` is
+ * dens less the value with delay. */
+SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid_constants *k)
 {
-    return k->damper * k->rho0 * k->c0 * k->h * swell;
+    return k->rho0 * square(k->c0) * excess;
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
@@ -77,7 +77,8 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p
     if (f->effects & FX_MASSES) own = FOUR(p->m, i) * own;
     put_four(out, PACKED_VOLUME, own);
     four_double pressure = pressure_of(dens, &f->k);
-    if (f->effects & FX_DAMPER) pressure = pressure + damper_pressure(FOUR(p->swell, i), &f->k);
+    if (f->effects & FX_DAMPER)
+        pressure = pressure + damper_pressure(dens - FOUR(p->dens_slow, i), &f->k);
     put_four(out, PACKED_P, pressure);
     put_four(out, PACKED_DENS, dens);
 }

@@ -25,6 +25,7 @@ struct vector_constants {
     vreal laminar;        /* 2 nu rho0/h, kg/(m^2 s) */
     vreal tensile, close; /* epsilon, 1/W(dp) in the units of fx_tensile */
     vreal repulsion;      /* beta rho0 c0^2 of fx_repulsion, Pa */
+    vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
     vreal lowest;         /* pressure of walls and structures, Pa */
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
     vreal eta2;           /* (eta/h)^2 = 0.01 */
@@ -87,6 +88,15 @@ SPHFSI_INLINE vreal fx_one_sided_rate(const struct pair *q) { return vset(2) * f
 SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_constants *k)
 {
     return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
+}
+
+/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the one-sided Riemann
+ * problem of Zhang, Hu and Adams 2017, in place of beta rho0 c0^2. */
+SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
+                                    const struct vector_constants *k)
+{
+    const vreal speed = -(vmin(vx, vset(0)) * vsqrt(inv));
+    return k->wall_damping * speed * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
 /* Morris et al. 1997, Eq. 22, in volumes and with the same dynamic viscosity nu rho0 everywhere:

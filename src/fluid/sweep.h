@@ -31,6 +31,7 @@ static struct vector_constants constants_of_sweep(const struct fluid *f)
         .tensile = vset((real)fk->tensile),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
         .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
+        .wall_damping = vset((real)(fk->wall_damping * fk->rho0 * fk->c0)),
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
@@ -88,8 +89,6 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
         factor = factor / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
-    if (f->effects & FX_DAMPER)
-        store_four(p->swell_new + i, -slope * full * (rate / (1 + FOUR(p->dens, i))), count);
     const four_double ax =
         factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
     const four_double ay =

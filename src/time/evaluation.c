@@ -81,11 +81,7 @@ void evaluate_fluid(struct simulation *s, double time)
 void accept_evaluation(struct simulation *s)
 {
     s->evaluated = false;
-    if (!(s->effects & FX_DAMPER)) return;
-    struct particles *const p = &s->kind[KIND_FLUID];
-    double *const before = p->swell;
-    p->swell = p->swell_new;
-    p->swell_new = before; /* which the next evaluation overwrites */
+    if (s->effects & FX_DAMPER) fluid_follow_density(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
 }
 
 void evaluate_start(struct simulation *s)

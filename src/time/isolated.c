@@ -33,6 +33,7 @@ void limit_isolated_tension(struct simulation *s)
     for (int64_t i = 0; i < p->n; i++) {
         if (!(p->dens[i] < lowest) || simulation_near(s, p->x[i], p->y[i]) > most) continue;
         p->dens[i] = 0;
+        if (p->dens_slow) p->dens_slow[i] = 0;
         if (p->dens_old) p->dens_old[i] = 0;
         if (p->ddens_old) p->ddens_old[i] = p->ddens_older[i] = 0;
         found++;

@@ -54,6 +54,7 @@ static void start_fluid(struct simulation *s)
         const double pressure =
             expr_or(f->pressure.e[0], x, y, -s->scene->rho0 * s->scene->top.gravity[1] * depth);
         p->dens[i] = eos_dens(pressure, s->scene->rho0, s->scene->c0);
+        if (p->dens_slow) p->dens_slow[i] = p->dens[i];
         if (p->m) p->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + p->dens[i] : 1;
         p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
         p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);

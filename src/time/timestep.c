@@ -44,8 +44,8 @@ static double bound_artificial(const struct simulation *s, const struct fluid_ex
 /* T-33c. */
 static double bound_damper(const struct simulation *s, const struct fluid_extremes *now)
 {
-    (void)now;
-    return 0.1 * s->fluid.k.h / (s->fluid.k.damper * s->fluid.k.c0);
+    const double sound = sqrt(2.0) * s->fluid.k.c0;
+    return s->scene->numerics.cfl * s->fluid.k.h / (sound + now->approach);
 }
 
 /* L-8: half of the stable 2/omega between two dummies where L-7 is steepest. */

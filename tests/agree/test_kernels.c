@@ -16,23 +16,24 @@ static const char scene[] =
 
 /* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel. */
 static const struct {
-    const char *name, *alpha, *delta, *set, *another;
+    const char *name, *alpha, *delta, *set, *another, *third;
     effect_set effects;
 } sets[] = {
-    {"bare", "0", "0", NULL, NULL, 0},
-    {"viscous", "0.05", "0", NULL, NULL, FX_VISCOSITY},
-    {"dam_break", "0.05", "0.1", NULL, NULL, FX_VISCOSITY | FX_DIFFUSION},
-    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL,
+    {"bare", "0", "0", NULL, NULL, NULL, 0},
+    {"viscous", "0.05", "0", NULL, NULL, NULL, FX_VISCOSITY},
+    {"dam_break", "0.05", "0.1", NULL, NULL, NULL, FX_VISCOSITY | FX_DIFFUSION},
+    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL, NULL,
      FX_VISCOSITY | FX_DIFFUSION | FX_REPULSION},
-    {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL,
+    {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL, NULL,
      FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS},
     {"standard", "0.05", "0.1", "water.diffusion_form=antuono", "water.wall_repulsion=0.3",
-     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_REPULSION},
+     "water.wall_damping=1",
+     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING},
     {"standard_inviscid", "0", "0.1", "water.diffusion_form=antuono", "water.wall_repulsion=0.3",
-     FX_DIFFUSION | FX_ANTUONO | FX_REPULSION},
-    {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none",
+     "water.wall_damping=1", FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING},
+    {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none", NULL,
      FX_LAMINAR | FX_NO_SLIP},
-    {"any", "0", "0.1", NULL, NULL, ANY_EFFECTS},
+    {"any", "0", "0.1", NULL, NULL, NULL, ANY_EFFECTS},
 };
 
 static struct rig rig;
@@ -46,7 +47,8 @@ static uint64_t run(int set, const char *precision, bool generic)
     snprintf(alpha, sizeof alpha, "water.artificial_viscosity=%s", sets[set].alpha);
     snprintf(delta, sizeof delta, "water.density_diffusion=%s", sets[set].delta);
     rig_switches.generic_kernel = generic;
-    rig_open(&rig, scene, precision, alpha, delta, sets[set].set, sets[set].another, NULL);
+    rig_open(&rig, scene, precision, alpha, delta, sets[set].set, sets[set].another,
+             sets[set].third, NULL);
     rig_switches.generic_kernel = false;
     rig_steps(&rig, 40, 1);
     return simulation_hash(&rig.sim);

@@ -150,6 +150,37 @@ static void test_a_wall_pushes_back(void)
     }
 }
 
+/* L-7a: the same pair, where the fluid falls at 3 m/s and the wall rises at 1 m/s.
+ * With u = 4 * 0.4/sqrt(0.4^2 + 0.01) = 3.8806 m/s, 1000 * 10 u (0.4196/0.17 - 1) Pa come with it.
+ * Nothing where they part. */
+static void test_a_wall_resists_approach(void)
+{
+    double ay[2], fy[2];
+    for (int part = 0; part < 2; part++) {
+        for (int k = 0; k < 2; k++) {
+            rig_open(&rig, pair, "w.wall_repulsion=0.1",
+                     k ? "w.wall_damping=1" : "w.wall_damping=0", NULL);
+            fluid = &rig.sim.kind[KIND_FLUID];
+            wall = &rig.sim.kind[KIND_WALL];
+            fluid->x[0] = wall->x[0] = wall->y[0] = 0;
+            fluid->y[0] = 0.4;
+            fluid->vy[0] = part ? 3 : -3;
+            wall->vy[0] = part ? -1 : 1;
+            rig_sort(&rig);
+            rig_evaluate(&rig);
+            ay[k] = fluid->ay[0];
+            fy[k] = wall->fy[0];
+        }
+        const double slope = 35 / (4 * 3.14159265358979323846) * 0.4 * 0.8 * 0.8 * 0.8;
+        const double u = 4 * 0.4 / sqrt(0.4 * 0.4 + 0.01);
+        const double push = 1e4 * u * ((0.64 * 0.64 + 0.01) / (0.4 * 0.4 + 0.01) - 1);
+        const double force = part ? 0 : 0.64 * 0.64 / (1 + wall->dens[0]) * slope * push;
+        TEST_ASSERT_TRUE(part || force > 1e4);
+        assert_near(1e-12 * (1 + force), force / 640, ay[1] - ay[0], "ay");
+        assert_near(1e-12 * (1 + force), -force, fy[1] - fy[0], "force on the wall");
+    }
+}
+
 /* One particle of fluid is all that the wall sees: whose pressure it has makes no difference, not to one that
  * pulls either. */
 static void test_one_particle_has_one_side(void)
@@ -301,6 +332,7 @@ int main(void)
     RUN_TEST(test_walls_slip_freely);
     RUN_TEST(test_fluid_sticks_to_a_wall);
     RUN_TEST(test_a_wall_pushes_back);
+    RUN_TEST(test_a_wall_resists_approach);
     RUN_TEST(test_one_particle_has_one_side);
     RUN_TEST(test_pressure_behind_a_wall_is_not_felt);
     RUN_TEST(test_dry_walls_have_no_pressure);

@@ -28,11 +28,12 @@ static double tait(const struct twin *t, double rho)
     return t->c0 * t->c0 * t->rho0 / 7 * (pow(rho / t->rho0, 7) - 1);
 }
 
-/* Sun et al. 2023: what the rate of the density adds to the pressure. */
+/* Fourtakas et al. 2025 (T-9a): what the density less its value with delay adds to the pressure. */
 static void state_of(const struct twin *t, struct twin_point *f)
 {
     f->p_state = tait(t, f->rho);
-    f->p = f->p_state + t->damper * t->rho0 * t->c0 * t->h * f->swell;
+    f->p = f->p_state;
+    if (t->damped) f->p += t->c0 * t->c0 * (f->rho - f->rho_slow);
 }
 
 static double tait_inverse(const struct twin *t, double p)
@@ -55,7 +56,8 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .tensile = f->tensile_control,
                        .repulsion = f->wall_repulsion,
                        .one_sided = scene->numerics.sides == SIDES_ONE,
-                       .damper = f->acoustic_damper,
+                       .wall_damping = f->wall_damping,
+                       .damped = f->acoustic_damper > 0,
                        .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
@@ -72,8 +74,9 @@ void twin_copy(struct twin *t, const struct simulation *s)
             struct twin_point *const q = &t->point[kind][i];
             *q = (struct twin_point){.x = p->x[i], .y = p->y[i], .u = p->vx[i], .v = p->vy[i]};
             q->m = t->mass * (kind == KIND_FLUID && p->m ? p->m[i] : 1);
-            if (kind == KIND_FLUID && p->swell) q->swell = p->swell[i];
             if (kind == KIND_FLUID) q->rho = t->rho0 + t->rho0 * p->dens[i];
+            if (kind == KIND_FLUID && p->dens_slow)
+                q->rho_slow = t->rho0 + t->rho0 * p->dens_slow[i];
             if (kind == KIND_WALL) q->sticks = scene->wall[p->body[i]].slip == SLIP_NONE;
             if (kind == KIND_SOLID) q->sticks = scene->solid[p->body[i]].slip == SLIP_NONE;
             if (kind == KIND_SOLID) q->u = p->wx[i];
@@ -162,8 +165,10 @@ static double surface_pressure(const struct twin *t, const struct twin_point *f,
     if (!t->suction && own < 0) own = 0;
     const double near = 0.8 * t->dp, eta2 = 0.01 * t->h * t->h;
     const double closer = (near * near + eta2) / (dx * dx + dy * dy + eta2) - 1;
+    const double du = f->u - s->u, dv = f->v - s->v;
+    const double approach = fmax(0, -(dx * -du + dy * -dv) / sqrt(dx * dx + dy * dy + eta2));
     return f->p + (t->one_sided ? own : s->p) +
-           t->repulsion * t->rho0 * t->c0 * t->c0 * fmax(closer, 0);
+           t->rho0 * t->c0 * (t->repulsion * t->c0 + t->wall_damping * approach) * fmax(closer, 0);
 }
 
 /* What a fluid particle a feels of b (Eqs. 4, 6, 7, 21a); b of a wall or solid slips freely. */
@@ -206,7 +211,6 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     a->cy += V * gy;
     a->div_r -= V * (dx * gx + dy * gy);
     a->drho += moved + diffused;
-    a->div -= moved / a->rho;
     a->size_a += b->m *
                  ((fabs(a->p) + fabs(b->p) + fabs(pressure)) / (a->rho * b->rho) + fabs(Pi)) *
                  hypot(gx, gy);

@@ -14,7 +14,7 @@ struct twin_point {
     double cx, cy, div_r; /* 1/m, 1: gradient of the concentration, divergence of the positions */
     double m;             /* kg/m */
     double p_state;       /* Pa: of the equation of state alone */
-    double swell, div;    /* 1/s: -div v as given, div v as found */
+    double rho_slow;      /* kg/m^3: with the delay of the damper, as given */
     double drho;          /* kg/(m^3 s) */
     double mu, mv;        /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
     bool sticks;
@@ -25,7 +25,8 @@ struct twin_point {
 };
 
 struct twin {
-    double h, mass, c0, rho0, alpha, damper, delta, nu, tensile, repulsion, dp, g[2];
+    double h, mass, c0, rho0, alpha, delta, nu, tensile, repulsion, wall_damping, dp, g[2];
+    bool damped;       /* the pressure of the acoustic damper is added */
     double period[2];  /* 0: none */
     bool suction;      /* walls and structures may pull */
     bool one_sided;    /* each fluid particle meets its own pressure in them */
