@@ -1,88 +1,32 @@
 /* SPDX-License-Identifier: MIT */
-#include "solid/contact.h"
+#include "solid/contact_law.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* --- the law of a pair --- */
+/* --- forces of a pair --- */
 
-/* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
- * of the other. */
-#define HALF 0.5
-
-/* Constants of a point and an edge. */
-struct pair {
-    double reach;     /* m */
-    double stiffness; /* force per overlap at first contact, N/m per depth */
-    double damping;   /* N s/m */
-    double friction;
-    double grip; /* friction force over sliding speed, below the onset of sliding, N s/m */
-};
-
-static double mass_of(const struct contact *c, int body)
-{
-    return body < c->n_solids ? c->solid->body[body].mass : (double)INFINITY;
-}
-
-static double dp_of(const struct contact *c, int body)
-{
-    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
-}
-
-/* A point represents its own spacing of surface. Damping as a fraction of 2 sqrt(k m), with the
- * mass m of the pair, m_a m_b/(m_a + m_b). */
-static struct pair pair_of(const struct contact *c, const struct contact_law *law, int32_t point,
-                           int32_t edge)
-{
-    const int a = c->body[point], b = c->body[c->edge[edge].a];
-    const double k = law->stiffness * dp_of(c, a) / law->spacing;
-    const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
-    return (struct pair){
-        .reach = law->reach,
-        .stiffness = HALF * k,
-        .damping = HALF * law->damping * critical,
-        .friction = law->friction,
-        .grip = law->friction > 0 ? HALF * 0.5 * critical : 0,
-    };
-}
-
-/* T-61: k r0^2 (r/r0 - 1 - ln(r/r0)), infinite where the distance r vanishes. */
-static double touch_energy(const struct pair *q, double r)
-{
-    if (!(r < q->reach)) return 0;
-    const double s = r / q->reach;
-    return q->stiffness * square(q->reach) * (s - 1 - log(s));
-}
-
-/* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
-static double elastic_force(const struct pair *q, double r)
-{
-    return q->stiffness * q->reach * (q->reach / r - 1);
-}
-static double elastic_stiffness(const struct pair *q, double r)
-{
-    return q->stiffness * square(q->reach / min2(r, q->reach));
-}
-
-/* T-62 for a point at (x, y) from its foot on an edge, at distance r and relative velocity (vx,
- * vy). The dashpot may reduce the repulsion but not turn it into attraction. Friction is Coulomb's,
- * and below the onset of sliding proportional to the speed. */
+/* T-62 for a point at `offset` from its foot on an edge, at distance r, with the relative velocity v and
+ * the way d from the place where it sticks. The dashpot may reduce the repulsion but not turn it into
+ * attraction. */
 static void point_force(const struct pair *q, const double offset[2], double r, const double v[2],
-                        double f[2])
+                        const double d[2], double f[2])
 {
     f[0] = f[1] = 0;
     if (!(r < q->reach) || r == 0) return;
-    const double x = offset[0] / r, y = offset[1] / r, along = v[0] * x + v[1] * y;
+    const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
     const double normal = max2(0, elastic_force(q, r) - q->damping * along);
-    f[0] = normal * x;
-    f[1] = normal * y;
+    f[0] = normal * n[0];
+    f[1] = normal * n[1];
     if (!(q->friction > 0)) return;
-    const double sx = v[0] - along * x, sy = v[1] - along * y, slip = sqrt(sx * sx + sy * sy);
-    if (!(slip > 0)) return;
-    const double tangential = min2(q->friction * normal, q->grip * slip) / slip;
-    f[0] -= tangential * sx;
-    f[1] -= tangential * sy;
+    double drag[2];
+    for (int k = 0; k < 2; k++)
+        drag[k] = q->stiffness * across(n, d, k) + q->grip * across(n, v, k);
+    const double size = sqrt(drag[0] * drag[0] + drag[1] * drag[1]);
+    const double less = size > q->friction * normal ? q->friction * normal / size : 1;
+    f[0] -= less * drag[0];
+    f[1] -= less * drag[1];
 }
 
 /* The same for one of the points. */
@@ -91,16 +35,9 @@ static void end_force(const struct contact *c, const struct pair *q, int32_t poi
 {
     const double offset[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
     const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
-    point_force(q, offset, sqrt(offset[0] * offset[0] + offset[1] * offset[1]), v, f);
-}
-
-/* Velocity of a point relative to the nearest place on an edge. */
-static void relative_velocity(const struct contact *c, int32_t point, int32_t edge, double s,
-                              double v[2])
-{
-    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
-    v[0] = c->vx[point] - ((1 - s) * c->vx[a] + s * c->vx[b]);
-    v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
+    double d[2];
+    contact_stick(c, point, end, end, 0, d);
+    point_force(q, offset, sqrt(offset[0] * offset[0] + offset[1] * offset[1]), v, d, f);
 }
 
 /* T-61a: an edge acts with its full force, less the fraction that its end points exert, which the
@@ -114,9 +51,10 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     const struct pair q = pair_of(c, &law, point, edge);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double s = foot.at, offset[2] = {foot.x, foot.y};
-    double v[2], f[2], fa[2], fb[2];
+    double v[2], d[2], f[2], fa[2], fb[2];
     relative_velocity(c, point, edge, s, v);
-    point_force(&q, offset, foot.distance, v, f);
+    contact_stick(c, point, a, b, s, d);
+    point_force(&q, offset, foot.distance, v, d, f);
     end_force(c, &q, point, a, fa);
     end_force(c, &q, point, b, fb);
     for (int k = 0; k < 2; k++) {
@@ -128,18 +66,33 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     return true;
 }
 
+/* Of T-61 and of the spring of T-62 at a place of an edge. */
+static double place_energy(const struct contact *c, const struct pair *q, int32_t point, int32_t a,
+                           int32_t b, double s)
+{
+    const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
+                              c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
+    const double r = hypot(offset[0], offset[1]);
+    if (!(r < q->reach)) return 0;
+    const double sum = touch_energy(q, r);
+    if (!(q->friction > 0) || r == 0) return sum;
+    const double n[2] = {offset[0] / r, offset[1] / r};
+    double d[2];
+    contact_stick(c, point, a, b, s, d);
+    const double pull = q->stiffness * hypot(across(n, d, 0), across(n, d, 1));
+    return sum + 0.5 * square(min2(pull, q->friction * elastic_force(q, r))) / q->stiffness;
+}
+
 static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
 {
     const struct contact_law law = contact_pair_law(c, point, edge);
-    const double r = contact_foot(c, point, edge).distance;
-    if (!law.on || !(r < law.reach)) return 0;
+    const struct contact_foot foot = contact_foot(c, point, edge);
+    if (!law.on || !(foot.distance < law.reach)) return 0;
     const struct pair q = pair_of(c, &law, point, edge);
-    double sum = touch_energy(&q, r);
-    const int32_t end[2] = {c->edge[edge].a, c->edge[edge].b};
-    for (int k = 0; k < 2; k++)
-        sum -= c->share[end[k]] *
-               touch_energy(&q, hypot(c->x[point] - c->x[end[k]], c->y[point] - c->y[end[k]]));
-    return sum;
+    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
+    return place_energy(c, &q, point, a, b, foot.at) -
+           c->share[a] * place_energy(c, &q, point, a, a, 0) -
+           c->share[b] * place_energy(c, &q, point, b, b, 0);
 }
 
 /* --- forces --- */
@@ -168,6 +121,7 @@ void contact_forces(struct contact *c, const struct solid *s, struct particles *
 {
     (void)s;
     contact_place(c, p, time);
+    contact_find_stick(c, p);
     list_if_stale(c);
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < c->n_pairs; k++) {
@@ -200,6 +154,7 @@ double contact_energy(struct contact *c, const struct particles *p, double time)
 {
     if (c->known && !c->near) return 0;
     contact_place(c, p, time);
+    contact_find_stick(c, p);
     if (c->known) {
         list_if_stale(c);
     } else {
@@ -524,5 +479,5 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
     TRY(contact_find_surface(c, a, solid, d));
     TRY(create_list(c, a, d));
     note_beginnings(c);
-    return ERR_OK;
+    return solid->stick_edge ? contact_stick_create(c, a, d) : ERR_OK;
 }

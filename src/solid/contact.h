@@ -25,6 +25,9 @@ void contact_forget(struct contact *c, const struct particles *walls);
  * parallel region all threads call it together. */
 void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time);
 
+/* Lets the places slide to which friction holds points, after the forces of a step. By one thread. */
+void contact_slide(struct contact *c, struct particles *p);
+
 /* Energy of contact, J/m, with walls at their positions at `time`. */
 double contact_energy(struct contact *c, const struct particles *p, double time);
 
@@ -53,6 +56,13 @@ void contact_list(struct contact *c);
 /* Moves points to their positions in the state, those of moving walls to `time`. Lists the pairs
  * again if some point has left the margin. All threads together. */
 void contact_place(struct contact *c, const struct particles *p, double time);
+
+/* Friction (solid/contact_friction.c): its memory; the way of each point from the place where it sticks, all
+ * threads together; the same of a point relative to the place s of an edge from a to b. */
+enum err contact_stick_create(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+void contact_find_stick(struct contact *c, const struct particles *p);
+void contact_stick(const struct contact *c, int32_t point, int32_t a, int32_t b, double s,
+                   double d[2]);
 
 /* The law of a point and an edge, with the reach of this pair; not on: they do not interact. */
 struct contact_law contact_pair_law(const struct contact *c, int32_t point, int32_t edge);

@@ -345,10 +345,11 @@ void solid_forces(const struct solid *s, struct particles *p)
     }
 }
 
-void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
+void solid_book_work(struct solid *s, struct particles *p, const double *vx, const double *vy,
                      double dt)
 {
     if (s->contact) {
+        contact_slide(s->contact, p);
         const double work = dt * s->contact->power;
         s->work += work;
         s->work_on[0] += work;

@@ -36,8 +36,8 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
 void solid_show(const struct solid *s, struct particles *p);
 
 /* Adds up the work of actions from outside over a kick of dt with the last forces, from the
- * velocities before it. */
-void solid_book_work(struct solid *s, const struct particles *p, const double *vx, const double *vy,
+ * velocities before it. Friction slides by these forces. */
+void solid_book_work(struct solid *s, struct particles *p, const double *vx, const double *vy,
                      double dt);
 
 /* Sets particles with prescribed motion to their positions at a time. */

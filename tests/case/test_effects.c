@@ -94,6 +94,8 @@ static const struct {
      EFFECT_CONTACT, "line 3: [solid s]"},
     {TOP PLAIN_SOLID "[contact c]\n" WALL, FX_SOLID | FX_CONTACT | FX_CONTACT_WALL,
      EFFECT_CONTACT_WALL, "line 10: [contact c]"},
+    {TOP PLAIN_SOLID "[contact c]\nfriction = 0.1\n", FX_SOLID | FX_CONTACT | FX_FRICTION,
+     EFFECT_FRICTION, "line 11: [contact c] friction"},
     {TOP PLAIN_SOLID "[load l]\nbody = s\nshape = box 0.05, 0.12, 0.06, 0.16\nforce = 1, 0\n",
      FX_SOLID | FX_CONTACT | FX_LOAD, EFFECT_LOAD, "line 10: [load l]"},
     {TOP PLAIN_SOLID "clamp = box 0.05, 0.12, 0.07, 0.16\nclamp_motion = m\n[motion m]\n",

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT
+ * The law of a point and an edge in contact (T-61, T-62). */
+#ifndef SPHFSI_SOLID_CONTACT_LAW_H
+#define SPHFSI_SOLID_CONTACT_LAW_H
+
+#include <math.h>
+
+#include "solid/contact.h"
+
+/* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
+ * of the other. */
+#define CONTACT_HALF 0.5
+
+/* Constants of a point and an edge. */
+struct pair {
+    double reach;     /* m */
+    double stiffness; /* force per overlap at first contact, N/m per depth */
+    double damping;   /* N s/m */
+    double friction;
+    double grip; /* of the dashpot that damps sticking, N s/m */
+};
+
+SPHFSI_INLINE double mass_of(const struct contact *c, int body)
+{
+    return body < c->n_solids ? c->solid->body[body].mass : (double)INFINITY;
+}
+
+SPHFSI_INLINE double dp_of(const struct contact *c, int body)
+{
+    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
+}
+
+/* A point represents its own spacing of surface. Damping as a fraction of 2 sqrt(k m), with the
+ * mass m of the pair, m_a m_b/(m_a + m_b). */
+SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_law *law,
+                                  int32_t point, int32_t edge)
+{
+    const int a = c->body[point], b = c->body[c->edge[edge].a];
+    const double k = law->stiffness * dp_of(c, a) / law->spacing;
+    const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
+    return (struct pair){
+        .reach = law->reach,
+        .stiffness = CONTACT_HALF * k,
+        .damping = CONTACT_HALF * law->damping * critical,
+        .friction = law->friction,
+        .grip = law->friction > 0 ? CONTACT_HALF * 0.5 * critical : 0,
+    };
+}
+
+/* T-61: k r0^2 (r/r0 - 1 - ln(r/r0)), infinite where the distance r vanishes. */
+SPHFSI_INLINE double touch_energy(const struct pair *q, double r)
+{
+    if (!(r < q->reach)) return 0;
+    const double s = r / q->reach;
+    return q->stiffness * square(q->reach) * (s - 1 - log(s));
+}
+
+/* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
+SPHFSI_INLINE double elastic_force(const struct pair *q, double r)
+{
+    return q->stiffness * q->reach * (q->reach / r - 1);
+}
+SPHFSI_INLINE double elastic_stiffness(const struct pair *q, double r)
+{
+    return q->stiffness * square(q->reach / min2(r, q->reach));
+}
+
+/* Component k of a vector's part across the direction n. */
+SPHFSI_INLINE double across(const double n[2], const double v[2], int k)
+{
+    return v[k] - (v[0] * n[0] + v[1] * n[1]) * n[k];
+}
+
+/* Velocity of a point relative to the nearest place on an edge. */
+SPHFSI_INLINE void relative_velocity(const struct contact *c, int32_t point, int32_t edge, double s,
+                                     double v[2])
+{
+    const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
+    v[0] = c->vx[point] - ((1 - s) * c->vx[a] + s * c->vx[b]);
+    v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
+}
+
+#endif
