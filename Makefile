@@ -22,6 +22,8 @@
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
 #   make performance     the same, longest steps and the gate: docs/performance.md
+#   make web             the program as a page for browsers: build/web/index.html
+#   make test-web        drive that page in a headless Chromium, compare its hashes with the native ones
 #   make examples        build examples/*.c, programs that use the library
 #   make accuracy        run what is missing of the accuracy study, write docs/accuracy.md (ARGS=--list)
 #   make forecast        what --explain foresees against what the shipped cases take: docs/accuracy.md
@@ -52,6 +54,7 @@ IDLE  := help info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
+             $(if $(filter web,$(GOALS)),plot web) \
              $(if $(filter gate accuracy forecast validate verify-% bench performance,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
@@ -59,7 +62,7 @@ ifneq ($(filter-out $(IDLE),$(GOALS)),)
     $(error tools/setup.sh $(NEEDS) did not succeed; see above)
   endif
 endif
--include build/hdf5.mk build/unity.mk
+-include build/hdf5.mk build/unity.mk build/zig.mk
 PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
 # --- flags (CMakeLists.txt lists the same ones; tools/check_style.py compares them) ---
@@ -289,6 +292,30 @@ gallery: $(PROGRAM)
 	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
 	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
 	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
+
+# What steps a simulation, without the files of runs: no HDF5, one thread. `fused` needs relaxed SIMD; `exact`
+# computes multiply-add in software. Both give the native program's bits.
+WEB_SRC := web/exports.c $(filter-out src/base/run_dir.c,$(wildcard $(patsubst %,src/%/*.c,base \
+             particles case geometry fluid solid time))) src/output/probes.c src/output/point_data.c \
+             $(patsubst %,src/app/%.c,api call session due)
+WEB_FLAGS := -target wasm32-wasi -msimd128 -D_WASI_EMULATED_SIGNAL $(filter-out -pthread -fPIC,$(COMMON)) \
+             $(OPT-release) -fopenmp-simd -Wno-unknown-pragmas -Wno-pass-failed -Iinclude -Isrc
+build/web/fused.wasm: RELAXED := -mrelaxed-simd
+build/web/%.wasm: $(WEB_SRC) $(wildcard src/*/*.h src/*/*.def include/*.h) Makefile $(B)/version
+	@mkdir -p $(@D); echo '  WASM $@'
+	$(Q)ZIG_LOCAL_CACHE_DIR=build/web/cache ZIG_GLOBAL_CACHE_DIR=build/web/cache $(ZIG) cc $(WEB_FLAGS) \
+	  $(RELAXED) -DSPHFSI_VERSION='"$(FULL_VERSION)"' -mexec-model=reactor -Wl,--gc-sections,--strip-all \
+	  -Wl,-z,stack-size=1048576 -o $@ $(WEB_SRC)
+
+.PHONY: web test-web
+web: $(PROGRAM) build/web/fused.wasm build/web/exact.wasm
+	$(Q)$(PROJECT_PYTHON) web/build.py --program '$(PROGRAM)' --fused build/web/fused.wasm \
+	  --exact build/web/exact.wasm --out build/web/index.html $(ARGS)
+
+# Without a compiler for WebAssembly there is no page, and the test is skipped.
+test-web: $(PROGRAM)
+	@$(MAKE) --no-print-directory web || echo "there is no page: the test will be skipped"
+	@WEB=1 SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER=web/ tests/run.sh $(B)
 
 .PHONY: accuracy forecast verify-fluid verify-manufactured verify-open
 accuracy: $(PROGRAM)

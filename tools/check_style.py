@@ -83,6 +83,22 @@ def check_sentences(path):
         report(path, line, f"a sentence of {count} words, more than {prose.LIMIT}: {sentence[:60]}")
 
 
+# What C libraries round in different ways. app/ forecasts and prints; nothing there enters a state.
+ROUNDED = re.compile(r"(?<![\w.\"])(sin|cos|tan|a?sinh?|a?cosh?|a?tanh?|atan2|exp2?|expm1|"
+                     r"log(?:2|10|1p)?|cbrt|pow|hypot|erf)f?\((?!\))")
+
+
+def check_rounding(path, lines):
+    """Results have the same bits with every C library."""
+    if path.parts[len(ROOT.parts) + 1] == "app" or path.stem == "elementary":
+        return
+    code = re.sub(r"/\*.*?\*/|\"(\\.|[^\"\\])*\"", lambda hit: "\n" * hit[0].count("\n"),
+                  "\n".join(lines), flags=re.S)
+    for number, line in enumerate(code.split("\n"), 1):
+        for call in ROUNDED.finditer(line):
+            report(path, number, f"{call[1]}() has other bits with other C libraries; base/elementary.h")
+
+
 def check_flags():
     """Makefile and CMakeLists.txt compile with the same flags and carry the same version."""
     make, cmake = ROOT / "Makefile", ROOT / "CMakeLists.txt"
@@ -163,6 +179,8 @@ def main():
         check_text(path, lines)
         if path.parts[len(ROOT.parts)] in ("src", "include"):
             check_programs(path, lines)
+        if path.parts[len(ROOT.parts)] == "src" and path.suffix in (".c", ".h"):
+            check_rounding(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
     build = args.library[0].resolve().parent if args.library else None

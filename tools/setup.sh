@@ -5,14 +5,16 @@
 #                           build/python where there is a Python for plot
 #   tools/setup.sh test     the above, Unity, Python as for plot   -> build/unity.mk
 #   tools/setup.sh plot     Python 3 with numpy, matplotlib, h5py  -> build/python
+#   tools/setup.sh web      a compiler for WebAssembly             -> build/zig.mk
 #
 # Installs through apt-get as root or with a sudo that asks nothing; Python packages go into .venv
 # where pip can reach them. Otherwise prints what to install and exits with 1. Says nothing when
-# nothing is missing. Hints: CC, HDF5_PREFIX, UNITY_DIR, PYTHON; SETUP=no installs nothing.
+# nothing is missing. Hints: CC, HDF5_PREFIX, UNITY_DIR, PYTHON, ZIG; SETUP=no installs nothing.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 CC=${CC:-cc}
 
+ziglang_version=0.17.1
 unity_version=2.6.1
 unity_url=https://github.com/ThrowTheSwitch/Unity/archive/refs/tags/v$unity_version.tar.gz
 unity_sha256=b41a66d45a6b99758fb3202ace6178177014d52fc524bf1f72687d93e9867292
@@ -241,6 +243,41 @@ fetch_unity_from_debian() {
     unpack_unity "$tarball" "$sum" && rm -rf "$apt"
 }
 
+# --- compiler for WebAssembly ---
+
+# `zig cc` is clang with wasi-libc. Debian's clang 14 has no relaxed SIMD.
+zig_works() {
+    echo 'int main(void) { return 0; }' | env ZIG_{LOCAL,GLOBAL}_CACHE_DIR=build/web/cache \
+        "$1" cc -target wasm32-wasi -msimd128 -mrelaxed-simd -x c -o build/probe.wasm - >/dev/null 2>&1
+    local status=$?
+    rm -f build/probe.wasm
+    return $status
+}
+
+find_zig() {
+    local zig known
+    known=$(sed -n 's/^ZIG := //p' build/zig.mk 2>/dev/null)
+    [ -n "$known" ] && [ -x "$known" ] && [ -z "${ZIG:-}" ] && return
+    for zig in ${ZIG:+"$ZIG"} build/deps/ziglang/ziglang/zig $(type -aP zig); do
+        [ -x "$zig" ] && zig_works "$zig" && record build/zig.mk "ZIG := $zig" && return
+    done
+    lacks "a compiler for WebAssembly (zig, of PyPI's ziglang)" "" ""
+}
+
+# 100 MB, and nothing outside of build/ changes.
+fetch_zig() {
+    local p
+    for p in $(pythons); do
+        "$p" -m pip --version >/dev/null 2>&1 || continue
+        say "fetching ziglang $ziglang_version into build/deps/ziglang"
+        "$p" -m pip install --quiet --disable-pip-version-check --retries 1 --timeout 15 --no-deps \
+            --only-binary :all: --target build/deps/ziglang "ziglang==$ziglang_version" \
+            >build/pip.log 2>&1 && return
+    done
+    say "pip did not succeed (build/pip.log)"
+    return 1
+}
+
 # --- all of it ---
 
 find_all() {
@@ -250,8 +287,9 @@ find_all() {
         case $need in
             build) find_build; note_python ;;
             plot) find_python ;;
+            web) find_zig ;;
             test) find_build && find_python && find_unity ;;
-            *) say "unknown need '$need'; one of: build test plot"; exit 1 ;;
+            *) say "unknown need '$need'; one of: build test plot web"; exit 1 ;;
         esac
     done
 }
@@ -281,6 +319,9 @@ find_all "$@"
 
 case "${missing[*]}" in
     *"Python 3"*) [ "${SETUP:-}" = no ] || { make_venv && find_all "$@"; } ;;
+esac
+case "${missing[*]}" in
+    *WebAssembly*) [ "${SETUP:-}" = no ] || { fetch_zig && find_all "$@"; } ;;
 esac
 if [ ${#packages[@]} -gt 0 ] && sudo=$(privilege); then
     install_packages "$sudo" $(unique "${packages[@]}")

@@ -2,6 +2,7 @@
  * Recursive descent to a small stack program; constant parts are evaluated during parsing. So a
  * value without x and y is a program of one number. */
 #include "case/expr.h"
+#include "base/elementary.h"
 #include "case/expr_ops.h"
 #include "case/scene.h"
 
@@ -67,14 +68,14 @@ static double run_unary(enum op_code code, double a)
     switch (code) {
     case OP_NEG: return -a;
     case OP_SQRT: return sqrt(a);
-    case OP_SIN: return sin(a);
-    case OP_COS: return cos(a);
-    case OP_TAN: return tan(a);
-    case OP_SINH: return sinh(a);
-    case OP_COSH: return cosh(a);
-    case OP_TANH: return tanh(a);
-    case OP_EXP: return exp(a);
-    case OP_LOG: return log(a);
+    case OP_SIN: return elementary_sin(a);
+    case OP_COS: return elementary_cos(a);
+    case OP_TAN: return elementary_tan(a);
+    case OP_SINH: return elementary_sinh(a);
+    case OP_COSH: return elementary_cosh(a);
+    case OP_TANH: return elementary_tanh(a);
+    case OP_EXP: return elementary_exp(a);
+    case OP_LOG: return elementary_log(a);
     case OP_ROUND: return round(a);
     default: return fabs(a);
     }
@@ -87,7 +88,7 @@ static double run_binary(enum op_code code, double a, double b)
     case OP_SUB: return a - b;
     case OP_MUL: return a * b;
     case OP_DIV: return a / b;
-    case OP_POW: return pow(a, b);
+    case OP_POW: return elementary_pow(a, b);
     case OP_MIN: return a < b ? a : b;
     default: return a > b ? a : b;
     }

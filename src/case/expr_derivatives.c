@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "case/expr.h"
+#include "base/elementary.h"
 #include "case/expr_ops.h"
 #include "case/scene.h"
 
@@ -22,15 +23,18 @@ static struct expr_jet unary(enum op_code code, struct expr_jet a)
     switch (code) {
     case OP_NEG: return (struct expr_jet){-x, -a.d1, -a.d2};
     case OP_SQRT: return chain(&a, sqrt(x), 0.5 / sqrt(x), -0.25 / (x * sqrt(x)));
-    case OP_SIN: return chain(&a, sin(x), cos(x), -sin(x));
-    case OP_COS: return chain(&a, cos(x), -sin(x), -cos(x));
-    case OP_TAN: return chain(&a, tan(x), 1 + square(tan(x)), 2 * tan(x) * (1 + square(tan(x))));
-    case OP_SINH: return chain(&a, sinh(x), cosh(x), sinh(x));
-    case OP_COSH: return chain(&a, cosh(x), sinh(x), cosh(x));
+    case OP_SIN: return chain(&a, elementary_sin(x), elementary_cos(x), -elementary_sin(x));
+    case OP_COS: return chain(&a, elementary_cos(x), -elementary_sin(x), -elementary_cos(x));
+    case OP_TAN:
+        return chain(&a, elementary_tan(x), 1 + square(elementary_tan(x)),
+                     2 * elementary_tan(x) * (1 + square(elementary_tan(x))));
+    case OP_SINH: return chain(&a, elementary_sinh(x), elementary_cosh(x), elementary_sinh(x));
+    case OP_COSH: return chain(&a, elementary_cosh(x), elementary_sinh(x), elementary_cosh(x));
     case OP_TANH:
-        return chain(&a, tanh(x), 1 - square(tanh(x)), -2 * tanh(x) * (1 - square(tanh(x))));
-    case OP_EXP: return chain(&a, exp(x), exp(x), exp(x));
-    case OP_LOG: return chain(&a, log(x), 1 / x, -1 / (x * x));
+        return chain(&a, elementary_tanh(x), 1 - square(elementary_tanh(x)),
+                     -2 * elementary_tanh(x) * (1 - square(elementary_tanh(x))));
+    case OP_EXP: return chain(&a, elementary_exp(x), elementary_exp(x), elementary_exp(x));
+    case OP_LOG: return chain(&a, elementary_log(x), 1 / x, -1 / (x * x));
     case OP_ROUND: return (struct expr_jet){round(x), 0, 0};
     default: return x < 0 ? unary(OP_NEG, a) : a;
     }
@@ -41,8 +45,8 @@ static struct expr_jet power(struct expr_jet a, struct expr_jet b)
 {
     const double p = b.value, x = a.value;
     if (b.d1 == 0 && b.d2 == 0)
-        return chain(&a, pow(x, p), p == 0 ? 0 : p * pow(x, p - 1),
-                     p == 0 || p == 1 ? 0 : p * (p - 1) * pow(x, p - 2));
+        return chain(&a, elementary_pow(x, p), p == 0 ? 0 : p * elementary_pow(x, p - 1),
+                     p == 0 || p == 1 ? 0 : p * (p - 1) * elementary_pow(x, p - 2));
     const struct expr_jet log_a = unary(OP_LOG, a);
     const struct expr_jet exponent = {b.value * log_a.value,
                                       b.d1 * log_a.value + b.value * log_a.d1,

@@ -2,6 +2,7 @@
  * Prescribed motion: constant velocity, a polynomial of time, a table, a sine, a rotation, or expressions
  * in time. */
 #include "case/case.h"
+#include "base/elementary.h"
 
 #include "case/expr.h"
 
@@ -91,9 +92,9 @@ static void sine_at(const struct scene_motion *motion, double t, double *d, doub
 {
     const double phase = motion->phase;
     const double w = motion->period > 0 ? 2 * PI / motion->period : 0;
-    *d = sin(w * t + phase) - sin(phase);
-    *v = w * cos(w * t + phase);
-    *a = -w * w * sin(w * t + phase);
+    *d = elementary_sin(w * t + phase) - elementary_sin(phase);
+    *v = w * elementary_cos(w * t + phase);
+    *a = -w * w * elementary_sin(w * t + phase);
 }
 
 static void turning_at(const struct scene_motion *motion, const struct scene_table *table, double t,
@@ -195,7 +196,7 @@ static struct motion_state prescribed_at(const struct scene *s, int motion_index
 struct motion_state motion_at(const struct scene *s, int motion_index, double time)
 {
     struct motion_state m = prescribed_at(s, motion_index, time);
-    m.turn[0] = cos(m.angle);
-    m.turn[1] = sin(m.angle);
+    m.turn[0] = elementary_cos(m.angle);
+    m.turn[1] = elementary_sin(m.angle);
     return m;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * [inflow] and [outflow] sections: derived data and checks. */
 #include "case/case.h"
+#include "base/elementary.h"
 
 #include <math.h>
 
@@ -21,7 +22,7 @@ struct scene_open scene_open_at(const struct scene *s, int k)
 {
     const bool inflow = k < s->n_inflow;
     struct scene_open o = inflow ? OPEN_OF(&s->inflow[k]) : OPEN_OF(&s->outflow[k - s->n_inflow]);
-    o.length = hypot(o.along[0], o.along[1]);
+    o.length = elementary_hypot(o.along[0], o.along[1]);
     /* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
      * buffer, and one of the buffer that has entered and is not yet relabelled. */
     o.depth = ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;

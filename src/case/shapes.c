@@ -7,6 +7,7 @@
  *   polyline thickness T: X, Y; X, Y ...  a band to the left of the direction of the points; T < 0:
  *                                         to the right; last point = first point: closed */
 #include "case/case.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -86,7 +87,7 @@ static enum err check_polygon(struct reader *r, const struct entry *e, const str
     for (int k = 0; k < n; k++) {
         const double *a = shape->pt[k], *b = shape->pt[(k + 1) % n];
         area += 0.5 * cross(shape->pt[0], a, b);
-        size = max2(size, hypot(b[0] - a[0], b[1] - a[1]));
+        size = max2(size, elementary_hypot(b[0] - a[0], b[1] - a[1]));
     }
     if (fabs(area) <= 1e-12 * size * size)
         return bad_value(r, e, "the polygon has no area; check its points");

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Units after numbers, and their dimensions. */
 #include "case/expr.h"
+#include "base/elementary.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -149,7 +150,7 @@ static void apply(struct quantity *q, const struct unit *u, double power)
         const double up = power > 0 ? u->up : u->down, down = power > 0 ? u->down : u->up;
         for (int k = 0; k < (int)fabs(power); k++) q->value = q->value * up / down;
     } else {
-        q->value *= pow(u->up / u->down, power);
+        q->value *= elementary_pow(u->up / u->down, power);
     }
     q->dim.kind = DIM_KNOWN;
     q->dim.m += power * u->m;

@@ -2,6 +2,7 @@
  * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a body clamped
  * all over. Each gets a warning with the consequence and the remedy. */
 #include "geometry/sampling.h"
+#include "base/elementary.h"
 
 #include "case/case.h"
 
@@ -26,7 +27,7 @@ static int64_t strip_of(const struct supports *f, double dp, double x, double y)
 static enum err find_supports(struct supports *f, const struct sampler *g, struct arena *a)
 {
     const struct scene *const s = g->scene;
-    const double dp = s->top.dp, size = hypot(s->top.gravity[0], s->top.gravity[1]);
+    const double dp = s->top.dp, size = elementary_hypot(s->top.gravity[0], s->top.gravity[1]);
     double low = HUGE_VAL, high = -HUGE_VAL;
     f->along[0] = s->top.gravity[0] / size;
     f->along[1] = s->top.gravity[1] / size;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Data that depend on all points: the effective domain, probes, initial values. */
 #include "geometry/sampling.h"
+#include "base/elementary.h"
 
 #include "case/case.h"
 
@@ -160,7 +161,8 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     double nearest = HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++)
         if (p->body[k] == body)
-            nearest = min2(nearest, hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));
+            nearest = min2(nearest,
+                           elementary_hypot(p->x[k] - probe->point[0], p->y[k] - probe->point[1]));
     /* A corner of a body is sqrt(1/2) dp from its particle's centre. */
     const double dp = scene_solid_dp(s, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;

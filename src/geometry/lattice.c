@@ -2,6 +2,7 @@
  * The lattices that regions are sampled on: their angles, origins and spacings. Fluid and walls
  * have one common lattice of spacing dp. Each solid, with the solids bonded to it, has its own. */
 #include "geometry/sampling.h"
+#include "base/elementary.h"
 
 #include "case/case.h"
 
@@ -33,10 +34,10 @@ static struct direction direction_of(const double a[2], const double b[2])
 {
     const double dx = b[0] - a[0], dy = b[1] - a[1];
     if (dx == 0 || dy == 0) return (struct direction){0, fabs(dx) + fabs(dy)};
-    double angle = atan2(dy, dx);
+    double angle = elementary_atan2(dy, dx);
     angle -= 0.5 * PI * round(angle / (0.5 * PI));
     if (angle < same_direction - 0.25 * PI) angle += 0.5 * PI;
-    return (struct direction){fabs(angle) < same_direction ? 0 : angle, hypot(dx, dy)};
+    return (struct direction){fabs(angle) < same_direction ? 0 : angle, elementary_hypot(dx, dy)};
 }
 
 /* Appends the straight edges of shapes; both sides of a polyline, with equal lengths. */
@@ -325,7 +326,7 @@ static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
     double corner[2];
     bool shifted = false;
     struct scene_lattice l = {.angle = group->angle,
-                              .turn = {cos(group->angle), sin(group->angle)},
+                              .turn = {elementary_cos(group->angle), elementary_sin(group->angle)},
                               .spacing = {group->dp, group->dp}};
     TRY(lower_corner(g, group, corner));
     for (int c = 0; c < 2; c++) {
@@ -373,7 +374,7 @@ static enum err group_direction(struct sampler *g, struct lattice_group *group)
 /* A given angle modulo a right angle. */
 static double given_angle(double angle)
 {
-    const double a[2] = {0, 0}, b[2] = {cos(angle), sin(angle)};
+    const double a[2] = {0, 0}, b[2] = {elementary_cos(angle), elementary_sin(angle)};
     return direction_of(a, b).angle;
 }
 
@@ -389,7 +390,7 @@ static enum err common_lattice(struct sampler *g, struct region **list)
     else if (s->domain.periodic == PERIODIC_NONE)
         TRY(group_direction(g, &group));
     const double *at = s->numerics.lattice_origin;
-    const double c = cos(group.angle), sine = sin(group.angle);
+    const double c = elementary_cos(group.angle), sine = elementary_sin(group.angle);
     struct scene_lattice *l = &s->lattice;
     *l = (struct scene_lattice){.angle = group.angle,
                                 .turn = {c, sine},

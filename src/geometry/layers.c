@@ -4,6 +4,7 @@
  * corners. Along a layer the points are evenly spaced, as near to dp as a whole number of them
  * allows. */
 #include "geometry/layers.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <string.h>
@@ -141,8 +142,8 @@ static enum err loop_of_circle(const struct outline *o, double dp, struct loop *
     to->pt = arena_alloc(&g->temp, (size_t)to->n, sizeof *to->pt, "walls", g->diag);
     if (!to->pt) return ERR_MEMORY;
     for (int k = 0; k < to->n; k++) {
-        to->pt[k][0] = o->centre[0] + o->radius * cos(2 * PI * k / to->n);
-        to->pt[k][1] = o->centre[1] + o->radius * sin(2 * PI * k / to->n);
+        to->pt[k][0] = o->centre[0] + o->radius * elementary_cos(2 * PI * k / to->n);
+        to->pt[k][1] = o->centre[1] + o->radius * elementary_sin(2 * PI * k / to->n);
     }
     return ERR_OK;
 }
@@ -213,7 +214,7 @@ struct edge {
 static struct edge edge_of(const struct loop *o, int k, double dp)
 {
     const double *a = o->pt[k], *b = o->pt[(k + 1) % o->n];
-    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
     struct edge e = {.a = {a[0], a[1]}, .length = length};
     if (length <= 1e-9 * dp) return e;
     e.along[0] = (b[0] - a[0]) / length;
@@ -285,12 +286,14 @@ static enum err trace_corner(struct layers *l, struct trace *t, const struct edg
                              const struct edge *next)
 {
     const double depth = t->depth;
-    const double turn = atan2(e->along[0] * next->along[1] - e->along[1] * next->along[0],
-                              e->along[0] * next->along[0] + e->along[1] * next->along[1]);
+    const double turn =
+        elementary_atan2(e->along[0] * next->along[1] - e->along[1] * next->along[0],
+                         e->along[0] * next->along[0] + e->along[1] * next->along[1]);
     if (!(turn < 0) || !exposed(l, e, e->parts - 1) || !exposed(l, next, 0)) return ERR_OK;
     const int parts = 1 + (int)(-turn * depth / l->dp * PARTS);
     for (int k = 0; k < parts; k++) {
-        const double angle = turn * (k + 0.5) / parts, c = cos(angle), s = sin(angle);
+        const double angle = turn * (k + 0.5) / parts, c = elementary_cos(angle),
+                     s = elementary_sin(angle);
         const double at[2] = {next->a[0] + depth * (c * e->in[0] - s * e->in[1]),
                               next->a[1] + depth * (c * e->in[1] + s * e->in[0])};
         TRY(trace_add(l, t, at));
@@ -318,7 +321,7 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
 {
     a %= t->n;
     b %= t->n;
-    return hypot(t->pt[b][0] - t->pt[a][0], t->pt[b][1] - t->pt[a][1]);
+    return elementary_hypot(t->pt[b][0] - t->pt[a][0], t->pt[b][1] - t->pt[a][1]);
 }
 
 /* Adds a point unless there is already one at its place. */

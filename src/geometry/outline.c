@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "geometry/outline.h"
+#include "base/elementary.h"
 
 #include "case/case.h"
 
@@ -26,7 +27,7 @@ static void set_bounds(struct outline *o)
 static void left_normal(const struct shape *p, int k, double normal[2])
 {
     const double dx = p->pt[k + 1][0] - p->pt[k][0], dy = p->pt[k + 1][1] - p->pt[k][1];
-    const double length = hypot(dx, dy);
+    const double length = elementary_hypot(dx, dy);
     normal[0] = -dy / length;
     normal[1] = dx / length;
 }
@@ -186,7 +187,8 @@ bool outline_contains(const struct outline *o, double x, double y, double *scrat
 enum err outlines_turn(struct outlines *o, double angle, struct arena *a, struct diag *d)
 {
     if (angle == 0) return ERR_OK;
-    const double c = fabs(cos(angle)) < 1e-15 ? 0 : cos(angle), s = sin(angle);
+    const double c = fabs(elementary_cos(angle)) < 1e-15 ? 0 : elementary_cos(angle),
+                 s = elementary_sin(angle);
     struct outline *const item = arena_alloc(a, (size_t)o->n, sizeof *item, "shapes", d);
     if (!item) return ERR_MEMORY;
     for (int k = 0; k < o->n; k++) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
 #include "output/checkpoint.h"
+#include "base/elementary.h"
 #include "time/account.h"
 
 #include <inttypes.h>
@@ -14,7 +15,8 @@ static enum err check_wall(const struct simulation *s, int64_t i, const struct m
 {
     const struct particles *const p = &s->kind[KIND_WALL];
     const struct motion_point to = motion_of_point(m, p->X[i], p->Y[i]);
-    if (hypot(p->x[i] - to.x[0], p->y[i] - to.x[1]) <= 1e-3 * s->scene->top.dp) return ERR_OK;
+    if (elementary_hypot(p->x[i] - to.x[0], p->y[i] - to.x[1]) <= 1e-3 * s->scene->top.dp)
+        return ERR_OK;
     const struct scene_wall *const w = &s->scene->wall[p->body[i]];
     return diag_fail(
         d, ERR_INPUT,
@@ -59,7 +61,7 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
     }
     solid_place_clamps(&s->solid, p, s->state.time);
     for (int64_t i = 0; i < p->n; i++) {
-        if (hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
+        if (elementary_hypot(p->ux[i] - ux[i], p->uy[i] - uy[i]) <= 1e-3 * s->solid.dp) continue;
         const struct scene_solid *const b = &s->scene->solid[p->body[i]];
         return diag_fail(d, ERR_INPUT,
                          "fork: the clamp of [solid %s] would jump at %.6g s from its displacement "

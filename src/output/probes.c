@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/probes.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -346,7 +347,7 @@ static void pose(const struct probe *pr, const struct simulation *s, double out[
     }
     out[0] = X + ux;
     out[1] = Y + uy;
-    out[2] = atan2(across, along);
+    out[2] = elementary_atan2(across, along);
 }
 
 static void energy(const struct probe *pr, const struct simulation *s, double out[3])

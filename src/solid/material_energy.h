@@ -7,6 +7,7 @@
 #include <math.h>
 
 #include "base/real_double.h"
+#include "base/elementary.h"
 
 #include "solid/material.h"
 
@@ -54,7 +55,8 @@ SPHFSI_INLINE vdouble material_energy(const struct solid_body *b, struct vtensor
                                   ? (2 * b->mu + b->lambda) / (2 * b->mu + b->lambda * square(J[l]))
                                   : 1;
             const double J2 = square(J[l]) * t2, invariant = 2 * (E.xx[l] + E.yy[l]) + t2 - 1;
-            W[l] = (0.5 * b->mu * (invariant - log(J2)) + 0.25 * b->lambda * (J2 - 1 - log(J2)));
+            W[l] = (0.5 * b->mu * (invariant - elementary_log(J2)) +
+                    0.25 * b->lambda * (J2 - 1 - elementary_log(J2)));
         }
         return W;
     }

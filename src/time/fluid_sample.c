@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Sampling the fluid: at a point, at its surface, at its front, through a line. */
 #include "time/simulation.h"
+#include "base/elementary.h"
 
 #include <math.h>
 
@@ -37,7 +38,7 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
             const int64_t i = list->order ? list->order[k] : k;
             const double dx = cells_minimum_image(c, 0, p->x[i] - x);
             const double dy = cells_minimum_image(c, 1, p->y[i] - y);
-            visit(s, kind, i, hypot(dx, dy), sums);
+            visit(s, kind, i, elementary_hypot(dx, dy), sums);
         }
     }
 }
@@ -160,7 +161,7 @@ double simulation_front(const struct simulation *s, int direction)
 double simulation_flux(const struct simulation *s, const double a[2], const double b[2])
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
-    const double length = hypot(b[0] - a[0], b[1] - a[1]);
+    const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
     const double tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
     /* The mean over a strip, weighted by a cosine bell of area 1. With three spacings to either
      * side its sum over a lattice is exact. */
@@ -171,7 +172,7 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
         const double y = cells_minimum_image(&s->cells, 1, p->y[i] - a[1]);
         const double along = x * tx + y * ty, across = x * ty - y * tx;
         if (along < 0 || along > length || fabs(across) >= reach) continue;
-        const double bell = 0.5 / reach * (1 + cos(PI * across / reach));
+        const double bell = 0.5 / reach * (1 + elementary_cos(PI * across / reach));
         const double m = p->m ? p->m[i] : 1;
         sum += bell * m * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
     }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
+#include "base/elementary.h"
 #include "time/account.h"
 
 #include <math.h>
@@ -368,7 +369,7 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
             "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; wall_repulsion = 0.1, a thickness of "
             "three particles or a higher sound_speed may help",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
-            p->x[first], p->y[first], hypot(p->vx[first], p->vy[first]));
+            p->x[first], p->y[first], elementary_hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;
     s->guard.warned_crossing = true;
     diag_warn(d,
