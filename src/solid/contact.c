@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "base/elementary.h"
 #include "solid/contact_law.h"
 
 #include <math.h>
@@ -72,14 +73,14 @@ static double place_energy(const struct contact *c, const struct pair *q, int32_
 {
     const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
                               c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
-    const double r = hypot(offset[0], offset[1]);
+    const double r = elementary_hypot(offset[0], offset[1]);
     if (!(r < q->reach)) return 0;
     const double sum = touch_energy(q, r);
     if (!(q->friction > 0) || r == 0) return sum;
     const double n[2] = {offset[0] / r, offset[1] / r};
     double d[2];
     contact_stick(c, point, a, b, s, d);
-    const double pull = q->stiffness * hypot(across(n, d, 0), across(n, d, 1));
+    const double pull = q->stiffness * elementary_hypot(across(n, d, 0), across(n, d, 1));
     return sum + 0.5 * square(min2(pull, q->friction * elastic_force(q, r))) / q->stiffness;
 }
 

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
+
 enum err contact_stick_create(struct contact *c, struct arena *a, struct diag *d)
 {
     const size_t n = (size_t)c->n_solid_points;
@@ -64,7 +66,7 @@ static void slide(const struct contact *c, struct particles *p, int32_t point, i
     relative_velocity(c, point, edge, foot.at, v);
     contact_stick(c, point, a, b, foot.at, d);
     const double push = max2(0, elastic_force(&q, r) - q.damping * (v[0] * n[0] + v[1] * n[1]));
-    const double pull = q.stiffness * hypot(across(n, d, 0), across(n, d, 1));
+    const double pull = q.stiffness * elementary_hypot(across(n, d, 0), across(n, d, 1));
     const bool slides = pull > q.friction * push;
     if (!slides && p->stick_edge[i] == edge + 1) return;
     const double less = slides ? q.friction * push / pull : 1;

@@ -52,7 +52,7 @@ SPHFSI_INLINE double touch_energy(const struct pair *q, double r)
 {
     if (!(r < q->reach)) return 0;
     const double s = r / q->reach;
-    return q->stiffness * square(q->reach) * (s - 1 - log(s));
+    return q->stiffness * square(q->reach) * (s - 1 - elementary_log(s));
 }
 
 /* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
