@@ -349,7 +349,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
-    const unsigned unfelt = kind == KIND_SOLID ? 0 : FX_IMPEDANCE;
+    const effect_set unfelt = kind == KIND_SOLID ? 0 : FX_IMPEDANCE;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         const int32_t cell = f->near_fluid[kind][k];

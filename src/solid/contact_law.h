@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+#include "base/elementary.h"
 #include "solid/contact.h"
 
 /* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
