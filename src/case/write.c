@@ -27,7 +27,7 @@ static void write_number(FILE *out, double value, const char *unit)
 {
     const bool bare = !unit || strcmp(unit, "1") == 0 || strcmp(unit, "SI") == 0;
     write_real(out, value);
-    if (!bare) fprintf(out, " %s", unit);
+    if (!bare) fprintf(out, " %s", strncmp(unit, "1/", 2) == 0 ? unit + 1 : unit);
 }
 
 static void write_reals(FILE *out, int n, const double *value)

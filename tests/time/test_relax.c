@@ -144,7 +144,7 @@ static void test_no_rest_is_said(void)
                 "no motion may begin before t = 0");
     rig_refuses(HEAD "[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY "[relax]\ntolerance = 0\n"
                      "limit = 3\n",
-                "does nothing without RELAX");
+                "has no effect without RELAX");
 }
 
 int main(void)
