@@ -30,7 +30,8 @@ static const struct {
      "bad.cfg:1: `2dp` is not a valid key: a key has up to 63 letters, digits and _"},
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
-     "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, fluid, "
+     "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
+     "fluid, "
      "wall, solid, contact, load, motion, inflow, outflow, probe, reference"},
     {TOP "[fluid w]\nviscosity = 1\n", NULL,
      "bad.cfg:4: unknown key `viscosity` in [fluid]; did you mean `artificial_viscosity` or "
