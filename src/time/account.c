@@ -139,6 +139,7 @@ static void join_at_once(struct simulation *s, double contact)
 struct energies {
     double kinetic, potential, internal, elastic, hourglass, contact;
     double dummies; /* compression energy of dummies by their pressure */
+    double damper;  /* that the acoustic damper holds and has yet to dissipate (T-9a) */
 };
 
 static double in_play(const struct energies *e)
@@ -155,6 +156,7 @@ static void add_energies(struct energies *sum, const struct energies *e)
     sum->hourglass += e->hourglass;
     sum->contact += e->contact;
     sum->dummies += e->dummies;
+    sum->damper += e->damper;
 }
 
 static void add_fluid(const struct simulation *s, struct energies *of)
@@ -168,6 +170,7 @@ static void add_fluid(const struct simulation *s, struct energies *of)
         e->kinetic += 0.5 * m * (square(p->vx[i]) + square(p->vy[i]));
         e->potential -= m * (g[0] * p->x[i] + g[1] * p->y[i]);
         e->internal += m * eos_energy(p->dens[i], k->c0);
+        if (p->dens_slow) e->damper += 0.5 * m * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
     }
 }
 
@@ -242,11 +245,11 @@ static void find_terms(const struct simulation *s, const struct energies of[ACCO
         const double more = in_play(&of[k]) + of[k].potential - a->put[k];
         terms[TERM_FLUID][k] = solid ? 0 : more;
         terms[TERM_SOLID][k] = solid ? more : 0;
-        terms[TERM_DISSIPATION][k] = a->spent[k];
+        terms[TERM_DISSIPATION][k] = a->spent[k] + of[k].damper;
         terms[TERM_INTERFACE][k] =
             solid ? a->exchange[k] - owed[k - account_entry(KIND_SOLID, 0)] : 0;
-        terms[TERM_ALL][k] = terms[TERM_FLUID][k] + terms[TERM_SOLID][k] + a->spent[k] +
-                             terms[TERM_INTERFACE][k] + a->dummies[k];
+        terms[TERM_ALL][k] = terms[TERM_FLUID][k] + terms[TERM_SOLID][k] +
+                             terms[TERM_DISSIPATION][k] + terms[TERM_INTERFACE][k] + a->dummies[k];
     }
 }
 
@@ -265,7 +268,8 @@ void account_begin(struct simulation *s)
         a->put[k] = play + of[k].potential;
         a->lowest[k] = of[k].potential;
         for (int t = 0; t < ACCOUNT_TERMS; t++) a->play[t][k] = play;
-        a->low[TERM_ALL][k] = of[k].dummies;
+        a->low[TERM_ALL][k] = of[k].dummies + of[k].damper;
+        a->low[TERM_DISSIPATION][k] = of[k].damper;
         a->region[k] = k;
         contact += of[k].contact;
     }
