@@ -100,7 +100,7 @@ def water(file, step):
 
 @whole_run([""], "play", "lost", "gain", "momentum_x", "momentum_y", "mass", "density")
 def balance(run):
-    """From the ledger: the energy in play, the dissipated energy, the largest spurious gain; momentum
+    """From the ledger: the available energy, the dissipated energy, the largest spurious gain; momentum
     and relative change of the mass at the end; the largest relative deviation of the density."""
     ledger = read_ledger(run)
     lost, mass = ledger["dissipated"], ledger["mass"]

@@ -214,7 +214,7 @@ def starting(prefix):
 
 def ledgers(report, prefixes):
     """Energy and momentum of all finished runs whose names begin with one of the prefixes."""
-    lines = ["| run | energy in play (J/m) | dissipated | largest spurious gain | momentum x, "
+    lines = ["| run | available energy (J/m) | dissipated | largest spurious gain | momentum x, "
              "y at the end (N s/m) | mass | density |", "|---" * 7 + "|"]
     for name in report.has(*(spec.name for prefix in prefixes for spec in starting(prefix))):
         try:

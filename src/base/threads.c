@@ -68,15 +68,15 @@ int thread_idle_of(int cores, int online, int running)
 
 int thread_idle_cores(void)
 {
-    enum { LOOKS = 7 }; /* their median: many threads run for a moment only */
-    int seen[LOOKS];
+    enum { SAMPLES = 7 }; /* their median: many threads run for a moment only */
+    int seen[SAMPLES];
     const struct timespec pause = {.tv_nsec = 2000000};
-    for (int k = 0; k < LOOKS; k++) {
+    for (int k = 0; k < SAMPLES; k++) {
         if (k) nanosleep(&pause, NULL);
         seen[k] = running_threads();
     }
-    qsort(seen, LOOKS, sizeof *seen, compare_counts);
-    return thread_idle_of(thread_cores(), (int)sysconf(_SC_NPROCESSORS_ONLN), seen[LOOKS / 2]);
+    qsort(seen, SAMPLES, sizeof *seen, compare_counts);
+    return thread_idle_of(thread_cores(), (int)sysconf(_SC_NPROCESSORS_ONLN), seen[SAMPLES / 2]);
 }
 
 /* Two threads were 1.25 times as fast as one where each had 400 particles, 1.6 times with 1300, 1.8 times

@@ -87,8 +87,8 @@ SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
 
 /* The fluid within reach of a point, without the buffers. Particles may have moved out of their
  * cells. */
-static struct across look_across(const struct fluid_constants *k, const struct particles *p,
-                                 const struct cells *c, const double at[2])
+static struct across state_across(const struct fluid_constants *k, const struct particles *p,
+                                  const struct cells *c, const double at[2])
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const double reach = KERNEL_REACH * k->h + c->skin;
@@ -153,7 +153,7 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
         foot[axis] = x[axis] - in * b->inward[axis];
         mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
     }
-    const struct across s = look_across(k, p, c, mirror);
+    const struct across s = state_across(k, p, c, mirror);
     o->seen_p[m] =
         b->kind == OPEN_PRESSURE ? (double)NAN : eos_pressure(p->dens[i], k->rho0, k->c0);
     o->seen_u[m] = p->vx[i];
@@ -199,7 +199,7 @@ static double flow_at(const struct scene_open *b, const struct fluid_constants *
     double x[2];
     for (int axis = 0; axis < 2; axis++)
         x[axis] = b->from[axis] + along * b->along[axis] + k->dp * b->inward[axis];
-    const struct across s = look_across(k, p, c, x);
+    const struct across s = state_across(k, p, c, x);
     if (!(s.w > 0)) return 0;
     return -linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] -
            linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];

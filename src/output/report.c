@@ -172,7 +172,7 @@ static void write_gains(struct json *j, const struct account *a)
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
         json_open(j, names[t], '{');
         json_number(j, "gain", a->most[t]);
-        number_if(j, a->top > 0, "gain_over_energy_in_play", a->most[t] / a->top);
+        number_if(j, a->top > 0, "gain_over_available_energy", a->most[t] / a->top);
         json_close(j, '}');
     }
     json_close(j, '}');
@@ -192,7 +192,7 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_number(j, "energy_lost_with_particles", s->state.lost_energy);
     json_number(j, "dissipated", b->dissipated);
     json_number(j, "gain", s->state.gain);
-    json_number(j, "gain_over_energy_in_play", s->state.gain_share);
+    json_number(j, "gain_over_available_energy", s->state.gain_share);
     write_gains(j, &s->state.account);
     number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
     json_number(j, "momentum_x", b->momentum_x - a->momentum_x);

@@ -39,7 +39,7 @@ static void unite(struct account *a, int one, int other)
     if (first == second) return;
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
         a->low[t][first] += a->low[t][second];
-        a->play[t][first] += a->play[t][second];
+        a->available[t][first] += a->available[t][second];
     }
     a->lowest[first] += a->lowest[second];
     for (int k = 0; k < ACCOUNT_ENTRIES; k++)
@@ -142,7 +142,7 @@ struct energies {
     double damper;  /* that the acoustic damper holds and has yet to dissipate (T-9a) */
 };
 
-static double in_play(const struct energies *e)
+static double energy_without_potential(const struct energies *e)
 {
     return e->kinetic + e->internal + e->elastic + e->hourglass + e->contact;
 }
@@ -224,7 +224,7 @@ static void find_energies(struct simulation *s, struct energies of[ACCOUNT_ENTRI
 
 /* Work that T-35b has still to take back from a body: the impulse at the velocity that the fluid
  * uses. */
-static void find_owed(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
+static void find_interface_work(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
 {
     const struct particles *const p = &s->kind[KIND_SOLID];
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
@@ -238,16 +238,16 @@ static void find_terms(const struct simulation *s, const struct energies of[ACCO
                        double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES])
 {
     const struct account *const a = &s->state.account;
-    double owed[SCENE_MAX_SECTIONS];
-    find_owed(s, owed);
+    double to_return[SCENE_MAX_SECTIONS];
+    find_interface_work(s, to_return);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         const bool solid = k >= account_entry(KIND_SOLID, 0);
-        const double more = in_play(&of[k]) + of[k].potential - a->put[k];
+        const double more = energy_without_potential(&of[k]) + of[k].potential - a->put[k];
         terms[TERM_FLUID][k] = solid ? 0 : more;
         terms[TERM_SOLID][k] = solid ? more : 0;
         terms[TERM_DISSIPATION][k] = a->spent[k] + of[k].damper;
         terms[TERM_INTERFACE][k] =
-            solid ? a->exchange[k] - owed[k - account_entry(KIND_SOLID, 0)] : 0;
+            solid ? a->exchange[k] - to_return[k - account_entry(KIND_SOLID, 0)] : 0;
         terms[TERM_ALL][k] = terms[TERM_FLUID][k] + terms[TERM_SOLID][k] +
                              terms[TERM_DISSIPATION][k] + terms[TERM_INTERFACE][k] + a->dummies[k];
     }
@@ -260,14 +260,14 @@ void account_begin(struct simulation *s)
     memset(a, 0, sizeof *a);
     find_energies(s, of);
     a->open = s->effects & FX_OPEN ? open_energy(&s->open) : 0;
-    a->looked = s->state.time;
+    a->checked_at = s->state.time;
     double contact = 0;
-    find_owed(s, &a->exchange[account_entry(KIND_SOLID, 0)]);
+    find_interface_work(s, &a->exchange[account_entry(KIND_SOLID, 0)]);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
-        const double play = in_play(&of[k]);
-        a->put[k] = play + of[k].potential;
+        const double available = energy_without_potential(&of[k]);
+        a->put[k] = available + of[k].potential;
         a->lowest[k] = of[k].potential;
-        for (int t = 0; t < ACCOUNT_TERMS; t++) a->play[t][k] = play;
+        for (int t = 0; t < ACCOUNT_TERMS; t++) a->available[t][k] = available;
         a->low[TERM_ALL][k] = of[k].dummies + of[k].damper;
         a->low[TERM_DISSIPATION][k] = of[k].damper;
         a->region[k] = k;
@@ -352,13 +352,13 @@ static struct gain gain_of(struct account *a, int region, const struct region_su
 {
     const struct energies *const e = &sum->energies;
     struct gain worst = {.entry = -1,
-                         .play = 1,
+                         .available = 1,
                          .kinetic = e->kinetic,
                          .internal = e->internal,
                          .elastic = e->elastic,
                          .hourglass = e->hourglass};
     a->lowest[region] = min2(a->lowest[region], e->potential);
-    const double active = driven + in_play(e) + e->potential - a->lowest[region];
+    const double active = driven + energy_without_potential(e) + e->potential - a->lowest[region];
     double gained[ACCOUNT_TERMS];
     a->top = max2(a->top, active);
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
@@ -366,30 +366,31 @@ static struct gain gain_of(struct account *a, int region, const struct region_su
         const double now = sum->term[t], base = now + (t == TERM_ALL ? e->dummies : 0);
         if (base <= a->low[t][region]) {
             a->low[t][region] = base;
-            a->play[t][region] = active;
+            a->available[t][region] = active;
         }
-        a->play[t][region] = max2(a->play[t][region], active);
-        const double play = a->play[t][region];
+        a->available[t][region] = max2(a->available[t][region], active);
+        const double available = a->available[t][region];
         const double more = gained[t] = now - a->low[t][region] - sum->off;
         a->most[t] = max2(a->most[t], more + sum->off);
-        if (!(more > 0) || (worst.entry >= 0 && more * worst.play <= worst.energy * play)) continue;
+        if (!(more > 0) || (worst.entry >= 0 && more * worst.available <= worst.energy * available))
+            continue;
         worst.entry = region;
         worst.term = (enum account_term)t;
         worst.energy = more;
-        worst.play = play;
+        worst.available = available;
     }
-    const double all = gained[TERM_ALL] / a->play[TERM_ALL][region];
+    const double all = gained[TERM_ALL] / a->available[TERM_ALL][region];
     worst.all = gained[TERM_ALL] > 0 ? all : 0;
     name_cause(&worst, gained);
     return worst;
 }
 
-struct gain account_look(struct simulation *s)
+struct gain account_gain(struct simulation *s)
 {
     struct account *const a = &s->state.account;
     struct energies of[ACCOUNT_ENTRIES];
     double terms[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
-    struct gain worst = {.entry = -1, .play = 1};
+    struct gain worst = {.entry = -1, .available = 1};
     const double driven = driven_energy(s);
     find_energies(s, of);
     join_at_once(s, of[account_entry(KIND_SOLID, 0)].contact);
@@ -403,7 +404,8 @@ struct gain account_look(struct simulation *s)
         if (region_of(a, k) != k) continue;
         const struct region_sums sum = sum_region(a, k, of, terms);
         const struct gain g = gain_of(a, k, &sum, in_region(a, KIND_FLUID, 0, k) ? driven : 0);
-        if (g.entry >= 0 && (worst.entry < 0 || g.energy * worst.play > worst.energy * g.play))
+        if (g.entry >= 0 &&
+            (worst.entry < 0 || g.energy * worst.available > worst.energy * g.available))
             worst = g;
     }
     return worst;

@@ -24,9 +24,9 @@ void account_work(struct account *a, enum account_source source, enum kind kind,
 void account_step(struct account *a, enum account_source source, int entry, double work);
 
 /* Checks the regions. Gradients and the pressure of dummies must be up to date. Returns the gain
- * that is the largest fraction of the energy in play. One within the error of the sums counts as
+ * that is the largest fraction of the available energy. One within the error of the sums counts as
  * none. */
-struct gain account_look(struct simulation *s);
+struct gain account_gain(struct simulation *s);
 
 /* Writes the names of a region's sections, "[solid plate], [fluid left]". */
 enum { ACCOUNT_TEXT = 160 };

@@ -153,31 +153,33 @@ static void take_open(struct simulation *s)
 void book_open(struct simulation *s) { s->state.account.open = open_energy(&s->open); }
 
 /* Steps and time between two checks. A check costs about two steps of a solid. */
-enum { LOOK_STEPS = 32, LONE_LOOK_STEPS = 256 };
-#define LOOK_TIME 2.5e-3
+enum { CHECK_STEPS = 32, SOLID_ONLY_CHECK_STEPS = 256 };
+#define CHECK_TIME 2.5e-3
 
-static void look(struct simulation *s)
+static void check_account(struct simulation *s)
 {
     if (s->effects & FX_SOLID) solid_stress(&s->solid, &s->kind[KIND_SOLID]);
-    s->gain = account_look(s);
+    s->gain = account_gain(s);
     s->checked = true;
-    s->state.account.looked = s->state.time;
+    s->state.account.checked_at = s->state.time;
 }
 
 static bool overdue(const struct simulation *s)
 {
-    return s->state.time - s->state.account.looked >= LOOK_TIME;
+    return s->state.time - s->state.account.checked_at >= CHECK_TIME;
 }
 
-void book_look(struct simulation *s)
+void book_check(struct simulation *s)
 {
     take_open(s);
-    if (s->state.steps % LOOK_STEPS == 0 || overdue(s)) look(s);
+    if (s->state.steps % CHECK_STEPS == 0 || overdue(s)) check_account(s);
 }
 
-void book_look_lone(struct simulation *s, int64_t steps_before)
+void book_check_solid_only(struct simulation *s, int64_t steps_before)
 {
-    if (s->state.steps / LONE_LOOK_STEPS > steps_before / LONE_LOOK_STEPS || overdue(s)) look(s);
+    if (s->state.steps / SOLID_ONLY_CHECK_STEPS > steps_before / SOLID_ONLY_CHECK_STEPS ||
+        overdue(s))
+        check_account(s);
 }
 
 void book_step(struct simulation *s, double dt)
@@ -189,7 +191,7 @@ void book_step(struct simulation *s, double dt)
     find_delivered(s, delivered);
     integrate(a, s, power, delivered, a->pending);
     note_step(a, s, power, dt);
-    book_look(s);
+    book_check(s);
     a->pending = 0.5 * dt;
     integrate(a, s, power, delivered, a->pending);
 }

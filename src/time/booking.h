@@ -11,10 +11,10 @@
 void book_step(struct simulation *s, double dt);
 
 /* Checks the account at the present state if that is due. */
-void book_look(struct simulation *s);
+void book_check(struct simulation *s);
 
 /* The same after so many steps of a solid without fluid. */
-void book_look_lone(struct simulation *s, int64_t steps_before);
+void book_check_solid_only(struct simulation *s, int64_t steps_before);
 
 /* After an evaluation in the middle of a step of dt: counts its rates over the step. */
 void book_midpoint(struct simulation *s, double dt);

@@ -98,7 +98,7 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
 
 bool guards_strain_due(const struct simulation *s)
 {
-    const bool now = !(s->effects & FX_FLUID) || s->state.steps % LOOK_INTERVAL == 0;
+    const bool now = !(s->effects & FX_FLUID) || s->state.steps % CHECK_INTERVAL == 0;
     return s->effects & FX_SOLID && now;
 }
 
@@ -262,8 +262,8 @@ enum err guards_check(struct simulation *s, struct diag *d)
     return check_step(s, d);
 }
 
-/* Fraction of its energy in play that a region may gain without a word (T-46); the time for which a
- * gain below a tenth lasts before it counts, s: while a run starts, little energy is in play. */
+/* Fraction of its available energy that a region may gain without a warning (T-46); the time for which a
+ * gain below a tenth lasts before it counts, s: while a run starts, little energy is available. */
 #define GAIN_WARNING 0.01
 #define GAIN_AT_ONCE 0.1
 #define GAIN_LASTS 2.5e-3
@@ -285,7 +285,7 @@ static const char *step_remedy(const struct simulation *s)
     return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
 }
 
-/* Where most of a region's energy in play is now. */
+/* Where most of a region's available energy is now. */
 static const char *most_of(const struct gain *g)
 {
     const double most = max2(max2(g->kinetic, g->internal), max2(g->elastic, g->hourglass));
@@ -314,9 +314,9 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
     account_name(s, g->entry, name);
     const int used = snprintf(
         text, 400,
-        "t = %.6g s: %s has gained %.3g J/m of spurious energy by %s and had at most %.3g J/m "
-        "without potential energy; most of its energy is in %s",
-        s->state.time, name, g->energy, source_of(g), g->play, most_of(g));
+        "t = %.6g s: %s has gained %.3g J/m of spurious energy by %s; its available energy "
+        "was at most %.3g J/m; most of its energy is in %s",
+        s->state.time, name, g->energy, source_of(g), g->available, most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
@@ -329,7 +329,7 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     s->checked = false;
     if (g.entry < 0) s->state.gain_since = s->state.time;
     if (g.entry < 0) return ERR_OK;
-    const double share = g.play > 0 ? g.energy / g.play : (double)INFINITY;
+    const double share = g.available > 0 ? g.energy / g.available : (double)INFINITY;
     if (share <= GAIN_WARNING) s->state.gain_since = s->state.time;
     const bool lasts = s->state.time - s->state.gain_since >= GAIN_LASTS;
     if (share > GAIN_WARNING && share < GAIN_AT_ONCE && !lasts) return ERR_OK;
@@ -351,7 +351,7 @@ enum err guards_energy(struct simulation *s, struct diag *d)
 
 /* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
 #define CROSSING_SHARE 0.01
-enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * LOOK_INTERVAL };
+enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * CHECK_INTERVAL };
 
 enum err guards_penetration(struct simulation *s, struct diag *d)
 {

@@ -8,10 +8,10 @@
 /* Steps of the fluid between two checks of the solid's deformation, which need a pass of their
  * own. At a tenth of the speed of sound, neighbours approach by a third of their distance in
  * that time. */
-enum { LOOK_INTERVAL = 16 };
+enum { CHECK_INTERVAL = 16 };
 
 /* Reads the gain of the last check of the account: warns once if a region has gained energy, and
- * fails if the gain is nine tenths of its energy in play. */
+ * fails if the gain is nine tenths of its available energy. */
 enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
 /* Checks from time to time for fluid that has entered a wall or a solid. Warns once, and fails if

@@ -436,7 +436,7 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         show_strain(s);
         TRY(guards_check(s, d));
         timestep_recheck_solid(s);
-        book_look_lone(s, steps);
+        book_check_solid_only(s, steps);
         return ERR_OK;
     }
     const double speed2_before = s->extremes.speed2;

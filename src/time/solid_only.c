@@ -8,7 +8,7 @@
 #include "time/timestep.h"
 
 /* Steps of a solid without fluid between two checks of its state. */
-enum { SOLID_BATCH = LOOK_INTERVAL };
+enum { SOLID_BATCH = CHECK_INTERVAL };
 
 /* Bounds of a solid without fluid; returns the smallest. */
 static enum bound lone_bounds(struct simulation *s)

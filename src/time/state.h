@@ -34,26 +34,27 @@ struct account {
     double dummies[ACCOUNT_ENTRIES]; /* work of dummies on the fluid beyond that on the structure */
     double exchange[ACCOUNT_ENTRIES]; /* TERM_INTERFACE of solids, with the work still to return */
     /* Of regions, at their first section: the lowest value of each term, the energy that dummies
-     * could return then, and the largest energy in play since then; the lowest potential energy. */
-    double low[ACCOUNT_TERMS][ACCOUNT_ENTRIES], play[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
+     * could return then, and the largest available energy since then; the lowest potential energy. */
+    double low[ACCOUNT_TERMS][ACCOUNT_ENTRIES], available[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
     double lowest[ACCOUNT_ENTRIES];
     double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
     /* The most that any region has gained by each term, the error of the sums included, and the
-     * largest energy in play of any, J/m. */
+     * largest available energy of any, J/m. */
     double most[ACCOUNT_TERMS], top;
     double now[ACCOUNT_TERMS]; /* sums over all sections at the last check */
     double pending;            /* s, from the last evaluation counted to the present state */
-    double open;   /* energy that open boundaries have brought in as far as it is counted */
-    double looked; /* time of the last check, s */
+    double open;       /* energy that open boundaries have brought in as far as it is counted */
+    double checked_at; /* time of the last check, s */
 };
 
 /* What a region has gained, J/m. */
 struct gain {
     int entry; /* first section of the region; -1: no region has gained energy */
     enum account_term term;
-    double all;          /* gain of all terms together over the energy in play */
-    double energy, play; /* beyond the term's lowest value, and the largest in play since then */
-    double kinetic, internal, elastic, hourglass; /* in play in the region now */
+    double all;       /* gain of all terms together over the available energy */
+    double energy;    /* beyond the lowest value of the term */
+    double available; /* largest available energy since then */
+    double kinetic, internal, elastic, hourglass; /* of the region now */
 };
 enum { ACCOUNT_NUMBERS = sizeof(struct account) / sizeof(double) };
 

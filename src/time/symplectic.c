@@ -116,7 +116,7 @@ void symplectic_step(struct simulation *s, double t_limit)
 
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
-    book_look(s);
+    book_check(s);
     predict_fluid(fluid, 0.5 * dt);
     if (coupled && multirate) carry_solid(s, 0.5 * dt);
     if (coupled && !multirate) {

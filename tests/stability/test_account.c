@@ -99,7 +99,7 @@ static void test_regions_that_meet(void)
     TEST_ASSERT_EQUAL_INT(ERR_OK, go_on(0.1));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
     TEST_ASSERT_EQUAL_INT(0, warnings);
-    account_look(&rig.sim);
+    account_gain(&rig.sim);
     assert_at_most(lost - 1, a->low[TERM_ALL][0], "lowest of both");
     assert_near(1e-12, a->spent[0] + a->spent[other], a->low[TERM_DISSIPATION][0],
                 "lowest dissipation");

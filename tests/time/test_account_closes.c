@@ -60,7 +60,7 @@ static void go_on(double end)
                                       rig.diag.text);
 }
 
-/* The largest size of a term at the checks of a run, over the energy in play, with a step that is a
+/* The largest size of a term at the checks of a run, over the available energy, with a step that is a
  * fraction of the stable one. */
 static double remainder_of(const char *text, const char *integrator, enum account_term term,
                            const char *key, double fraction, double end)
@@ -69,15 +69,15 @@ static double remainder_of(const char *text, const char *integrator, enum accoun
     snprintf(step, sizeof step, "%s=%g", key, fraction);
     begin(text, integrator, step, NULL);
     const struct account *const a = &rig.sim.state.account;
-    double play = 0, most = 0;
+    double available = 0, most = 0;
     while (rig.sim.state.time < end) {
         go_on(fmin(end, rig.sim.state.time + 1e-3));
         most = fmax(most, fabs(a->now[term]));
     }
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++) play = fmax(play, a->play[term][k]);
-    TEST_ASSERT_TRUE(play > 1e-3);
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++) available = fmax(available, a->available[term][k]);
+    TEST_ASSERT_TRUE(available > 1e-3);
     TEST_ASSERT_TRUE_MESSAGE(named == 0, warning);
-    return most / play;
+    return most / available;
 }
 
 static void falls(const char *text, enum account_term term, const char *key, double coarse,
@@ -88,7 +88,7 @@ static void falls(const char *text, enum account_term term, const char *key, dou
         rig_close(&rig);
         const double narrow = remainder_of(text, integrators[k], term, key, 0.25 * coarse, end);
         rig_close(&rig);
-        printf("%s: %.2e of the energy in play, %.2e at a quarter of the step\n", integrators[k],
+        printf("%s: %.2e of the available energy, %.2e at a quarter of the step\n", integrators[k],
                wide, narrow);
         assert_at_most(most, wide, integrators[k]);
         assert_at_most(0.3 * wide, narrow, integrators[k]);
@@ -114,17 +114,17 @@ static void test_the_terms_add_up(void)
         const struct ledger first = simulation_ledger(&rig.sim);
         go_on(0.02);
         const struct ledger last = simulation_ledger(&rig.sim);
-        account_look(&rig.sim);
+        account_gain(&rig.sim);
         const struct account *const a = &rig.sim.state.account;
         double lost = 0;
         for (int e = 0; e < ACCOUNT_ENTRIES; e++) lost += a->spent[e] + a->dummies[e];
-        const double play = first.internal + last.kinetic + last.elastic;
-        assert_near(0.01 * play, last.dissipated - first.dissipated, -lost, integrators[k]);
+        const double available = first.internal + last.kinetic + last.elastic;
+        assert_near(0.01 * available, last.dissipated - first.dissipated, -lost, integrators[k]);
         rig_close(&rig);
     }
 }
 
-/* A solid whose bound is forgotten: named within 5 ms and before a tenth of the energy in play is
+/* A solid whose bound is forgotten: named within 5 ms and before a tenth of the available energy is
  * gained, or stopped. */
 static void test_an_unstable_solid_is_named(void)
 {
@@ -158,9 +158,10 @@ static void test_a_gain_at_the_interface_is_named(void)
     TEST_ASSERT_TRUE(named == 0);
     struct account *const a = &rig.sim.state.account;
     const double start = rig.sim.state.time;
-    double play = 0;
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++) play = fmax(play, a->play[TERM_INTERFACE][k]);
-    a->exchange[account_entry(KIND_SOLID, 0)] += 0.02 * play;
+    double available = 0;
+    for (int k = 0; k < ACCOUNT_ENTRIES; k++)
+        available = fmax(available, a->available[TERM_INTERFACE][k]);
+    a->exchange[account_entry(KIND_SOLID, 0)] += 0.02 * available;
     go_on(start + 6e-3);
     TEST_ASSERT_TRUE(named > 0);
     assert_at_most(5e-3, named - start, "time until it is named");

@@ -122,7 +122,7 @@ static void test_velocity_of_the_solid(void)
 }
 
 /* A particle pushed through its neighbours turns the material inside out; found within 64 steps, where
- * the gradient is looked at, and in a lone solid after every batch. */
+ * the gradient is checked_at at, and in a lone solid after every batch. */
 static void test_inverted_solid(void)
 {
     struct particles *const p = &rig.sim.kind[KIND_SOLID];
@@ -207,39 +207,39 @@ static int only_region(void)
 }
 
 /* Checks the account after lowering what a term of the only region has been at least by a share of
- * its energy in play; without what dummies could return. */
-static enum err look_with_gain(enum account_term term, double share)
+ * its available energy; without what dummies could return. */
+static enum err check_with_gain(enum account_term term, double share)
 {
     struct account *const a = &rig.sim.state.account;
     simulation_refresh(&rig.sim);
-    account_look(&rig.sim);
+    account_gain(&rig.sim);
     if (term == TERM_ALL) a->low[term][only_region()] = a->spent[0];
-    a->low[term][only_region()] -= share * a->play[term][only_region()];
-    rig.sim.gain = account_look(&rig.sim);
+    a->low[term][only_region()] -= share * a->available[term][only_region()];
+    rig.sim.gain = account_gain(&rig.sim);
     rig.sim.checked = true;
     rig.sim.state.gain_since = rig.sim.state.time - 3e-3;
     return guards_energy(&rig.sim, &rig.diag);
 }
 
-/* A hundredth of what is in play is a warning, once; nine tenths are the end, but not at the
+/* A gain of a hundredth is a warning, once; nine tenths are the end, but not at the
  * interface as long as all terms together lose energy. */
 static void test_energy_that_is_gained(void)
 {
     simulation_refresh(&rig.sim);
     account_begin(&rig.sim);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, look_with_gain(TERM_INTERFACE, 0.009));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.009));
     TEST_ASSERT_EQUAL_INT(0, warnings);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, look_with_gain(TERM_INTERFACE, 0.002));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.002));
     TEST_ASSERT_EQUAL_INT(1, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "[solid gate], [fluid water] has gained"),
                                  warning);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "by the exchange between fluid and structure"),
                                  warning);
     assert_near(1e-4, 0.011, rig.sim.state.gain_share, "largest share");
-    TEST_ASSERT_EQUAL_INT(ERR_OK, look_with_gain(TERM_INTERFACE, 0.5));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.5));
     TEST_ASSERT_EQUAL_INT(1, warnings);
-    TEST_ASSERT_EQUAL_INT(ERR_OK, look_with_gain(TERM_INTERFACE, 0.4));
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, look_with_gain(TERM_FLUID, 0.95));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.4));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, check_with_gain(TERM_FLUID, 0.95));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "compression of the fluid"), rig.diag.text);
 }
 
@@ -253,7 +253,7 @@ static void test_a_gain_that_lasts(void)
     for (size_t k = 0; k < COUNT_OF(seen); k++) {
         warnings = 0;
         rig.sim.guard.warned_energy = false;
-        rig.sim.gain = (struct gain){.entry = 0, .energy = seen[k].share, .play = 1};
+        rig.sim.gain = (struct gain){.entry = 0, .energy = seen[k].share, .available = 1};
         rig.sim.checked = true;
         rig.sim.state.gain_since = rig.sim.state.time - seen[k].since;
         TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
@@ -279,7 +279,7 @@ static void test_terms_apart(void)
         account_begin(&rig.sim);
         rig.sim.guard.warned_energy = false;
         rig.sim.state.account.spent[0] -= 3;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, look_with_gain((enum account_term)t, 0.02));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain((enum account_term)t, 0.02));
         TEST_ASSERT_EQUAL_INT(t + 1, warnings);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, names[t]), warning);
     }
@@ -294,7 +294,7 @@ static void advises(const char *text, const char *what, const char *set, const c
     rig.sim.kind[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
     rig.diag = (struct diag){.warn = note};
     simulation_refresh(&rig.sim);
-    rig.sim.gain = account_look(&rig.sim);
+    rig.sim.gain = account_gain(&rig.sim);
     rig.sim.checked = true;
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_energy(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
