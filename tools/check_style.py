@@ -75,6 +75,12 @@ REPORTS = ["accuracy.md", "energy_account.md", "fluid_verification.md", "manufac
            "performance.md", "reliability.md", "stability.md", "turek_hron.md", "validation.md"]
 
 
+def documents():
+    """Those of the project: not those of packages in .venv, build/ or runs/."""
+    return [p for p in ROOT.rglob("*.md")
+            if not any(part[0] == "." or part in ("build", "runs") for part in p.relative_to(ROOT).parts)]
+
+
 def check_sentences(path):
     """Reports that a tool writes and dated notes are left out."""
     if path.name in REPORTS or "notes" in path.parts:
@@ -184,7 +190,7 @@ def main():
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
     build = args.library[0].resolve().parent if args.library else None
-    for path in sorted([p for p in ROOT.rglob("*.md") if "build" not in p.parts] + code):
+    for path in sorted(documents() + code):
         if path.suffix == ".md" or path.parts[len(ROOT.parts)] in ("src", "include", "bench"):
             if path.suffix in prose.READERS:
                 check_sentences(path)
