@@ -64,7 +64,11 @@ enum sphfsi_kind { SPHFSI_FLUID, SPHFSI_WALL, SPHFSI_SOLID };
 enum sphfsi_type { SPHFSI_DOUBLE, SPHFSI_INT64, SPHFSI_INT32 };
 
 /** What a message is. */
-enum sphfsi_message { SPHFSI_NOTE, SPHFSI_WARNING };
+enum sphfsi_message {
+    SPHFSI_NOTE,
+    SPHFSI_WARNING,
+    SPHFSI_RESULT /**< a note to show also where others are left out: a table, how to go on */
+};
 
 /** Progress of a run; valid during the callback. */
 struct sphfsi_progress {
@@ -269,8 +273,9 @@ SPHFSI_API enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options);
 SPHFSI_API const char *sphfsi_template(const char *name);
 SPHFSI_API const char *sphfsi_template_name(int k);
 
-/** Prints the contents of a checkpoint, line by line through the message callback. The other options may be
- * zero. SPHFSI_INPUT: the file is not a sound checkpoint of this format. */
+/** Prints the contents of a checkpoint, a file or the newest valid one in the folder of a run, line by line
+ * through the message callback. The other options may be zero. SPHFSI_INPUT: there is no sound checkpoint of
+ * this format. */
 SPHFSI_API enum sphfsi_status sphfsi_inspect(const char *file,
                                              const struct sphfsi_options *options);
 

@@ -96,7 +96,7 @@ def draw(run, ledger):
 
 def main():
     args = arguments()
-    run = runfiles.Run(args.run)
+    run = runfiles.make_runs([args.run])[-1]
     ledger = read_ledger(run)
     shares, total = energy_shares(ledger)
     print(f"{run.label()}: t = {ledger['time'][-1]:g} s, energy {total:.6g} J/m, at the end: " +

@@ -143,7 +143,7 @@ def make_film(run, every, window):
 
 def main():
     args = arguments()
-    run = runfiles.Run(args.run)
+    run = runfiles.make_runs([args.run])[-1]
     film, data = make_film(run, args.every, args.window)
     title = run.summary.get("title") or run.name
     about = f"{run.name}, sphfsi {run.summary.get('version', '')}" + \

@@ -156,9 +156,22 @@ def make_names_differ(runs):
         run.name = name if names.count(name) == 1 else str(run.folder)
 
 
+def resolutions(folder):
+    """The folders of the runs of --refine, coarsest first; of a run, its own."""
+    sized = []
+    for found in Path(folder).glob("dp-*"):
+        try:
+            sized.append((-float(found.name.removeprefix("dp-")), found))
+        except ValueError:
+            pass
+    if not sized or (Path(folder) / "ledger.csv").exists():
+        return [folder]
+    return [found for _, found in sorted(sized)]
+
+
 def make_runs(folders):
-    """Runs whose names differ."""
-    runs = [Run(folder) for folder in folders]
+    """Runs whose names differ. The folder of --refine stands for those of its resolutions."""
+    runs = [Run(found) for folder in folders for found in resolutions(folder)]
     make_names_differ(runs)
     return runs
 

@@ -80,32 +80,36 @@ enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double se
     return call_end(&c, e);
 }
 
-static enum err explain_work(struct session *x, struct call *c, void *as_data)
+/* As data if there are warnings to put into it. */
+static enum err explain_work(struct session *x, struct call *c, void *heard)
 {
     int threads;
     TRY(forecast_open(x, &c->options, &threads, &c->diag));
-    const enum err e = *(const bool *)as_data ? explain_data(x, threads, &c->options, &c->diag)
-                                              : explain_session(x, threads, &c->options, &c->diag);
+    const enum err e = heard ? explain_data(x, threads, heard, &c->options, &c->diag)
+                             : explain_session(x, threads, &c->options, &c->diag);
     forecast_close(x, threads);
     return e;
 }
 
-static enum sphfsi_status explain(const struct sphfsi_options *options, bool as_data)
+enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
 {
     struct call c;
     enum err e = call_begin(&c, "explain", options);
-    if (!e) e = with_session(&c, "explain", explain_work, &as_data);
+    if (!e) e = with_session(&c, "explain", explain_work, NULL);
     return call_end(&c, e);
-}
-
-enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
-{
-    return explain(options, false);
 }
 
 enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
 {
-    return explain(options, true);
+    struct call c;
+    struct heard h = {0};
+    enum err e = call_begin(&c, "explain", options);
+    if (!e) {
+        heard_begin(&h, &c.options);
+        e = with_session(&c, "explain", explain_work, &h);
+    }
+    free(h.text);
+    return call_end(&c, e);
 }
 
 static enum err effective_work(struct session *x, struct call *c, void *path)

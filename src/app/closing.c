@@ -129,6 +129,6 @@ void closing_command(const struct sphfsi_options *o, const struct simulation *s,
     snprintf(number, sizeof number, "%d", o->threads);
     if (o->threads > 0) add(&w, "--threads", number);
     if (guard || o->out || o->fork) add(&w, "--out", guard ? next : folder);
-    if (w.n < w.size) session_say(o, "to go on: %s", w.text);
+    if (w.n < w.size) session_result(o, "to go on: %s", w.text);
     free(w.text);
 }

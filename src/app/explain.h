@@ -10,8 +10,18 @@
 enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
                          struct diag *d) SPHFSI_CHECKED;
 
-/* The same as one text in JSON. */
-enum err explain_data(struct session *x, int threads, const struct sphfsi_options *o,
-                      struct diag *d) SPHFSI_CHECKED;
+/* Warnings on their way to the caller, kept for explain_data, one a line. */
+struct heard {
+    void (*message)(void *context, enum sphfsi_message kind, const char *text);
+    void *context;
+    char *text;
+    size_t n;
+};
+/* Keeps the warnings of the options from now on. The caller frees `text`. */
+void heard_begin(struct heard *h, struct sphfsi_options *o);
+
+/* The same as one text in JSON, with the warnings that were heard. */
+enum err explain_data(struct session *x, int threads, const struct heard *h,
+                      const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -3,11 +3,46 @@
 #include "app/explain.h"
 
 #include "app/forecast.h"
+#include "app/slow.h"
 #include "output/report.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+
+static void hear(void *context, enum sphfsi_message kind, const char *text)
+{
+    struct heard *const h = context;
+    const size_t length = strlen(text);
+    char *const more = kind == SPHFSI_WARNING ? realloc(h->text, h->n + length + 2) : NULL;
+    if (more) {
+        memcpy(more + h->n, text, length);
+        memcpy(more + h->n + length, "\n", 2);
+        h->text = more;
+        h->n += length + 1;
+    }
+    h->message(h->context, kind, text);
+}
+
+void heard_begin(struct heard *h, struct sphfsi_options *o)
+{
+    *h = (struct heard){.message = o->message, .context = o->context};
+    if (!o->message) return;
+    o->message = hear;
+    o->context = h;
+}
+
+static void write_warnings(struct json *j, const struct heard *h)
+{
+    char text[sizeof((struct diag *)0)->text];
+    json_open(j, "warnings", '[');
+    for (const char *at = h->text; at && *at; at += strcspn(at, "\n") + 1) {
+        snprintf(text, sizeof text, "%.*s", (int)strcspn(at, "\n"), at);
+        json_text(j, NULL, text);
+    }
+    json_close(j, ']');
+}
 
 static void write_scene(struct json *j, const struct session *x)
 {
@@ -68,7 +103,8 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_close(j, '}');
 }
 
-static enum err write_all(FILE *file, struct session *x, int threads, struct diag *d)
+static enum err write_all(FILE *file, struct session *x, int threads, const struct heard *h,
+                          struct diag *d)
 {
     struct json j = {.file = file};
     struct simulation *const s = &x->simulation;
@@ -78,22 +114,24 @@ static enum err write_all(FILE *file, struct session *x, int threads, struct dia
     report_effects(&j, s);
     write_fields(&j, s);
     TRY(forecast_calibrate(&c, s, d));
+    slow_warn(s, d);
     write_bounds(&j, s);
     write_cost(&j, s, &c, threads);
     report_derived(&j, &x->scene);
     report_parameters(&j, &x->scene);
+    write_warnings(&j, h);
     json_close(&j, '}');
     return ERR_OK;
 }
 
-enum err explain_data(struct session *x, int threads, const struct sphfsi_options *o,
-                      struct diag *d)
+enum err explain_data(struct session *x, int threads, const struct heard *h,
+                      const struct sphfsi_options *o, struct diag *d)
 {
     char *text = NULL;
     size_t size;
     FILE *const file = open_memstream(&text, &size);
     if (!file) return diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
-    enum err e = write_all(file, x, threads, d);
+    enum err e = write_all(file, x, threads, h, d);
     if (fclose(file) != 0 && !e) e = diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
     if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
     free(text);

@@ -68,9 +68,10 @@ static void say_case(const char *text, const struct sphfsi_options *o)
 enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
 {
     struct image m = {0};
-    const enum err e = checkpoint_read(&m, path, d);
+    char file[PATH_BYTES];
+    const enum err e = checkpoint_find(&m, path, file, d);
     if (!e) {
-        say_head(path, &m, o);
+        say_head(file, &m, o);
         say_blocks(&m, o);
         say_case(checkpoint_info(&m).case_text, o);
     }

@@ -5,7 +5,8 @@
 
 #include "app/session.h"
 
-/* Prints them line by line, through the message callback. ERR_INPUT: the file is not a sound checkpoint. */
+/* Prints those of a file, or of the newest valid checkpoint in the folder of a run, line by line through the
+ * message callback. ERR_INPUT: there is no valid checkpoint. */
 enum err inspect_file(const char *path, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 

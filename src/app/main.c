@@ -19,7 +19,7 @@ static const char usage[] =
     "  --restart [FILE]  continue from the newest valid checkpoint of the run, or from FILE\n"
     "  --fork FILE       start a new run, with other physics, from the checkpoint (or a run's "
     "newest)\n"
-    "  --quiet           no progress, warnings only\n"
+    "  --quiet           no progress, only warnings, results and how to go on\n"
     "instead of running:\n"
     "  --preview         draw the scene with names, sizes, clamps and probes: preview-<case "
     "name>.svg,\n"
@@ -32,7 +32,7 @@ static const char usage[] =
     "                    and energies converge to, with order and error band; finished runs are\n"
     "                    not repeated\n"
     "                    (--ratio R: of neighbouring resolutions, 2)\n"
-    "  --inspect FILE    say what a checkpoint holds\n"
+    "  --inspect FILE    say what a checkpoint holds, or the newest of a run's folder\n"
     "  --new NAME        print a commented case to start from; without a name, list them\n"
     "  --keys            print all sections and keys of a case file\n"
     "  --version, --help\n"
@@ -128,7 +128,7 @@ static void on_message(void *context, enum sphfsi_message kind, const char *text
     clear_line(c);
     if (kind == SPHFSI_WARNING)
         fprintf(stderr, "warning: %s\n", text);
-    else if (!c->quiet)
+    else if (!c->quiet || kind == SPHFSI_RESULT)
         printf("%s\n", text);
     fflush(stdout);
 }

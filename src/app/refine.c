@@ -39,12 +39,20 @@ static const char *const ledger_units[] = {
 /* Richardson extrapolation; band: grid convergence index with a factor of 1.25 (Roache 1994; Celik et
  * al. 2008), the order taken as 2 at most. Where the values do not converge monotonically, or slower
  * than with order 0.5, three times the largest difference (after Eca and Hoekstra 2014). */
+static struct convergence without_order(const double value[3], const char *why)
+{
+    const double widest =
+        max2(max2(fabs(value[1] - value[0]), fabs(value[2] - value[1])), fabs(value[2] - value[0]));
+    return (struct convergence){.extrapolated = value[0],
+                                .band = 3 * widest,
+                                .order = NAN,
+                                .why = widest > 0 ? why : "no difference"};
+}
+
 struct convergence converge(const double value[3], double ratio)
 {
     const double fine = value[1] - value[0], coarse = value[2] - value[1];
-    const double widest = max2(max2(fabs(fine), fabs(coarse)), fabs(value[2] - value[0]));
-    struct convergence c = {.extrapolated = value[0], .band = 3 * widest, .order = NAN};
-    c.why = widest > 0 ? "not monotone" : "no difference";
+    struct convergence c = without_order(value, "not monotone");
     if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
         c.why = "not finite";
         c.band = NAN;
@@ -59,6 +67,18 @@ struct convergence converge(const double value[3], double ratio)
     c.extrapolated = value[0] - fine / gain;
     c.band = 1.25 * fabs(fine) / gain;
     return c;
+}
+
+bool errors_agree(const double *fine, const double *middle, const double *coarse, int64_t n)
+{
+    double product = 0, first = 0, second = 0;
+    for (int64_t i = 0; i < n; i++) {
+        const double a = middle[i] - fine[i], b = coarse[i] - middle[i];
+        product += a * b;
+        first += a * a;
+        second += b * b;
+    }
+    return product >= 0 && square(product) >= 0.5 * first * second;
 }
 
 /* --- the runs --- */
@@ -194,47 +214,97 @@ static enum err path_of(const struct refinement *x, int k, const char *file, cha
     return path_join(path, folder, file, x->diag);
 }
 
-/* The three measures of each column of a file; the number of columns, the time's not counted. */
+/* What is known of one column of a run. */
+struct column {
+    double measure[MEASURES];
+    double *late; /* its values in the last quarter of the time */
+    int64_t rows; /* of these */
+};
+
+/* The next row: `at` moves to it; false: there is none. */
+static bool next_line(const char **at)
+{
+    const char *const end = strchr(*at, '\n');
+    if (!end || !end[1]) return false;
+    *at = end + 1;
+    return true;
+}
+
+static enum err allocate_late(const char *csv, double from, int columns, struct column *to,
+                              struct arena *a, struct diag *d)
+{
+    size_t rows = 0;
+    for (const char *at = csv; next_line(&at);) rows += strtod(at, NULL) >= from;
+    for (int c = 0; c < columns; c++) {
+        to[c] = (struct column){.late = arena_alloc(a, rows, sizeof(double), "values", d)};
+        if (!to[c].late) return ERR_MEMORY;
+    }
+    return ERR_OK;
+}
+
+/* Each column of a file; the number of columns, the time's not counted. */
+static enum err measure_text(const char *csv, int columns, struct column *to, struct arena *a,
+                             struct diag *d)
+{
+    double end = 0;
+    for (const char *at = csv; next_line(&at);) end = strtod(at, NULL);
+    const double from = 0.75 * end;
+    TRY(allocate_late(csv, from, columns, to, a, d));
+    for (const char *at = csv; next_line(&at);) {
+        char *stop;
+        const double t = strtod(at, &stop);
+        for (int c = 0; c < columns && *stop == ','; c++) {
+            const double v = strtod(stop + 1, &stop);
+            double *const measure = to[c].measure;
+            measure[FINAL] = v;
+            if (fabs(v) > fabs(measure[PEAK])) measure[PEAK] = v;
+            if (t < from) continue;
+            measure[SETTLED] += v;
+            to[c].late[to[c].rows++] = v;
+        }
+    }
+    for (int c = 0; c < columns; c++)
+        if (to[c].rows > 0) to[c].measure[SETTLED] /= (double)to[c].rows;
+    return ERR_OK;
+}
+
 static enum err measure_run(const struct refinement *x, int k, const char *file, int columns,
-                            double (*value)[MEASURES])
+                            struct column *to, struct arena *a)
 {
     char path[PATH_BYTES], *csv;
     size_t size;
     TRY(path_of(x, k, file, path));
     TRY(file_read(path, &csv, &size, x->diag));
-    const char *const last = strrchr(csv, '\n') ? csv : NULL;
-    double end = 0;
-    for (const char *at = csv; last && (at = strchr(at, '\n')) != NULL && at[1]; at++)
-        end = strtod(at + 1, NULL);
-    memset(value, 0, (size_t)columns * sizeof *value);
-    int settled = 0;
-    for (const char *at = csv; last && (at = strchr(at, '\n')) != NULL && at[1]; at++) {
-        char *stop;
-        const double t = strtod(at + 1, &stop);
-        settled += t >= 0.75 * end;
-        for (int c = 0; c < columns && *stop == ','; c++) {
-            const double v = strtod(stop + 1, &stop);
-            value[c][FINAL] = v;
-            if (fabs(v) > fabs(value[c][PEAK])) value[c][PEAK] = v;
-            if (t >= 0.75 * end) value[c][SETTLED] += v;
-        }
-    }
-    for (int c = 0; c < columns && settled > 0; c++) value[c][SETTLED] /= settled;
+    const enum err e = measure_text(csv, columns, to, a, x->diag);
     free(csv);
-    return ERR_OK;
+    return e;
 }
 
-static void say_value(const struct refinement *x, struct json *j, const char *name,
-                      const double value[3], bool print)
+/* An order from three final values is chance if the differences of the runs are not those of one error. */
+static struct convergence converge_columns(const struct refinement *x, enum measure m,
+                                           const struct column *const run[3])
 {
+    const double value[3] = {run[0]->measure[m], run[1]->measure[m], run[2]->measure[m]};
     const struct convergence c = converge(value, x->ratio);
+    const int64_t n = run[0]->rows;
+    if (m != FINAL || !c.ordered || run[1]->rows != n || run[2]->rows != n) return c;
+    if (errors_agree(run[0]->late, run[1]->late, run[2]->late, n)) return c;
+    return without_order(value, "noise");
+}
+
+static void say_value(const struct refinement *x, struct json *j, enum measure m,
+                      const struct column *const run[3], bool print)
+{
+    const struct convergence c = converge_columns(x, m, run);
+    const double value[3] = {run[0]->measure[m], run[1]->measure[m], run[2]->measure[m]};
+    const char *const name = measure_names[m];
     char order[32] = "none";
     if (c.ordered) snprintf(order, sizeof order, "%.2f", c.order);
     const double percent = value[0] != 0 ? 100 / fabs(value[0]) : 0;
     if (print)
-        session_say(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
-                    name, value[2], value[1], value[0], c.extrapolated, order, c.band,
-                    percent * c.band, *c.why ? "; " : "", c.why);
+        session_result(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
+                       name, value[2], value[1], value[0], c.extrapolated, order, c.band,
+                       percent * c.band, *c.why ? "; " : "", c.why);
     json_open(j, name, '{');
     json_numbers(j, "values", value, 3);
     json_number(j, "order", c.ordered ? c.order : (double)NAN);
@@ -246,21 +316,20 @@ static void say_value(const struct refinement *x, struct json *j, const char *na
 
 /* Reports the columns of one file. Of the ledger only energies that end at other than zero are printed. */
 static void say_columns(const struct refinement *x, struct json *j, const char *header, int columns,
-                        bool ledger, double (*value[3])[MEASURES])
+                        bool ledger, struct column *const run[3])
 {
     const char *name = header;
     for (int c = 0; c < columns; c++) {
         char text[2 * SCENE_NAME];
         name += strcspn(name, ",") + 1;
         snprintf(text, sizeof text, "%.*s", (int)strcspn(name, ","), name);
-        const bool print =
-            !ledger || (c + 1 < (int)COUNT_OF(ledger_units) &&
-                        strcmp(ledger_units[c + 1], "J_per_m") == 0 && value[0][c][FINAL] != 0);
-        if (print) session_say(x->options, "%s", text);
+        const bool print = !ledger || (c + 1 < (int)COUNT_OF(ledger_units) &&
+                                       strcmp(ledger_units[c + 1], "J_per_m") == 0 &&
+                                       run[0][c].measure[FINAL] != 0);
+        if (print) session_result(x->options, "%s", text);
         json_open(j, text, '{');
-        for (int m = 0; m < MEASURES; m++)
-            say_value(x, j, measure_names[m],
-                      (const double[]){value[0][c][m], value[1][c][m], value[2][c][m]}, print);
+        const struct column *const of[3] = {&run[0][c], &run[1][c], &run[2][c]};
+        for (int m = 0; m < MEASURES; m++) say_value(x, j, (enum measure)m, of, print);
         json_close(j, '}');
     }
 }
@@ -276,13 +345,13 @@ static enum err report_file(const struct refinement *x, struct json *j, const ch
     header[strcspn(header, "\n")] = '\0';
     int columns = 0;
     for (const char *at = header; (at = strchr(at, ',')) != NULL; at++) columns++;
-    double(*value[3])[MEASURES];
+    struct column *run[3];
     enum err e = ERR_OK;
     for (int k = 0; k < 3 && !e; k++) {
-        value[k] = arena_alloc(&arena, (size_t)columns, sizeof *value[k], "values", x->diag);
-        e = value[k] ? measure_run(x, x->runs - 1 - k, file, columns, value[k]) : ERR_MEMORY;
+        run[k] = arena_alloc(&arena, (size_t)columns, sizeof *run[k], "values", x->diag);
+        e = run[k] ? measure_run(x, x->runs - 1 - k, file, columns, run[k], &arena) : ERR_MEMORY;
     }
-    if (!e) say_columns(x, j, header, columns, ledger, value);
+    if (!e) say_columns(x, j, header, columns, ledger, run);
     arena_free(&arena);
     free(header);
     return e;
@@ -306,19 +375,23 @@ static void say_head(const struct refinement *x, struct json *j)
     const double dp[3] = {x->dp, x->dp * x->ratio, x->dp * x->ratio * x->ratio};
     json_numbers(j, "dp", dp, 3);
     json_integer(j, "off_lattice", x->off_lattice);
-    session_say(x->options,
-                "dp (m)     %12.5g %12.5g %12.5g extrapolated  order  band of the finest", dp[2],
-                dp[1], dp[0]);
+    session_result(x->options,
+                   "dp (m)     %12.5g %12.5g %12.5g extrapolated  order  band of the finest", dp[2],
+                   dp[1], dp[0]);
 }
 
 static void say_foot(const struct refinement *x)
 {
-    session_say(x->options,
-                "peak: value of largest magnitude; settled: mean of the last quarter; band: grid "
-                "convergence index or, if there is no order, 3 times the largest difference");
+    session_result(
+        x->options,
+        "peak: value of largest magnitude; settled: mean of the last quarter; band: grid "
+        "convergence index or, if there is no order, 3 times the largest difference");
+    session_result(x->options, "noise: in the last quarter the differences of the runs are not "
+                               "proportional to each other, so no final value is reliable");
     if (x->off_lattice)
-        session_say(x->options, "bodies are off the lattice in some of these resolutions, so their "
-                                "sizes differ and the orders are not reliable");
+        session_result(x->options,
+                       "bodies are off the lattice in some of these resolutions, so their "
+                       "sizes differ and the orders are not reliable");
 }
 
 static enum err report_all(const struct refinement *x, const struct scene *scene)

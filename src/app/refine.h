@@ -18,6 +18,11 @@ struct convergence {
 /* `value`: finest first; dp grows by the factor `ratio`. */
 struct convergence converge(const double value[3], double ratio);
 
+/* Whether the runs differ in the last part of the time, n rows, by one error that falls with dp. Richardson
+ * extrapolation assumes an error C(t) dp^p, so both differences are proportional to C(t) (Roache 1998); here
+ * more than half of their squares has to be. Noise has none in common. */
+bool errors_agree(const double *fine, const double *middle, const double *coarse, int64_t n);
+
 /* Runs the case at dp * ratio^(runs - 1), ..., dp * ratio, dp in sub-folders of the run's folder, unless a
  * run is already finished. Prints the convergence of probes and energies over the three finest runs, and
  * writes it to refine.json. */

@@ -19,7 +19,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum output { OUT_LEDGER, OUT_SNAPSHOT, OUT_CHECKPOINT, OUT_COUNT };
@@ -442,10 +441,8 @@ static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
     const char *file = o->fork ? o->fork : o->restart_file;
-    struct stat info;
     if (!file) return checkpoint_newest(&r->image, r->folder.path, r->restarted_from, r->diag);
-    if (o->fork && stat(file, &info) == 0 && S_ISDIR(info.st_mode))
-        return checkpoint_newest(&r->image, file, r->restarted_from, r->diag);
+    if (o->fork) return checkpoint_find(&r->image, file, r->restarted_from, r->diag);
     snprintf(r->restarted_from, sizeof r->restarted_from, "%s", file);
     return checkpoint_read(&r->image, file, r->diag);
 }
@@ -485,6 +482,7 @@ static enum err begin(struct run *r)
     const enum err e = r->options->restart || r->options->fork ? load_checkpoint(r) : ERR_OK;
     if (e) {
         unlink(part);
+        run_dir_withdraw(&r->folder); /* nothing was started */
         return e;
     }
     TRY(put_case(r, part));

@@ -24,15 +24,29 @@ struct diag session_diag(const struct sphfsi_options *o)
     return d;
 }
 
+static void say(const struct sphfsi_options *o, enum sphfsi_message kind, const char *format,
+                va_list args)
+{
+    char text[2048];
+    if (!o->message) return;
+    vsnprintf(text, sizeof text, format, args);
+    o->message(o->context, kind, text);
+}
+
 void session_say(const struct sphfsi_options *o, const char *format, ...)
 {
-    if (!o->message) return;
-    char text[2048];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    say(o, SPHFSI_NOTE, format, args);
     va_end(args);
-    o->message(o->context, SPHFSI_NOTE, text);
+}
+
+void session_result(const struct sphfsi_options *o, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    say(o, SPHFSI_RESULT, format, args);
+    va_end(args);
 }
 
 double session_time(double time)

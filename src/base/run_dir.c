@@ -55,8 +55,8 @@ enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d)
     return ERR_OK;
 }
 
-/* mkdir -p. */
-static enum err make_directories(const char *path, struct diag *d)
+/* mkdir -p. `made`: length of the first part of the path that was made; 0: none. */
+static enum err make_directories(const char *path, size_t *made, struct diag *d)
 {
     char part[PATH_BYTES];
     snprintf(part, sizeof part, "%s", path);
@@ -65,7 +65,9 @@ static enum err make_directories(const char *path, struct diag *d)
         const char end = *at;
         *at = '\0';
         struct stat info;
-        if (mkdir(part, 0777) != 0 && (stat(part, &info) != 0 || !S_ISDIR(info.st_mode)))
+        const bool is_new = mkdir(part, 0777) == 0;
+        if (is_new && *made == 0) *made = (size_t)(at - part);
+        if (!is_new && (stat(part, &info) != 0 || !S_ISDIR(info.st_mode)))
             return diag_fail(d, ERR_INPUT, "%s: cannot make the folder%s%s: %s", path,
                              end ? " above it, " : "", end ? part : "", strerror(errno));
         *at = end;
@@ -120,13 +122,14 @@ enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use us
 {
     enum { LONGEST = sizeof dir->path - 65 };
     dir->lock = -1;
+    dir->made = 0;
     const size_t length = strlen(path);
     if (length == 0 || length > LONGEST)
         return diag_fail(d, ERR_INPUT,
                          "folder of the run: the path has %zu characters, but 1 to %d are allowed",
                          length, LONGEST);
     memcpy(dir->path, path, length + 1);
-    if (use == RUN_DIR_FRESH) TRY(make_directories(path, d));
+    if (use == RUN_DIR_FRESH) TRY(make_directories(path, &dir->made, d));
     TRY(run_dir_check(path, use, d));
     TRY(lock_run_dir(dir, d));
     /* Another run may have started and ended between the check and the lock. */
@@ -142,4 +145,17 @@ void run_dir_close(struct run_dir *dir)
     if (path_join(path, dir->path, lock_name, NULL) == ERR_OK) unlink(path);
     close(dir->lock);
     dir->lock = -1;
+}
+
+void run_dir_withdraw(struct run_dir *dir)
+{
+    char path[PATH_BYTES];
+    run_dir_close(dir);
+    snprintf(path, sizeof path, "%s", dir->path);
+    size_t n = strlen(path);
+    while (dir->made > 0 && n >= dir->made && rmdir(path) == 0) {
+        while (n > 0 && path[n - 1] != '/') n--;
+        while (n > 0 && path[n - 1] == '/') n--;
+        path[n] = '\0';
+    }
 }

@@ -12,7 +12,8 @@ enum run_dir_use {
 
 struct run_dir {
     char path[PATH_BYTES];
-    int lock; /* descriptor of the lock file; -1: none */
+    int lock;    /* descriptor of the lock file; -1: none */
+    size_t made; /* length of the first part of the path that was made; 0: all were there */
 };
 
 /* Whether the folder may be used so; changes nothing. */
@@ -23,5 +24,7 @@ enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d) S
 enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use use, struct diag *d)
     SPHFSI_CHECKED;
 void run_dir_close(struct run_dir *dir);
+/* Closes it, and removes the folders that run_dir_open has made, as far as they are empty. */
+void run_dir_withdraw(struct run_dir *dir);
 
 #endif

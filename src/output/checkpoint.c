@@ -6,6 +6,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "checkpoints are little-endian");
 
@@ -359,6 +360,14 @@ enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_B
     }
     return diag_fail(d, ERR_IO, "%s: contains no %scheckpoint (step-*.ckpt) to restart from",
                      folder, damaged_ones ? "valid " : "");
+}
+
+enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES], struct diag *d)
+{
+    struct stat info;
+    if (stat(at, &info) == 0 && S_ISDIR(info.st_mode)) return checkpoint_newest(m, at, path, d);
+    snprintf(path, PATH_BYTES, "%s", at);
+    return checkpoint_read(m, at, d);
 }
 
 static bool find_block(const struct image *m, const char *name, unsigned owner, struct block *b)

@@ -46,6 +46,10 @@ enum err checkpoint_read(struct image *m, const char *path, struct diag *d) SPHF
 enum err checkpoint_newest(struct image *m, const char *folder, char path[PATH_BYTES],
                            struct diag *d) SPHFSI_CHECKED;
 
+/* Reads a file, or the newest valid checkpoint of a folder; `path` is where it is. */
+enum err checkpoint_find(struct image *m, const char *at, char path[PATH_BYTES], struct diag *d)
+    SPHFSI_CHECKED;
+
 struct image_info checkpoint_info(const struct image *m);
 
 /* A block of a valid image. */

@@ -5,7 +5,9 @@ run() { "$sphfsi" --refine 3 "$@" --threads 1 --quiet; }
 case=(cases/cantilever.cfg --set ratio=8 --until 0.02 --out "$dir/r")
 
 # Stopped in the middle: the second folder has begun, the third has not.
-run "${case[@]}" 2>"$dir/error" || fail "first run: $(cat "$dir/error")"
+run "${case[@]}" 2>"$dir/error" >"$dir/table" || fail "first run: $(cat "$dir/error")"
+grep -q '^M1_dy_m' "$dir/table" && ! grep -q '^run 1' "$dir/table" ||
+    fail "--quiet: the table and nothing else, not $(cat "$dir/table")"
 [ "$(find "$dir/r" -name summary.json | wc -l)" = 3 ] || fail "there are not three runs"
 grep -q '"M1_dy_m"' "$dir/r/refine.json" || fail "refine.json has no probe"
 whole=$(cat "$dir/r/refine.json")

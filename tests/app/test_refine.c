@@ -67,6 +67,30 @@ static void test_values_that_are_not_finite(void)
     }
 }
 
+enum { ROWS = 400 };
+
+/* A swing, a phase error of order p, and noise in each run. */
+static bool swing_agrees(double error, double p, double noise)
+{
+    static double run[3][ROWS];
+    uint32_t random = 1;
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < ROWS; i++) {
+            random = random * 1664525u + 1013904223u;
+            const double late = error * pow(2, p * k), t = 0.05 * i;
+            run[k][i] = sin(t * (1 - late)) + late + noise * ((double)random / 4294967296.0 - 0.5);
+        }
+    return errors_agree(run[0], run[1], run[2], ROWS);
+}
+
+static void test_noise_has_no_order(void)
+{
+    TEST_ASSERT_TRUE(swing_agrees(0.001, 2, 0));
+    TEST_ASSERT_TRUE(swing_agrees(0.002, 1, 0.002));
+    TEST_ASSERT_FALSE(swing_agrees(0, 1, 0.01));
+    TEST_ASSERT_FALSE(swing_agrees(0.001, 1, 0.1));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -76,5 +100,6 @@ int main(void)
     RUN_TEST(test_no_order_where_differences_hardly_shrink);
     RUN_TEST(test_three_equal_values_have_no_band);
     RUN_TEST(test_values_that_are_not_finite);
+    RUN_TEST(test_noise_has_no_order);
     return UNITY_END();
 }

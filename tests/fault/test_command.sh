@@ -80,11 +80,12 @@ fi
 cmp plain/ledger.csv closed/ledger.csv && cmp plain/probes.csv closed/probes.csv || fail "messages in results"
 
 # A terminal that goes away (SIGHUP) leaves a checkpoint; nohup keeps the run going.
-"$sphfsi" cantilever.cfg --quiet --threads 1 --out hangup & pid=$!
+"$sphfsi" cantilever.cfg --quiet --threads 1 --out hangup >out & pid=$!
 while [ ! -s hangup/ledger.csv ]; do sleep 0.05; done
 kill -HUP $pid
 wait $pid
 [ $? = 129 ] && ls hangup/*.ckpt >/dev/null || fail "SIGHUP leaves no checkpoint"
+grep -q 'to go on: .* --restart' out || fail "--quiet hides the command that goes on"
 
 "$sphfsi" --version >/dev/null && "$sphfsi" --help >/dev/null || fail "--version, --help"
 "$sphfsi" >out 2>err

@@ -13,6 +13,9 @@ for words in 'time 0.02 s, 200 steps' 'fluid *100 particles' 'run *sorts' 'solid
     'case *case' 'dp = 0.01 m'; do
     grep -q -- "$words" "$dir/output" || fail "--inspect does not say '$words'"
 done
+expect 0 'step-0*200.ckpt: a valid checkpoint' --inspect "$run"
+mkdir "$dir/empty"
+expect 1 'contains no checkpoint' --inspect "$dir/empty"
 expect 1 'not a valid checkpoint' --inspect "$case"
 expect 1 'nowhere.ckpt' --inspect "$dir/nowhere.ckpt"
 expect 1 'needs a value' --inspect
@@ -33,6 +36,15 @@ expect 1 'big-endian byte order' "$case" --out "$run" --restart "$dir/patched.ck
 expect 1 "the checkpoint has 'dp = 0.01 m'.*'dp = 0.005 m'" "$case" --out "$run" --restart \
     --set dp=5mm
 expect 1 'has changed.*integrator' "$case" --out "$run" --restart --set integrator=verlet
+
+# --- a refused fork leaves nothing, and removes nothing that was there ---
+mkdir "$dir/mine"
+for out in deep/refused/ mine/refused mine; do
+    expect 1 'byte order' "$case" --fork "$dir/patched.ckpt" --out "$dir/$out"
+done
+[ ! -e "$dir/deep" ] || fail "a refused fork leaves a folder"
+[ "$(ls -A "$dir/mine")" = '' ] || fail "a refused fork leaves files"
+[ -d "$dir/mine" ] || fail "a refused fork removes a folder that was there"
 
 # --- fork: another material ---
 go=(--threads 1 --until 0.03)

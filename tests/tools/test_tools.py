@@ -185,6 +185,19 @@ def test_probes(tmp):
     assert figure.axes[1].get_xlim() == (0.1, END), figure.axes[1].get_xlim()
 
 
+def test_refinement(tmp):
+    """The folder of --refine: its resolutions, coarsest first; of one run, the finest."""
+    study = tmp / "study"
+    for dp in ("0.0025", "0.01", "0.005"):
+        shutil.copytree(write_run(tmp / "one"), study / f"dp-{dp}")
+        shutil.rmtree(tmp / "one")
+    from sphfsi.files import make_runs
+    names = [run.name for run in make_runs([study])]
+    assert names == ["dp-0.01", "dp-0.005", "dp-0.0025"], names
+    draws(study / "probes.png", "plot_probes", study, "--out", study / "probes.png")
+    draws(study / "ledger.png", "plot_ledger", study, "--out", study / "ledger.png")
+
+
 def good_copy(tmp):
     return write_run(tmp / "other")
 
@@ -279,6 +292,7 @@ def main():
         test_fields(tmp, good, halted)
         test_animate(tmp, good, halted)
         test_probes(tmp)
+        test_refinement(tmp)
         test_rates(tmp)
         test_ledger(tmp, good)
     print("the tools draw what they are given and refuse what is broken")
