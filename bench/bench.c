@@ -300,7 +300,7 @@ static double pairs_of(const struct simulation *s)
 
 static void bench_fluid(struct bench *b, double n, bool rich, const char *precision, int threads)
 {
-    static const enum phase parts[] = {PHASE_sort, PHASE_lanes, PHASE_wall, PHASE_fluid,
+    static const enum phase parts[] = {PHASE_sort, PHASE_packed, PHASE_wall, PHASE_fluid,
                                        PHASE_update};
     char text[1024];
     struct sim x;

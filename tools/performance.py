@@ -214,7 +214,7 @@ def bench_tables(rows):
     threads = sorted({key[3] for key in rows})
     value = lambda *key: float(rows[key]["median"]) if key in rows else float("nan")
     variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
-    parts = ["sort", "lanes", "wall", "fluid", "update", "all"]
+    parts = ["sort", "packed", "wall", "fluid", "update", "all"]
     text.append("Time in ns per fluid particle and force evaluation, by phase:\n\n" + table(
         ["kernel", "particles", "threads"] + parts + ["bytes/particle"],
         [(v, n, t, *(f"{value('fluid', v, n, t, p):.1f}" for p in parts),

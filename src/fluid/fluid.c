@@ -56,7 +56,7 @@ static enum err packed_create(struct packed_fields *packed, struct arena *a, int
             "the case needs %lld clusters of particles, but the limit is %d; use a larger dp",
             (long long)clusters, CLUSTERS_MOST);
     packed->cluster = arena_alloc(a, (size_t)clusters, (size_t)(packed->n * CLUSTER) * size,
-                                  "lanes of the fluid's sweep", d);
+                                  "packed fields of the fluid", d);
     return packed->cluster ? cluster_boxes_create(&packed->boxes, a, clusters, d) : ERR_MEMORY;
 }
 
@@ -226,7 +226,7 @@ static const struct pass {
     enum phase phase;
     void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 } passes[] = {
-    {PHASE_lanes, pass_pack},
+    {PHASE_packed, pass_pack},
     {PHASE_slope, pass_slope},
     {PHASE_wall, pass_wall},
     {PHASE_fluid, pass_fluid},

@@ -37,12 +37,12 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
     o->rate = arena_alloc(a, n, sizeof *o->rate, "open boundaries", d);
     const size_t most = (size_t)o->capacity;
     o->member = arena_alloc(a, most, sizeof *o->member, "open boundaries", d);
-    o->seen_p = arena_alloc(a, most, sizeof *o->seen_p, "open boundaries", d);
-    o->seen_u = arena_alloc(a, most, sizeof *o->seen_u, "open boundaries", d);
-    o->seen_v = arena_alloc(a, most, sizeof *o->seen_v, "open boundaries", d);
+    o->mirror_p = arena_alloc(a, most, sizeof *o->mirror_p, "open boundaries", d);
+    o->mirror_u = arena_alloc(a, most, sizeof *o->mirror_u, "open boundaries", d);
+    o->mirror_v = arena_alloc(a, most, sizeof *o->mirror_v, "open boundaries", d);
     o->flow = arena_alloc(a, most, sizeof *o->flow, "open boundaries", d);
-    if (!o->flow || !o->boundary || !o->sum || !o->count || !o->rate || !o->member || !o->seen_p ||
-        !o->seen_u || !o->seen_v)
+    if (!o->flow || !o->boundary || !o->sum || !o->count || !o->rate || !o->member ||
+        !o->mirror_p || !o->mirror_u || !o->mirror_v)
         return ERR_MEMORY;
     for (int k = 0; k < o->n; k++) {
         o->boundary[k] = scene_open_at(s, k);
@@ -154,24 +154,24 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
         mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
     }
     const struct across s = state_across(k, p, c, mirror);
-    o->seen_p[m] =
+    o->mirror_p[m] =
         b->kind == OPEN_PRESSURE ? (double)NAN : eos_pressure(p->dens[i], k->rho0, k->c0);
-    o->seen_u[m] = p->vx[i];
-    o->seen_v[m] = p->vy[i];
+    o->mirror_u[m] = p->vx[i];
+    o->mirror_v[m] = p->vy[i];
     if (!(s.w > 0)) return;
     if (b->kind == OPEN_PRESSURE) {
-        o->seen_p[m] = s.p / s.w;
+        o->mirror_p[m] = s.p / s.w;
         const double normal = linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] +
                               linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
-        o->seen_u[m] = normal * b->inward[0];
-        o->seen_v[m] = normal * b->inward[1];
+        o->mirror_u[m] = normal * b->inward[0];
+        o->mirror_v[m] = normal * b->inward[1];
         return;
     }
     given_acceleration(b, k, foot, time, a);
-    const double way[2] = {x[0] - mirror[0], x[1] - mirror[1]};
-    o->seen_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * way[0]) +
-                                     (k->gravity[1] - a[1]) * (s.mass_y + s.w * way[1]))) /
-                   s.w;
+    const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
+    o->mirror_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
+                                       (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
+                     s.w;
 }
 
 /* The given pressure at a point of the line, Pa. */
@@ -251,7 +251,7 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
     const int32_t i = o->member[m];
     const int number = p->open[i] - 1;
     const struct scene_open *const b = &o->boundary[number];
-    double v[2] = {o->seen_u[m], o->seen_v[m]}, pressure = o->seen_p[m], in, along;
+    double v[2] = {o->mirror_u[m], o->mirror_v[m]}, pressure = o->mirror_p[m], in, along;
     scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &in, &along);
     const double foot[2] = {p->x[i] - in * b->inward[0], p->y[i] - in * b->inward[1]};
     if (b->kind == OPEN_PRESSURE) {

@@ -31,9 +31,9 @@ struct open {
     int64_t next_id;
     struct open_rate *rate;
     int64_t n_members, capacity;
-    int32_t *member;                  /* particles of all buffers, in the order of memory */
-    double *seen_p, *seen_u, *seen_v; /* [n_members]: the fluid across the line */
-    double *flow;                     /* along a line, m/s */
+    int32_t *member;                        /* particles of all buffers, in the order of memory */
+    double *mirror_p, *mirror_u, *mirror_v; /* [n_members]: the fluid across the line */
+    double *flow;                           /* along a line, m/s */
 };
 
 /* Number of fluid particles, in all, that a scene with open boundaries has memory for. */

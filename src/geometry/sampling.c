@@ -179,7 +179,7 @@ static void mark_row(struct sampler *g, const struct region *region, int64_t j, 
 static enum err prepare_rows(struct sampler *g)
 {
     int64_t widest = 1;
-    int room = 2;
+    int most = 2;
     for (int k = 0; k < g->n_regions; k++) {
         struct region *region = &g->regions[k];
         for (int c = 0; c < 2; c++) {
@@ -188,15 +188,15 @@ static enum err prepare_rows(struct sampler *g)
         }
         widest = region->count[0] > widest ? region->count[0] : widest;
         const int add = outlines_capacity(&region->add), minus = outlines_capacity(&region->minus);
-        room = add > room ? add : room;
-        room = minus > room ? minus : room;
+        most = add > most ? add : most;
+        most = minus > most ? minus : most;
     }
     for (int k = 0; k < g->scene->n_solid; k++)
         for (int j = 0; j < g->scene->solid[k].clamp.n; j++)
-            room = g->scene->solid[k].clamp.item[j].n > room ? g->scene->solid[k].clamp.item[j].n
-                                                             : room;
+            most = g->scene->solid[k].clamp.item[j].n > most ? g->scene->solid[k].clamp.item[j].n
+                                                             : most;
     g->mask = arena_alloc(&g->temp, (size_t)widest, 1, "sampling", g->diag);
-    g->scratch = arena_alloc(&g->temp, (size_t)room + 4, sizeof(double), "sampling", g->diag);
+    g->scratch = arena_alloc(&g->temp, (size_t)most + 4, sizeof(double), "sampling", g->diag);
     return g->mask && g->scratch ? ERR_OK : ERR_MEMORY;
 }
 

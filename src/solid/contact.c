@@ -9,8 +9,8 @@
 /* --- forces of a pair --- */
 
 /* T-62 for a point at `offset` from its foot on an edge, at distance r, with the relative velocity v and
- * the way d from the place where it sticks. The dashpot may reduce the repulsion but not turn it into
- * attraction. */
+ * the displacement d from the place where it sticks. The dashpot may reduce the repulsion but not turn
+ * it into attraction. */
 static void point_force(const struct pair *q, const double offset[2], double r, const double v[2],
                         const double d[2], double f[2])
 {

@@ -57,8 +57,8 @@ void contact_list(struct contact *c);
  * again if some point has left the margin. All threads together. */
 void contact_place(struct contact *c, const struct particles *p, double time);
 
-/* Friction (solid/contact_friction.c): its memory; the way of each point from the place where it sticks, all
- * threads together; the same of a point relative to the place s of an edge from a to b. */
+/* Friction (solid/contact_friction.c): its memory; the displacement of each point from the place where it
+ * sticks, all threads together; the same of a point relative to the place s of an edge from a to b. */
 enum err contact_stick_create(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;
 void contact_find_stick(struct contact *c, const struct particles *p);
 void contact_stick(const struct contact *c, int32_t point, int32_t a, int32_t b, double s,

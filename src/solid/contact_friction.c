@@ -32,7 +32,7 @@ void contact_find_stick(struct contact *c, const struct particles *p)
     }
 }
 
-/* Adds `part` of a solid's point's way from its place on the group. */
+/* Adds `part` of the displacement of a solid's point from its place on the group. */
 static void add_stick(const struct contact *c, int32_t point, int32_t group, double part,
                       double d[2])
 {

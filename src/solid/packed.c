@@ -28,7 +28,7 @@ enum err solid_packed_create(struct solid *s, struct arena *a, const struct part
         if (!lane_needed(s, k)) continue;
         s->lane[k] = field[k];
         if (field[k] && s->sweeps->size == sizeof(double)) continue;
-        s->lane[k] = arena_alloc(a, (size_t)p->n, s->sweeps->size, "lanes of the solid", d);
+        s->lane[k] = arena_alloc(a, (size_t)p->n, s->sweeps->size, "packed fields of the solid", d);
         if (!s->lane[k]) return ERR_MEMORY;
     }
     for (int64_t i = 0; s->lane[S_DRAG] && i < p->n; i++) {

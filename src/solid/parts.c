@@ -22,20 +22,20 @@ struct part_message {
     _Alignas(64) uint32_t sequence; /* number of messages; written by the sender */
     _Alignas(64) int n;
     int32_t *given, *taken; /* [n] indices in the sender and in the receiver */
-    void *room[2];          /* [HALO_MOST][n] */
+    void *buffer[2];        /* [HALO_MOST][n] */
 };
 
 /* --- cutting --- */
 
 /* Coordinate of a particle along the axis across which the solid is cut. */
-struct spot {
+struct position {
     double at;
     int32_t i;
 };
 
-static int compare_spot(const void *a, const void *b)
+static int compare_positions(const void *a, const void *b)
 {
-    const struct spot *const x = a, *const y = b;
+    const struct position *const x = a, *const y = b;
     if (x->at != y->at) return x->at < y->at ? -1 : 1;
     return (x->i > y->i) - (x->i < y->i);
 }
@@ -48,23 +48,25 @@ struct cut {
 
 /* Both parts of a pair compute the same difference, so each is within the other's reach or neither
  * is. */
-static struct cut cut_of(const struct spot *spot, int64_t n, double reach, int part, int parts)
+static struct cut cut_of(const struct position *position, int64_t n, double reach, int part,
+                         int parts)
 {
     struct cut c = {.own_first = n * part / parts, .own_end = n * (part + 1) / parts};
-    const double low = spot[c.own_first].at, high = spot[c.own_end - 1].at;
-    for (c.first = c.own_first; c.first > 0 && low - spot[c.first - 1].at <= reach;) c.first--;
-    for (c.end = c.own_end; c.end < n && spot[c.end].at - high <= reach;) c.end++;
+    const double low = position[c.own_first].at, high = position[c.own_end - 1].at;
+    for (c.first = c.own_first; c.first > 0 && low - position[c.first - 1].at <= reach;) c.first--;
+    for (c.end = c.own_end; c.end < n && position[c.end].at - high <= reach;) c.end++;
     return c;
 }
 
 /* Orders the particles along an axis; returns their number in all parts together. */
-static int64_t order_along(struct spot *spot, const double *at, int64_t n, double reach, int parts)
+static int64_t order_along(struct position *position, const double *at, int64_t n, double reach,
+                           int parts)
 {
-    for (int64_t i = 0; i < n; i++) spot[i] = (struct spot){at[i], (int32_t)i};
-    qsort(spot, (size_t)n, sizeof *spot, compare_spot);
+    for (int64_t i = 0; i < n; i++) position[i] = (struct position){at[i], (int32_t)i};
+    qsort(position, (size_t)n, sizeof *position, compare_positions);
     int64_t sum = 0;
     for (int k = 0; k < parts; k++) {
-        const struct cut c = cut_of(spot, n, reach, k, parts);
+        const struct cut c = cut_of(position, n, reach, k, parts);
         sum += c.end - c.first;
     }
     return sum;
@@ -77,9 +79,9 @@ static int compare_index(const void *a, const void *b)
 }
 
 /* Their indices in the whole, ascending. */
-static void indices_of(const struct spot *spot, int64_t n, int32_t *index)
+static void indices_of(const struct position *position, int64_t n, int32_t *index)
 {
-    for (int64_t k = 0; k < n; k++) index[k] = spot[k].i;
+    for (int64_t k = 0; k < n; k++) index[k] = position[k].i;
     qsort(index, (size_t)n, sizeof *index, compare_index);
 }
 
@@ -91,11 +93,11 @@ struct plan {
     const struct particles *p;
     struct arena *arena;
     struct diag *d;
-    struct spot *spot; /* [p->n] */
-    struct cut *cut;   /* [parts] */
-    int32_t **global;  /* [parts]: index in the whole, ascending */
-    int32_t *local;    /* [p->n]: index in a part, -1: not in it */
-    bool *own;         /* [p->n]: the part's own */
+    struct position *position; /* [p->n] */
+    struct cut *cut;           /* [parts] */
+    int32_t **global;          /* [parts]: index in the whole, ascending */
+    int32_t *local;            /* [p->n]: index in a part, -1: not in it */
+    bool *own;                 /* [p->n]: the part's own */
 };
 
 static int64_t size_of(const struct cut *c) { return c->end - c->first; }
@@ -131,7 +133,7 @@ static enum err create_part(struct solid_part *part, const struct plan *plan, co
 {
     struct solid *const s = &part->solid;
     memset(plan->own, 0, (size_t)plan->p->n * sizeof *plan->own);
-    for (int64_t k = c->own_first; k < c->own_end; k++) plan->own[plan->spot[k].i] = true;
+    for (int64_t k = c->own_first; k < c->own_end; k++) plan->own[plan->position[k].i] = true;
     for (int64_t i = 0; i < plan->p->n; i++) plan->local[i] = -1;
     for (int32_t k = 0; k < size_of(c); k++) plan->local[global[k]] = k;
     part->run = arena_alloc(plan->arena, (size_t)size_of(c), sizeof *part->run,
@@ -171,9 +173,9 @@ static enum err create_message(struct solid *s, const struct plan *plan, int fro
     m->given = arena_alloc(plan->arena, n, sizeof *m->given, what, plan->d);
     m->taken = arena_alloc(plan->arena, n, sizeof *m->taken, what, plan->d);
     for (int k = 0; k < 2; k++)
-        m->room[k] = arena_alloc(plan->arena, n * HALO_MOST, s->sweeps->size, what, plan->d);
-    if (!m->given || !m->taken || !m->room[0] || !m->room[1]) return ERR_MEMORY;
-    indices_of(&plan->spot[first], end - first, m->taken);
+        m->buffer[k] = arena_alloc(plan->arena, n * HALO_MOST, s->sweeps->size, what, plan->d);
+    if (!m->given || !m->taken || !m->buffer[0] || !m->buffer[1]) return ERR_MEMORY;
+    indices_of(&plan->position[first], end - first, m->taken);
     for (size_t k = 0; k < n; k++) {
         m->given[k] = place_of(plan->global[from], size_of(a), m->taken[k]);
         m->taken[k] = place_of(plan->global[to], size_of(b), m->taken[k]);
@@ -212,22 +214,23 @@ static enum err make_plan(struct plan *plan, struct arena *scratch, int parts, b
     double reach = 0;
     for (int k = 0; k < plan->s->n_bodies; k++)
         reach = max2(reach, 1.001 * KERNEL_REACH * plan->s->body[k].h);
-    plan->spot = arena_alloc(scratch, n, sizeof *plan->spot, what, plan->d);
+    plan->position = arena_alloc(scratch, n, sizeof *plan->position, what, plan->d);
     plan->cut = arena_alloc(scratch, (size_t)parts, sizeof *plan->cut, what, plan->d);
     plan->global = arena_alloc(scratch, (size_t)parts, sizeof *plan->global, what, plan->d);
     plan->local = arena_alloc(scratch, n, sizeof *plan->local, what, plan->d);
     plan->own = arena_alloc(scratch, n, sizeof *plan->own, what, plan->d);
-    if (!plan->spot || !plan->cut || !plan->global || !plan->local || !plan->own) return ERR_MEMORY;
-    const int64_t across = order_along(plan->spot, p->X, p->n, reach, parts);
-    int64_t all = order_along(plan->spot, p->Y, p->n, reach, parts);
-    if (across < all) all = order_along(plan->spot, p->X, p->n, reach, parts);
+    if (!plan->position || !plan->cut || !plan->global || !plan->local || !plan->own)
+        return ERR_MEMORY;
+    const int64_t across = order_along(plan->position, p->X, p->n, reach, parts);
+    int64_t all = order_along(plan->position, p->Y, p->n, reach, parts);
+    if (across < all) all = order_along(plan->position, p->X, p->n, reach, parts);
     *pays = all < p->n + p->n / 2;
     for (int k = 0; *pays && k < parts; k++) {
-        plan->cut[k] = cut_of(plan->spot, p->n, reach, k, parts);
+        plan->cut[k] = cut_of(plan->position, p->n, reach, k, parts);
         const int64_t size = size_of(&plan->cut[k]);
         plan->global[k] = arena_alloc(scratch, (size_t)size, sizeof **plan->global, what, plan->d);
         if (!plan->global[k]) return ERR_MEMORY;
-        indices_of(&plan->spot[plan->cut[k].first], size, plan->global[k]);
+        indices_of(&plan->position[plan->cut[k].first], size, plan->global[k]);
     }
     return ERR_OK;
 }
@@ -295,20 +298,20 @@ void solid_part_results(struct solid_part *part, const struct particles *whole)
 }
 
 /* Numbers of a packed field to a buffer, and from it. */
-static void pick(const void *lane, const int32_t *at, int n, size_t size, void *room)
+static void gather_lane(const void *lane, const int32_t *at, int n, size_t size, void *buffer)
 {
     if (size == sizeof(double))
-        for (int k = 0; k < n; k++) ((double *)room)[k] = ((const double *)lane)[at[k]];
+        for (int k = 0; k < n; k++) ((double *)buffer)[k] = ((const double *)lane)[at[k]];
     else
-        for (int k = 0; k < n; k++) ((float *)room)[k] = ((const float *)lane)[at[k]];
+        for (int k = 0; k < n; k++) ((float *)buffer)[k] = ((const float *)lane)[at[k]];
 }
 
-static void place(void *lane, const int32_t *at, int n, size_t size, const void *room)
+static void scatter_lane(void *lane, const int32_t *at, int n, size_t size, const void *buffer)
 {
     if (size == sizeof(double))
-        for (int k = 0; k < n; k++) ((double *)lane)[at[k]] = ((const double *)room)[k];
+        for (int k = 0; k < n; k++) ((double *)lane)[at[k]] = ((const double *)buffer)[k];
     else
-        for (int k = 0; k < n; k++) ((float *)lane)[at[k]] = ((const float *)room)[k];
+        for (int k = 0; k < n; k++) ((float *)lane)[at[k]] = ((const float *)buffer)[k];
 }
 
 /* The packed fields of a halo; returns their number. */
@@ -329,16 +332,16 @@ void halo_exchange(struct solid_part *part, unsigned what)
     part->sequence++;
     for (int k = 0; k < part->n_others; k++) {
         struct part_message *const m = part->out[k];
-        char *room = m->room[part->sequence & 1];
-        for (int l = 0; l < n; l++, room += (size_t)m->n * size)
-            pick(lane[l], m->given, m->n, size, room);
+        char *buffer = m->buffer[part->sequence & 1];
+        for (int l = 0; l < n; l++, buffer += (size_t)m->n * size)
+            gather_lane(lane[l], m->given, m->n, size, buffer);
         __atomic_store_n(&m->sequence, part->sequence, __ATOMIC_RELEASE);
     }
     for (int k = 0; k < part->n_others; k++) {
         struct part_message *const m = part->in[k];
         barrier_wait_for(&m->sequence, part->sequence);
-        const char *room = m->room[part->sequence & 1];
-        for (int l = 0; l < n; l++, room += (size_t)m->n * size)
-            place(lane[l], m->taken, m->n, size, room);
+        const char *buffer = m->buffer[part->sequence & 1];
+        for (int l = 0; l < n; l++, buffer += (size_t)m->n * size)
+            scatter_lane(lane[l], m->taken, m->n, size, buffer);
     }
 }

@@ -157,7 +157,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
         if (!s->scratch[k]) return ERR_MEMORY;
     }
-    s->barrier = arena_alloc(a, 1, sizeof *s->barrier, "meeting point of the threads", d);
+    s->barrier = arena_alloc(a, 1, sizeof *s->barrier, "barrier of the threads", d);
     s->work_on = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->work_on, "work on bodies", d);
     if (!s->barrier || !s->work_on) return ERR_MEMORY;
     s->threads = useful_threads(p->n);
@@ -270,7 +270,7 @@ static void vary_gravity(const struct solid *s, struct particles *p, double time
 
 /* Whether prescribed motion may call a function of the program, which belongs to the calling
  * thread. */
-static bool calls_program(const struct solid *s)
+SPHFSI_INLINE bool calls_program(const struct solid *s)
 {
     return s->calls_out && (s->contact || s->loads);
 }

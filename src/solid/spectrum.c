@@ -53,8 +53,8 @@ static void set_field(double *const field[2], double *const base[2], const doubl
 /* Applies the operator to the field at its base plus the direction in (sx, sy), scaled to
  * `amplitude` at most. Stores the difference from its result at the base in (sx, sy). Returns the
  * factor by which that is larger. */
-static double answer(struct solid *s, struct particles *p, double *const field[2],
-                     double *const base[2], double amplitude, bool both_signs)
+static double apply_operator(struct solid *s, struct particles *p, double *const field[2],
+                             double *const base[2], double amplitude, bool both_signs)
 {
     const double factor = amplitude / largest(p->sx, p->sy, p->n);
     const double asked = factor * norm(p->sx, p->sy, p->n);
@@ -93,13 +93,13 @@ static double largest_factor(struct solid *s, struct particles *p, double *const
     scramble(p->sy, p->n, 2, p->free);
     for (int round = 0; round < ROUNDS; round++) {
         if (!(largest(p->sx, p->sy, p->n) > 0)) return 0;
-        factor = answer(s, p, field, base, amplitude, both_signs);
+        factor = apply_operator(s, p, field, base, amplitude, both_signs);
     }
     return 1.01 * factor;
 }
 
-/* An oscillation of frequency w, damped explicitly at the rate m, does not grow while
- * (w dt)^2 + 2 m dt < 4: just that for semi-implicit Euler, a little less than the limit for the
+/* An oscillation of angular frequency omega, damped explicitly at the rate gamma, does not grow while
+ * (omega dt)^2 + 2 gamma dt < 4: just that for semi-implicit Euler, a little less than the limit for the
  * predictor-corrector (docs/theory.md). */
 double solid_step_of(double omega2, double damping)
 {

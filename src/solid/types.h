@@ -192,7 +192,7 @@ struct contact {
     double *began;                   /* initial distance from another group if below the reach, m */
     int32_t *began_group;            /* and that group; -1: none */
     double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
-    /* With friction, [n_solid_points], else NULL: way from the place where the point sticks, m, and
+    /* With friction, [n_solid_points], else NULL: displacement from the place where the point sticks, m, and
      * the group there; -1: it does not stick. */
     double *stick_x, *stick_y;
     int32_t *stick_group;

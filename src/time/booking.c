@@ -208,10 +208,10 @@ void book_midpoint(struct simulation *s, double dt)
 
 /* Displacement of a particle by the mean velocities of its kicks. Drifts after the kicks are longer
  * by half a kick of the change of velocity. */
-static void mean_way(const struct particles *p, int64_t i, double late, double way[2])
+static void mean_displacement(const struct particles *p, int64_t i, double late, double move[2])
 {
-    way[0] = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
-    way[1] = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
+    move[0] = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
+    move[1] = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
 }
 
 void book_solid(struct simulation *s, double dt, int n, bool centred)
@@ -224,12 +224,12 @@ void book_solid(struct simulation *s, double dt, int n, bool centred)
     for (int64_t i = 0; i < p->n; i++) {
         if (p->free[i] == 0) continue;
         const double mass = s->solid.body[p->body[i]].mass;
-        double way[2];
-        mean_way(p, i, late, way);
-        fluid[p->body[i]] += p->fx[i] * way[0] + p->fy[i] * way[1];
+        double move[2];
+        mean_displacement(p, i, late, move);
+        fluid[p->body[i]] += p->fx[i] * move[0] + p->fy[i] * move[1];
         if (s->solid.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
         if (external[0])
-            outer[p->body[i]] += mass * (external[0][i] * way[0] + external[1][i] * way[1]);
+            outer[p->body[i]] += mass * (external[0][i] * move[0] + external[1][i] * move[1]);
     }
     for (int k = 0; k < s->scene->n_solid; k++) {
         account_work(a, SOURCE_FLUID, KIND_SOLID, k, fluid[k] + outer[k]);

@@ -64,7 +64,7 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
     /* The force arrays still hold the interface impulse applied in the last step. Particles without
      * fluid nearby get no new force from an evaluation, so clear them all. */
-    if (s->effects & (FX_IMPEDANCE | FX_HELD_FORCE)) {
+    if (s->effects & (FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION)) {
         const struct particles *const solid = &s->kind[KIND_SOLID];
         memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
         memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);

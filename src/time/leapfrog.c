@@ -21,13 +21,13 @@ static double step_ratio(double dt, double dt_old) { return dt_old > 0 ? min2(2,
 
 /* The interval of an update, s, from half a step behind to half a step ahead; its ratio to the
  * previous one, and the previous one's ratio. */
-struct stride {
+struct step_sizes {
     double dt, kick, r, r_old;
 };
 
 static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
-    const struct stride *const step = by;
+    const struct step_sizes *const step = by;
     const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
                  r_old = step->r_old;
 #pragma omp simd
@@ -46,8 +46,8 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
 static void update_fluid(struct simulation *s, double dt, double dt_old, double dt_older)
 {
     struct particles *const p = &s->kind[KIND_FLUID];
-    const struct stride by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
-                              step_ratio(dt_old, dt_older)};
+    const struct step_sizes by = {dt, 0.5 * (dt_old + dt), step_ratio(dt, dt_old),
+                                  step_ratio(dt_old, dt_older)};
     if (!(dt_old > 0)) { /* the first step has no earlier rates */
         memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
         memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);

@@ -96,7 +96,8 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;
-    if (!(s->effects & FX_MULTIRATE)) s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_HELD_FORCE);
+    if (!(s->effects & FX_MULTIRATE))
+        s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
     s->fluid.effects = s->effects;
     s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     return ERR_OK;

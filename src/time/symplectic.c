@@ -75,7 +75,7 @@ static void correct_solid(struct particles *p, double dt)
 
 /* Single rate: position and velocity that the fluid uses, and acceleration with the given
  * weight. */
-static void show_solid(struct particles *p, double newest)
+static void update_interface_state(struct particles *p, double newest)
 {
     place_solid(p);
 #pragma omp parallel for simd schedule(static)
@@ -89,7 +89,7 @@ static void show_solid(struct particles *p, double newest)
 
 /* Sub-steps: position and velocity of the structure that the fluid uses half a step ahead
  * (T-35). */
-static void carry_solid(struct simulation *s, double half)
+static void extrapolate_solid(struct simulation *s, double half)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     /* Age of its acceleration at that time. */
@@ -118,12 +118,12 @@ void symplectic_step(struct simulation *s, double t_limit)
     const double dt = timestep_choose(s, t_limit, &hits);
     book_check(s);
     predict_fluid(fluid, 0.5 * dt);
-    if (coupled && multirate) carry_solid(s, 0.5 * dt);
+    if (coupled && multirate) extrapolate_solid(s, 0.5 * dt);
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
         s->solid.time = time + 0.5 * dt;
         solid_place_clamps(&s->solid, solid, s->solid.time);
-        show_solid(solid, 0);
+        update_interface_state(solid, 0);
     }
     phase_add(s, PHASE_update, clock);
 
@@ -141,7 +141,7 @@ void symplectic_step(struct simulation *s, double t_limit)
         book_solid(s, dt, 1, true);
         solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
         solid_place_clamps(&s->solid, solid, time + dt);
-        show_solid(solid, filter_weight(s, dt));
+        update_interface_state(solid, filter_weight(s, dt));
         s->state.solid_substeps++;
         s->substeps = 1;
     }

@@ -10,14 +10,14 @@
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
-struct stride {
+struct step_sizes {
     double dt, dt_old;
     bool euler;
 };
 
 static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
-    const struct stride *const step = by;
+    const struct step_sizes *const step = by;
     const bool euler = step->euler;
     const double dt = step->dt, kick = euler ? dt : step->dt_old + dt;
 #pragma omp simd
@@ -36,7 +36,7 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
 
 /* One component of T-36a: the force and its mean. The mean starts with the first force and ends
  * when it is below any significant force, N/m. */
-SPHFSI_INLINE double carried(double *mean, double force, double per_time, double newest)
+SPHFSI_INLINE double extrapolated(double *mean, double force, double per_time, double newest)
 {
     const double least = 1e-30, old = *mean != 0 ? *mean : force;
     const double next = old + newest * (force - old);
@@ -46,15 +46,15 @@ SPHFSI_INLINE double carried(double *mean, double force, double per_time, double
 
 /* T-36a: the constant force over the sub-steps is that at their start; `ahead`: the time from there
  * to the middle of their kicks. */
-static void carry_force(struct simulation *s, double ahead)
+static void extrapolate_force(struct simulation *s, double ahead)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     const double since = s->state.dt, newest = filter_weight(s, since);
     const double per_time = ahead / (since + smoothing_lag(s));
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] = carried(&p->mean_fx[i], p->fx[i], per_time, newest);
-        p->fy[i] = carried(&p->mean_fy[i], p->fy[i], per_time, newest);
+        p->fx[i] = extrapolated(&p->mean_fx[i], p->fx[i], per_time, newest);
+        p->fy[i] = extrapolated(&p->mean_fy[i], p->fy[i], per_time, newest);
     }
 }
 
@@ -67,11 +67,11 @@ void verlet_step(struct simulation *s, double t_limit)
     const bool euler = s->state.verlet_count == 0;
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
     book_step(s, dt);
-    advance_fluid(s, update_rows, &(struct stride){dt, s->state.dt, euler});
+    advance_fluid(s, update_rows, &(struct step_sizes){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
         const int n = timestep_substeps(s, dt);
-        if (s->effects & FX_HELD_FORCE) carry_force(s, 0.5 * (dt - dt / n));
+        if (s->effects & FX_FORCE_EXTRAPOLATION) extrapolate_force(s, 0.5 * (dt - dt / n));
         advance_solid(s, dt, n, false);
     }
     clock = phase_add(s, PHASE_solid, clock);

@@ -105,8 +105,9 @@ static const struct {
      EFFECT_WALL_FORCE, "line 9: [probe p] quantity"},
     {TOP "integrator = verlet\n" FLUID, FX_FLUID | FX_VERLET, EFFECT_VERLET, "line 3: integrator"},
     {TOP "integrator = verlet\n" FLUID PLAIN_SOLID "[numerics]\nmultirate = on\n",
-     FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_HELD_FORCE | FX_IMPEDANCE,
-     EFFECT_HELD_FORCE, "line 3: integrator"},
+     FX_FLUID | FX_VERLET | FX_SOLID | FX_CONTACT | FX_COUPLING | FX_FORCE_EXTRAPOLATION |
+         FX_IMPEDANCE,
+     EFFECT_FORCE_EXTRAPOLATION, "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
 };
 
@@ -147,7 +148,7 @@ static void test_a_set_is_named_as_the_caller(void)
     TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity", text);
 }
 
-/* Fluid only: no field of a solid; solid only: no cells, no lanes, no field of a fluid; a wall that
+/* Fluid only: no field of a solid; solid only: no cells, no packed fields, no field of a fluid; a wall that
  * neither fluid nor solid meets is nothing. */
 static void test_nothing_is_allocated_that_is_not_needed(void)
 {
@@ -185,14 +186,14 @@ static void check_phases(const char *text, const char *expected)
 
 static void test_phases_run_by_need(void)
 {
-    check_phases(TOP FLUID, "sort lanes fluid update output ");
-    check_phases(TOP FLUID WALL, "sort lanes wall fluid update output ");
+    check_phases(TOP FLUID, "sort packed fluid update output ");
+    check_phases(TOP FLUID WALL, "sort packed wall fluid update output ");
     check_phases(TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\nshifting = 1\n",
-                 "sort lanes slope fluid shift update output ");
+                 "sort packed slope fluid shift update output ");
     check_phases(TOP SOLID, "solid contact update output ");
     check_phases(TOP SOLID "[contact none]\nenabled = off\n", "solid update output ");
     check_phases(TOP SOLID "[contact c]\n" WALL, "solid contact update output ");
-    check_phases(TOP FLUID SOLID, "sort lanes wall fluid solid contact update output ");
+    check_phases(TOP FLUID SOLID, "sort packed wall fluid solid contact update output ");
 }
 
 int main(void)

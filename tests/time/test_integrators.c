@@ -439,16 +439,16 @@ static void test_the_force_on_a_dry_particle_fades(void)
 static void test_the_force_is_carried_only_to_where_it_is_used(void)
 {
     open("integrator=verlet", "numerics.multirate=on");
-    TEST_ASSERT_TRUE(rig.sim.effects & FX_HELD_FORCE);
+    TEST_ASSERT_TRUE(rig.sim.effects & FX_FORCE_EXTRAPOLATION);
     rig_close(&rig);
     rig_open(&rig, gate, "integrator=verlet", "numerics.multirate=on", NULL);
-    TEST_ASSERT_TRUE(rig.sim.effects & FX_HELD_FORCE && rig.sim.effects & FX_IMPEDANCE);
+    TEST_ASSERT_TRUE(rig.sim.effects & FX_FORCE_EXTRAPOLATION && rig.sim.effects & FX_IMPEDANCE);
     rig_close(&rig);
     open("integrator=verlet", "numerics.multirate=off");
-    TEST_ASSERT_FALSE(rig.sim.effects & FX_HELD_FORCE);
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_FORCE_EXTRAPOLATION);
     rig_close(&rig);
     open("integrator=symplectic", "numerics.multirate=on");
-    TEST_ASSERT_FALSE(rig.sim.effects & FX_HELD_FORCE);
+    TEST_ASSERT_FALSE(rig.sim.effects & FX_FORCE_EXTRAPOLATION);
     TEST_ASSERT_NULL(solid->mean_fx);
 }
 

@@ -33,7 +33,7 @@ def check_summary(top):
     assert s["particles"]["wall"] > 0 and s["fluid_left_domain"] == 0
     assert s["steps"] >= 200 and s["solid_substeps"] >= s["steps"]
     assert s["wall_seconds"] > 0 and s["particle_steps_per_second"] > 0
-    assert set(s["phase_seconds"]) == {"sort", "lanes", "wall", "fluid", "solid", "contact", "update",
+    assert set(s["phase_seconds"]) == {"sort", "packed", "wall", "fluid", "solid", "contact", "update",
                                        "output"}
     assert {"FLUID", "GRAVITY", "WALL", "SOLID", "COUPLING"} <= set(s["effects"])
     step = s["time_step"]
