@@ -87,13 +87,6 @@ static double next_time(const struct run *r)
 
 /* --- output --- */
 
-static enum err write_probes(struct run *r, int file)
-{
-    double row[SERIES_MAX_COLUMNS];
-    probes_sample(&r->probes, r->s, file, row);
-    return series_row(&r->probe_rows[file], row, r->diag);
-}
-
 static enum err write_ledger(struct run *r)
 {
     r->record.last = simulation_ledger(r->s);
@@ -210,7 +203,9 @@ static enum err write_due(struct run *r, bool at_end)
     const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
     for (int k = 0; k < r->probes.n_files; k++) {
         if (!due_now(&r->probe_due[k], time, at_end)) continue;
-        TRY(write_probes(r, k));
+        double row[SERIES_MAX_COLUMNS];
+        probes_sample(&r->probes, r->s, k, row);
+        TRY(series_row(&r->probe_rows[k], row, r->diag));
         due_pass(&r->probe_due[k], time);
     }
     for (int k = 0; k < OUT_COUNT; k++) {

@@ -6,13 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static void choose_sweeps(struct fluid *f, const struct fluid_sweeps *table, bool generic)
-{
-    const effect_set wanted = f->effects & PAIR_EFFECTS;
-    while (table->effects != ANY_EFFECTS && (generic || table->effects != wanted)) table++;
-    f->sweeps = table;
-}
-
 static struct fluid_constants constants_of(const struct scene *s)
 {
     const struct scene_fluid *fluid = &s->fluid[0];
@@ -99,8 +92,10 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     f->k = constants_of(s);
     f->effects = effects;
     f->never_skip = s->test.never_skip;
-    choose_sweeps(f, s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double,
-                  s->test.generic_kernel);
+    f->sweeps = s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double;
+    while (f->sweeps->effects != ANY_EFFECTS &&
+           (s->test.generic_kernel || f->sweeps->effects != (effects & PAIR_EFFECTS)))
+        f->sweeps++;
     f->threads = thread_count();
     for (int k = 0; k < KIND_COUNT; k++) f->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(f, a, cells_clusters(c, kinds[KIND_FLUID].capacity), d));

@@ -3,13 +3,6 @@
 
 #include <string.h>
 
-static void find_range(struct moving_wall *b, const struct particles *walls)
-{
-    while (b->first < walls->n && walls->body[b->first] != b->section) b->first++;
-    b->end = b->first;
-    while (b->end < walls->n && walls->body[b->end] == b->section) b->end++;
-}
-
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
                             const struct particles *walls, struct diag *d)
 {
@@ -20,16 +13,14 @@ enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct
     for (int k = 0; k < s->n_wall; k++) {
         const int motion = s->wall[k].motion[0] ? scene_find_motion(s, s->wall[k].motion) : -1;
         if (motion < 0) continue;
-        m->body[m->n] = (struct moving_wall){.section = k, .motion = motion};
-        find_range(&m->body[m->n++], walls);
+        int64_t first = 0;
+        while (first < walls->n && walls->body[first] != k) first++;
+        int64_t end = first;
+        while (end < walls->n && walls->body[end] == k) end++;
+        m->body[m->n++] =
+            (struct moving_wall){.section = k, .motion = motion, .first = first, .end = end};
     }
     return ERR_OK;
-}
-
-static bool same_place(const struct motion_state *a, const struct motion_state *b)
-{
-    /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
-    return memcmp(a, b, sizeof *a) == 0;
 }
 
 static void place_body(const struct moving_wall *b, struct particles *p)
@@ -52,7 +43,8 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct part
     for (int k = 0; k < m->n; k++) {
         struct moving_wall *const b = &m->body[k];
         const struct motion_state now = motion_at(s, b->motion, time);
-        if (b->known && same_place(&now, &b->placed) && !m->never_skip) continue;
+        /* NOLINTNEXTLINE(bugprone-suspicious-memory-comparison): bits are meant, of doubles only */
+        if (b->known && memcmp(&now, &b->placed, sizeof now) == 0 && !m->never_skip) continue;
         b->placed = now;
         b->known = true;
         b->rests = now.v[0] == 0 && now.v[1] == 0 && now.rate == 0;

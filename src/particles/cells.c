@@ -33,12 +33,6 @@ static enum err list_create(struct cell_list *list, struct arena *a, size_t n_ce
 #define SIDE 1.6
 #define LEAST_SIDE 1.05
 
-static double cells_across(double width, double reach)
-{
-    const double wide = floor(width / (SIDE * reach)), narrow = floor(width / (LEAST_SIDE * reach));
-    return max2(1, max2(wide, min2(3, narrow)));
-}
-
 enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
                       const double upper[2], double reach, double skin,
                       const struct particles kinds[KIND_COUNT], struct diag *d)
@@ -48,7 +42,9 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
     double n[2];
     for (int k = 0; k < 2; k++) {
         c->lower[k] = lower[k];
-        n[k] = cells_across(upper[k] - lower[k], reach);
+        const double width = upper[k] - lower[k], wide = floor(width / (SIDE * reach)),
+                     narrow = floor(width / (LEAST_SIDE * reach));
+        n[k] = max2(1, max2(wide, min2(3, narrow)));
         if (!(n[k] <= MORTON_CELLS))
             return diag_fail(
                 d, ERR_INPUT,

@@ -293,11 +293,12 @@ static void watch_pair(struct contact *c, const struct particles *p, int64_t pai
     add_rows(c, p, pair, &q, &foot, then);
 }
 
-/* Depth of a point behind the nearest edge of another body whose surface it has passed, from the
- * pairs of one point; 0: in front of it. */
-static double behind(const struct contact *c, int64_t first, int64_t end, int32_t *nearest_edge)
+/* Notes the depth of a point behind the nearest edge of another body if it has passed the surface, from
+ * the pairs of this point. */
+static void watch_side(struct contact *c, int64_t first, int64_t end)
 {
     double nearest = (double)INFINITY;
+    int32_t edge = 0;
     bool inside = false;
     const int32_t point = c->pair_point[first];
     for (int64_t k = first; k < end; k++) {
@@ -307,18 +308,11 @@ static double behind(const struct contact *c, int64_t first, int64_t end, int32_
         const struct contact_edge *const e = &c->edge[c->pair_edge[k]];
         const double side = (c->x[e->b] - c->x[e->a]) * f.y - (c->y[e->b] - c->y[e->a]) * f.x;
         nearest = f.distance;
-        *nearest_edge = c->pair_edge[k];
+        edge = c->pair_edge[k];
         inside = e->sided && f.at > 0 && f.at < 1 && side > 0;
     }
-    return inside ? nearest : 0;
-}
-
-static void watch_side(struct contact *c, int64_t first, int64_t end)
-{
-    int32_t edge = 0;
-    const double far = behind(c, first, end, &edge);
-    const int32_t point = c->pair_point[first];
-    if (far > 0) note_depth(c, point, edge, 1 + far / contact_pair_law(c, point, edge).spacing);
+    if (inside && nearest > 0)
+        note_depth(c, point, edge, 1 + nearest / contact_pair_law(c, point, edge).spacing);
 }
 
 static void watch_pairs(struct contact *c, const struct particles *p, double longest, double span)

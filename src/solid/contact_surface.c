@@ -99,16 +99,6 @@ static enum err find_links(const struct cloud *of, struct arena *temp, struct li
     return ERR_OK;
 }
 
-/* A planar graph of n points has fewer than 3 n edges. */
-static enum err links_create(const struct cloud *of, struct arena *temp, struct link **link,
-                             int64_t *n_links, struct diag *d)
-{
-    *link = arena_alloc(temp, 3 * (size_t)of->n + 1, sizeof **link, "contact", d);
-    if (!*link) return ERR_MEMORY;
-    for (int64_t i = 0; i < of->n; i++) of->point[i] = -1;
-    return find_links(of, temp, *link, n_links, d);
-}
-
 /* Numbers the particles at the surface of groups from `first` to before `end` on from c->n_points. */
 static void number_points(struct contact *c, const struct cloud *of, int32_t first, int32_t end)
 {
@@ -223,15 +213,6 @@ static enum err find_held(struct contact *c, struct arena *a, const struct parti
     return ERR_OK;
 }
 
-static enum err keep_wall_points(struct contact *c, struct arena *a, const struct cloud *of,
-                                 struct diag *d)
-{
-    c->wall_point = arena_alloc(a, (size_t)of->n, sizeof *c->wall_point, "contact", d);
-    if (!c->wall_point) return ERR_MEMORY;
-    for (int64_t i = 0; i < of->n; i++) c->wall_point[i] = of->point[i];
-    return ERR_OK;
-}
-
 static enum err find_surface(struct contact *c, struct arena *a, const struct particles *solid,
                              struct arena *temp, struct diag *d)
 {
@@ -240,12 +221,17 @@ static enum err find_surface(struct contact *c, struct arena *a, const struct pa
     int64_t n_links[2], n = 0;
     TRY(make_clouds(c, solid, of, temp, d));
     for (int k = 0; k < 2; k++) {
-        TRY(links_create(&of[k], temp, &link[k], &n_links[k], d));
+        /* A planar graph of n points has fewer than 3 n edges. */
+        link[k] = arena_alloc(temp, 3 * (size_t)of[k].n + 1, sizeof *link[k], "contact", d);
+        if (!link[k]) return ERR_MEMORY;
+        for (int64_t i = 0; i < of[k].n; i++) of[k].point[i] = -1;
+        TRY(find_links(&of[k], temp, link[k], &n_links[k], d));
         for (int64_t i = 0; i < of[k].n; i++) n += of[k].point[i] >= 0;
     }
     TRY(points_create(c, a, (size_t)n, d));
     c->edge = arena_alloc(a, (size_t)(n_links[0] + n_links[1] + n), sizeof *c->edge, "contact", d);
-    if (!c->edge) return ERR_MEMORY;
+    c->wall_point = arena_alloc(a, (size_t)of[1].n, sizeof *c->wall_point, "contact", d);
+    if (!c->edge || !c->wall_point) return ERR_MEMORY;
     /* Solids, walls that move, walls at rest. */
     number_points(c, &of[0], 0, c->n_solids);
     c->n_solid_points = c->n_points;
@@ -254,7 +240,7 @@ static enum err find_surface(struct contact *c, struct arena *a, const struct pa
     number_points(c, &of[1], c->n_solids, c->n_solids + 1);
     for (int k = 0; k < 2; k++) add_edges(c, &of[k], link[k], n_links[k]);
     set_shares(c);
-    TRY(keep_wall_points(c, a, &of[1], d));
+    for (int64_t i = 0; i < of[1].n; i++) c->wall_point[i] = of[1].point[i];
     return find_held(c, a, solid, temp, d);
 }
 

@@ -11,14 +11,6 @@
  * heavy. */
 #define RETURN_FRACTION 0.02
 
-static void return_fraction(struct particles *p, int64_t i, double per_time)
-{
-    p->fx[i] -= RETURN_FRACTION * per_time * p->interface_impulse_x[i];
-    p->fy[i] -= RETURN_FRACTION * per_time * p->interface_impulse_y[i];
-    p->interface_impulse_x[i] *= 1 - RETURN_FRACTION;
-    p->interface_impulse_y[i] *= 1 - RETURN_FRACTION;
-}
-
 /* T-35a: the direction of the wetted surface times the root of the fraction of the normal velocity
  * removed in a sub-step of dt; the update is implicit, so it adds no step bound. Also the normal
  * velocity that the fluid uses. Zero for dry and clamped particles. */
@@ -36,9 +28,13 @@ static void find_face(const struct solid *s, struct particles *p, int64_t i, dou
 
 void interface_begin(const struct solid *s, struct particles *p, double dt, int n)
 {
+    const double per_time = 1 / (n * dt);
 #pragma omp for schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        return_fraction(p, i, 1 / (n * dt));
+        p->fx[i] -= RETURN_FRACTION * per_time * p->interface_impulse_x[i]; /* T-35b */
+        p->fy[i] -= RETURN_FRACTION * per_time * p->interface_impulse_y[i];
+        p->interface_impulse_x[i] *= 1 - RETURN_FRACTION;
+        p->interface_impulse_y[i] *= 1 - RETURN_FRACTION;
         find_face(s, p, i, dt);
     }
 }

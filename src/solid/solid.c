@@ -291,12 +291,6 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
     }
 }
 
-/* The end of a thread's particles. */
-static int64_t end_of(const struct chunk *own)
-{
-    return own->last < own->s->n_packs ? own->s->pack[own->last].i : own->p->n;
-}
-
 /* Packs new positions and velocities for the sweeps immediately. */
 static void pack_motion(const struct chunk *own)
 {
@@ -308,8 +302,9 @@ static void pack_motion(const struct chunk *own)
 SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool impeded)
 {
     const struct particles *const p = own->p;
-    const int64_t end = end_of(own);
-    const int64_t first = own->first < own->last ? own->s->pack[own->first].i : end;
+    const struct solid_pack *const pack = own->s->pack;
+    const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : p->n;
+    const int64_t first = own->first < own->last ? pack[own->first].i : end;
 #pragma omp simd
     for (int64_t i = first; i < end; i++) {
         const double before = impeded ? p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i] : 0;
@@ -405,21 +400,16 @@ static bool steps_parts(const struct solid *s, int n)
            !s->external[0] && thread_team() == s->threads;
 }
 
-/* By all threads together. */
-static void begin_impedance(const struct solid *s, struct particles *p, double dt, int n)
-{
-    interface_begin(s, p, dt, n);
-    if (!s->loads) return;
-#pragma omp single
-    clear_driven_normals(s->loads, p);
-}
-
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
     bool in_parts = false;
 #pragma omp parallel num_threads(s->threads) if (!calls_program(s))
     {
-        if (s->impedance > 0) begin_impedance(s, p, dt, n);
+        if (s->impedance > 0) interface_begin(s, p, dt, n);
+        if (s->impedance > 0 && s->loads) {
+#pragma omp single
+            clear_driven_normals(s->loads, p);
+        }
         if (steps_parts(s, n)) {
             struct solid_part *const part = &s->part[thread_index()];
             const struct chunk own = {&part->solid, &part->p, 0, part->solid.n_packs, part};

@@ -51,14 +51,6 @@ struct box {
     double low[2], high[2];
 };
 
-static void widen(struct box *b, double x, double y, double margin)
-{
-    b->low[0] = min2(b->low[0], x - margin);
-    b->low[1] = min2(b->low[1], y - margin);
-    b->high[0] = max2(b->high[0], x + margin);
-    b->high[1] = max2(b->high[1], y + margin);
-}
-
 static bool meet_boxes(const struct box *a, const struct box *b)
 {
     return a->low[0] <= b->high[0] && b->low[0] <= a->high[0] && a->low[1] <= b->high[1] &&
@@ -71,8 +63,13 @@ static void find_boxes(const struct simulation *s, struct box box[ACCOUNT_ENTRIE
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) box[k] = (struct box){{none, none}, {-none, -none}};
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct particles *const p = &s->kind[kind];
-        for (int64_t i = 0; i < p->n; i++)
-            widen(&box[account_entry((enum kind)kind, p->body[i])], p->x[i], p->y[i], margin);
+        for (int64_t i = 0; i < p->n; i++) {
+            struct box *const b = &box[account_entry((enum kind)kind, p->body[i])];
+            b->low[0] = min2(b->low[0], p->x[i] - margin);
+            b->low[1] = min2(b->low[1], p->y[i] - margin);
+            b->high[0] = max2(b->high[0], p->x[i] + margin);
+            b->high[1] = max2(b->high[1], p->y[i] + margin);
+        }
     }
 }
 

@@ -206,30 +206,23 @@ void book_midpoint(struct simulation *s, double dt)
     note_step(&s->state.account, s, power, dt);
 }
 
-/* Displacement of a particle by the mean velocities of its kicks. Drifts after the kicks are longer
- * by half a kick of the change of velocity. */
-static void mean_displacement(const struct particles *p, int64_t i, double late, double move[2])
-{
-    move[0] = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
-    move[1] = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
-}
-
 void book_solid(struct simulation *s, double dt, int n, bool centred)
 {
     struct account *const a = &s->state.account;
     const struct particles *const p = &s->kind[KIND_SOLID];
     const double *const *const external = s->solid.external;
+    /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after the
+     * kicks are longer by half a kick of the change of velocity. */
     const double late = centred ? 0 : 0.5 * dt / n;
     double fluid[SCENE_MAX_SECTIONS] = {0}, outer[SCENE_MAX_SECTIONS] = {0};
     for (int64_t i = 0; i < p->n; i++) {
         if (p->free[i] == 0) continue;
         const double mass = s->solid.body[p->body[i]].mass;
-        double move[2];
-        mean_displacement(p, i, late, move);
-        fluid[p->body[i]] += p->fx[i] * move[0] + p->fy[i] * move[1];
+        const double ux = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
+        const double uy = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
+        fluid[p->body[i]] += p->fx[i] * ux + p->fy[i] * uy;
         if (s->solid.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
-        if (external[0])
-            outer[p->body[i]] += mass * (external[0][i] * move[0] + external[1][i] * move[1]);
+        if (external[0]) outer[p->body[i]] += mass * (external[0][i] * ux + external[1][i] * uy);
     }
     for (int k = 0; k < s->scene->n_solid; k++) {
         account_work(a, SOURCE_FLUID, KIND_SOLID, k, fluid[k] + outer[k]);

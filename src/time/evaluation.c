@@ -48,14 +48,6 @@ static void add_external(struct simulation *s, double time)
     s->fluid.extremes.acceleration2 = top;
 }
 
-/* The predictor's state, half a step ahead, adds nothing to the energy account. */
-static void set_buffers(struct simulation *s, double time)
-{
-    const double clock = wall_clock();
-    open_set(&s->open, &s->fluid.k, &s->kind[KIND_FLUID], &s->cells, time, time == s->state.time);
-    phase_add(s, PHASE_open, clock);
-}
-
 void evaluate_fluid(struct simulation *s, double time)
 {
     s->state.evaluations++;
@@ -69,7 +61,13 @@ void evaluate_fluid(struct simulation *s, double time)
         memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
         memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
     }
-    if (s->effects & FX_OPEN) set_buffers(s, time);
+    if (s->effects & FX_OPEN) {
+        const double clock = wall_clock();
+        /* The predictor's state, half a step ahead, adds nothing to the energy account. */
+        const bool counts = time == s->state.time;
+        open_set(&s->open, &s->fluid.k, &s->kind[KIND_FLUID], &s->cells, time, counts);
+        phase_add(s, PHASE_open, clock);
+    }
     const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
     s->fluid.counts_touch = !predicts || time != s->state.time; /* symplectic: of the corrector */
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);

@@ -6,27 +6,17 @@
 #include "particles/kernel.h"
 #include "time/booking.h"
 
-/* T-45: ten times the density change that c0 is chosen for, and two thirds of the guard's limit.
- * Larger tension is not part of the flow. */
-static double lowest_density(const struct simulation *s)
-{
-    const double factor = s->scene->numerics.sound_factor;
-    return max2(-10 / square(factor), -2.0 / 3 * s->guard.dens_limit);
-}
-
-/* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */
-static int most_of_drop(const struct simulation *s)
-{
-    const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;
-    return (int)(PI / 3 * reach * reach);
-}
-
 void limit_isolated_tension(struct simulation *s)
 {
-    const double lowest = lowest_density(s);
+    /* T-45: ten times the density change that c0 is chosen for, and two thirds of the guard's limit.
+     * Larger tension is not part of the flow. */
+    const double factor = s->scene->numerics.sound_factor;
+    const double lowest = max2(-10 / square(factor), -2.0 / 3 * s->guard.dens_limit);
     if (!(s->extremes.dens_low < lowest)) return;
     struct particles *const p = &s->kind[KIND_FLUID];
-    const int most = most_of_drop(s);
+    /* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */
+    const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;
+    const int most = (int)(PI / 3 * reach * reach);
     const struct fluid_energy before = book_before(s);
     int64_t found = 0;
 #pragma omp parallel for schedule(static) reduction(+ : found)

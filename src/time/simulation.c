@@ -112,19 +112,14 @@ static void set_guards(struct simulation *s)
     };
 }
 
-/* Speed of the fastest particle of one kind, squared. */
-static double fastest(const struct particles *p)
-{
-    double top = 0;
-#pragma omp parallel for schedule(static) reduction(max : top)
-    for (int64_t i = 0; i < p->n; i++) top = max2(top, p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
-    return top;
-}
-
 static void find_speed(struct simulation *s)
 {
-    s->speed2 = s->extremes.speed2;
-    if (s->effects & FX_SOLID) s->speed2 = max2(s->speed2, fastest(&s->kind[KIND_SOLID]));
+    const struct particles *const solid = &s->kind[KIND_SOLID];
+    double top = s->extremes.speed2;
+#pragma omp parallel for schedule(static) reduction(max : top) if (solid->n > 0)
+    for (int64_t i = 0; i < solid->n; i++)
+        top = max2(top, solid->vx[i] * solid->vx[i] + solid->vy[i] * solid->vy[i]);
+    s->speed2 = top;
     if (s->effects & FX_MOTION)
         s->speed2 = max2(s->speed2, wall_motion_speed2(&s->wall_motion, &s->kind[KIND_WALL]));
 }
@@ -363,20 +358,12 @@ static double shift_fluid(struct simulation *s, double clock)
     return phase_add(s, PHASE_shift, clock);
 }
 
-/* Adds the work on a particle of a solid to the account of its section (T-70). */
-static void book_gravity(struct simulation *s, const struct particles *p, int64_t i, double mass,
-                         const double g[2])
-{
-    const double *const start = s->scene->top.gravity;
-    s->state.account.put[account_entry(KIND_SOLID, p->body[i])] +=
-        s->state.dt * mass * ((g[0] - start[0]) * p->vx[i] + (g[1] - start[1]) * p->vy[i]);
-}
-
 /* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
  * ledger has the potential energy of the value at t = 0. */
 static void add_gravity_work(struct simulation *s)
 {
     double g[2], px = 0, py = 0;
+    const double *const start = s->scene->top.gravity;
     scene_gravity_at(s->scene, s->state.time - 0.5 * s->state.dt, g);
     const struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
     for (int64_t i = 0; i < fluid->n; i++) {
@@ -388,10 +375,11 @@ static void add_gravity_work(struct simulation *s)
                             s->solid.body[solid->body[i]].mass;
         px += mass * solid->vx[i];
         py += mass * solid->vy[i];
-        book_gravity(s, solid, i, mass, g);
+        s->state.account.put[account_entry(KIND_SOLID, solid->body[i])] +=
+            s->state.dt * mass *
+            ((g[0] - start[0]) * solid->vx[i] + (g[1] - start[1]) * solid->vy[i]);
     }
-    s->state.wall_work += s->state.dt * ((g[0] - s->scene->top.gravity[0]) * px +
-                                         (g[1] - s->scene->top.gravity[1]) * py);
+    s->state.wall_work += s->state.dt * ((g[0] - start[0]) * px + (g[1] - start[1]) * py);
 }
 
 /* Magnitude of the impulse exchanged between fluid and structure in the last step. */
