@@ -143,7 +143,7 @@ def probes(s, fluid, solids, at):
     d = s.dice
     possible = ["energy"] if solids or fluid else []
     if fluid:
-        possible += ["pressure", "velocity", "level", "front", "flux"]
+        possible += ["pressure", "velocity", "level", "front", "flux", "surface_pressure"]
     if solids:
         possible += ["displacement", "stress", "strain", "acceleration", "pose", "solid velocity"]
         possible += ["force"] if fluid else []
@@ -166,7 +166,7 @@ def probes(s, fluid, solids, at):
             rows.append(("body", d.choice(solids)[0]))
         elif what == "energy":
             continue
-        if what == "flux":
+        if what in ("flux", "surface_pressure"):
             rows.append(("to", f"{at[0] * DP:.4g}, {(at[1] + 10) * DP:.4g}"))
         if what == "front":
             rows.append(("direction", d.choice(["right", "left", "up", "down"])))

@@ -245,7 +245,7 @@ static void put_probe(struct drawing *g, const struct scene_probe *probe)
 {
     const double x = px(g, probe->point[0]), y = py(g, probe->point[1]);
     if (!has_position(probe)) return;
-    if (probe->quantity == PROBE_FLUX)
+    if (scene_probe_target(probe) == TARGET_FLUID_LINE)
         fprintf(g->file, "<path class=\"probe\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", x, y,
                 px(g, probe->to[0]), py(g, probe->to[1]));
     if (probe->quantity == PROBE_LEVEL)
@@ -333,7 +333,7 @@ static void describe_probe(const struct scene_probe *p, char *text, size_t size)
 {
     char quantity[SCENE_NAME], place[128] = "";
     param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
-    if (p->quantity == PROBE_FLUX)
+    if (scene_probe_target(p) == TARGET_FLUID_LINE)
         snprintf(place, sizeof place, " from (%g, %g) to (%g, %g) m", p->point[0], p->point[1],
                  p->to[0], p->to[1]);
     else if (has_position(p))

@@ -101,9 +101,9 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
                         p->common.name, quantity);
     if (target == TARGET_FLUID_LINE && p->point[0] == p->to[0] && p->point[1] == p->to[1])
         return bad_line(r, p->common.line,
-                        "[probe %s] measures the flux through the line from `point` to `to`; the "
+                        "[probe %s] measures the %s the line from `point` to `to`; the "
                         "two points must differ",
-                        p->common.name);
+                        p->common.name, p->quantity == PROBE_FLUX ? "flux through" : "pressure on");
     return ERR_OK;
 }
 

@@ -174,42 +174,6 @@ static enum err check_solid(struct sampler *g, const struct region *region)
     return ERR_OK;
 }
 
-/* Boxes of walls and solids with a slit between them that is too narrow for a particle. */
-static void warn_slit(struct sampler *g, const struct region *a, const struct shape *p,
-                      const struct region *b, const struct shape *q)
-{
-    if (p->kind != SHAPE_BOX || q->kind != SHAPE_BOX) return;
-    const double dp = g->scene->top.dp;
-    for (int c = 0; c < 2; c++) {
-        const double slit = max2(q->pt[0][c] - p->pt[1][c], p->pt[0][c] - q->pt[1][c]);
-        const double shared =
-            min2(p->pt[1][1 - c], q->pt[1][1 - c]) - max2(p->pt[0][1 - c], q->pt[0][1 - c]);
-        if (slit <= 1e-6 * dp || slit >= dp * (1 - 1e-6) || shared <= 1e-6 * dp) continue;
-        char place[LOCATION_TEXT];
-        scene_location(g->scene, q->line, place);
-        diag_warn(g->diag,
-                  "%s: the gap between [%s %s] and [%s %s] is %g m, narrower than dp = %g m, so no "
-                  "fluid passes; use a smaller dp or close the gap",
-                  place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit, dp);
-        return;
-    }
-}
-
-static void warn_slits(struct sampler *g)
-{
-    enum { MAX_PAIRS = 1000000 }; /* not done for scenes of thousands of boxes */
-    long pairs = 0;
-    for (int i = 0; i < g->n_regions && g->scene->n_fluid; i++) {
-        for (int j = i; j < g->n_regions; j++) {
-            const struct region *a = &g->regions[i], *b = &g->regions[j];
-            if (b->kind == KIND_FLUID) break;
-            for (int k = 0; k < a->list->n; k++)
-                for (int l = i == j ? k + 1 : 0; l < b->list->n && pairs++ < MAX_PAIRS; l++)
-                    warn_slit(g, a, &a->list->item[k], b, &b->list->item[l]);
-        }
-    }
-}
-
 enum err geometry_check_regions(struct sampler *g)
 {
     for (int r = 0; r < g->n_regions; r++) {
@@ -228,6 +192,5 @@ enum err geometry_check_regions(struct sampler *g)
         TRY(check_solid(g, region));
         TRY(check_area(g, region));
     }
-    warn_slits(g);
     return ERR_OK;
 }

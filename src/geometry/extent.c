@@ -175,27 +175,33 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
                      probe->body);
 }
 
+static enum err check_place(const struct sampler *g, const struct scene_probe *probe,
+                            const char *key, const double at[2])
+{
+    const struct scene *s = g->scene;
+    bool inside = true;
+    for (int c = 0; c < 2; c++)
+        inside &= at[c] >= s->domain_lower[c] && at[c] <= s->domain_upper[c];
+    if (inside) return ERR_OK;
+    char place[LOCATION_TEXT];
+    scene_location(s, probe->common.line, place);
+    return diag_fail(g->diag, ERR_INPUT,
+                     "%s: [probe %s] %s (%g, %g) lies outside of the domain, "
+                     "(%g, %g) to (%g, %g) m",
+                     place, probe->common.name, key, at[0], at[1], s->domain_lower[0],
+                     s->domain_lower[1], s->domain_upper[0], s->domain_upper[1]);
+}
+
 static enum err check_probes(const struct sampler *g)
 {
     const struct scene *s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *probe = &s->probe[k];
         const enum probe_target target = scene_probe_target(probe);
+        const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
         if (target == TARGET_SOLID_POINT) TRY(check_body_probe(g, probe));
-        if (target != TARGET_FLUID_POINT) continue;
-        bool inside = true;
-        for (int c = 0; c < 2; c++)
-            inside &=
-                probe->point[c] >= s->domain_lower[c] && probe->point[c] <= s->domain_upper[c];
-        if (inside) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, probe->common.line, place);
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: [probe %s] point (%g, %g) lies outside of the domain, "
-                         "(%g, %g) to (%g, %g) m",
-                         place, probe->common.name, probe->point[0], probe->point[1],
-                         s->domain_lower[0], s->domain_lower[1], s->domain_upper[0],
-                         s->domain_upper[1]);
+        if (target == TARGET_FLUID_POINT || line) TRY(check_place(g, probe, "point", probe->point));
+        if (line) TRY(check_place(g, probe, "to", probe->to));
     }
     return ERR_OK;
 }

@@ -2,6 +2,7 @@
  * Which particles remain where regions overlap. Solids have priority: a clamped part replaces the
  * wall that holds it. Walls form a union. Any other overlap is an error of the case. */
 #include "geometry/sampling.h"
+#include "geometry/near.h"
 
 #include "case/case.h"
 
@@ -12,36 +13,6 @@
 /* Two points nearer than this many dp coincide. The distance on a lattice is 1. Between two
  * lattices, it is at most sqrt(1/2) from a point to the nearest one of the other. */
 static const double same_place = 0.7;
-
-/* Points by cell of side dp, in a hash table: sparse scenes need no more memory than dense ones. */
-struct near_table {
-    double side;
-    uint32_t mask;
-    int32_t *head, *next; /* index + 1; 0: none */
-    const double *x, *y;
-};
-
-static int64_t cell_of(const struct near_table *t, double x) { return (int64_t)floor(x / t->side); }
-
-static enum err table_create(struct near_table *t, struct sampler *g, const struct samples *p)
-{
-    uint64_t size = 64;
-    while (size < (uint64_t)p->n) size *= 2;
-    *t = (struct near_table){.side = g->scene->top.dp,
-                             .mask = (uint32_t)(size - 1),
-                             .x = p->x,
-                             .y = p->y};
-    t->head = arena_alloc(&g->temp, size, sizeof *t->head, "overlaps", g->diag);
-    t->next = arena_alloc(&g->temp, (size_t)p->n, sizeof *t->next, "overlaps", g->diag);
-    return t->head && t->next ? ERR_OK : ERR_MEMORY;
-}
-
-static void table_insert(struct near_table *t, int64_t k)
-{
-    const uint32_t slot = hash_cell(cell_of(t, t->x[k]), cell_of(t, t->y[k]), t->mask);
-    t->next[k] = t->head[slot];
-    t->head[slot] = (int32_t)(k + 1);
-}
 
 /* Mean of the spacings of two points' lattices. */
 static double spacing(const struct region *regions, const struct samples *p, int64_t a, int64_t b)
@@ -54,10 +25,10 @@ static int64_t table_find(const struct near_table *t, const struct region *regio
                           const struct samples *p, int64_t k)
 {
     const double x = t->x[k], y = t->y[k];
-    const int64_t ci = cell_of(t, x), cj = cell_of(t, y);
+    const int64_t ci = near_cell(t, x), cj = near_cell(t, y);
     for (int64_t j = cj - 1; j <= cj + 1; j++)
         for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = t->head[hash_cell(i, j, t->mask)]; n; n = t->next[n - 1])
+            for (int32_t n = near_first(t, i, j); n; n = t->next[n - 1])
                 if (p->region[n - 1] != p->region[k] &&
                     square(t->x[n - 1] - x) + square(t->y[n - 1] - y) <
                         square(same_place * spacing(regions, p, k, n - 1)))
@@ -70,8 +41,7 @@ static int motion_of(const struct scene *s, const struct region *wall)
     return scene_find_motion(s, s->wall[wall->body].motion);
 }
 
-/* Whether a point is inside a region's shapes, with the rounding of geometry_sample. */
-static bool covers(const struct sampler *g, const struct region *region, double x, double y)
+bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y)
 {
     double at[2];
     lattice_place(&region->lattice, x, y, at);
@@ -89,7 +59,7 @@ static bool covers(const struct sampler *g, const struct region *region, double 
 static bool yields_to(const struct sampler *g, const struct samples *p, int64_t k, int64_t other)
 {
     const struct region *mine = &g->regions[p->region[k]], *its = &g->regions[p->region[other]];
-    if (!covers(g, its, p->x[k], p->y[k])) return true;
+    if (!geometry_covers(g, its, p->x[k], p->y[k])) return true;
     if (mine->kind != KIND_WALL) return false;
     if (its->kind == KIND_SOLID) return p->clamped[other];
     return its->kind == KIND_WALL && motion_of(g->scene, mine) == motion_of(g->scene, its);
@@ -112,7 +82,10 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
         mend = "change the sign of `thickness` if the band of the polyline is on the wrong side, "
                "move one of the shapes, or subtract the overlap with `minus`";
     if (mine->kind == KIND_WALL && its->kind == KIND_SOLID)
-        mend = "only the clamped part of a solid may lie in a wall";
+        mend = has_band(mine) ? "only the clamped part of a solid may lie in a wall; change the "
+                                "sign of `thickness` if the band of the polyline is on the wrong "
+                                "side"
+                              : "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
         mend = "walls that move differently must not overlap";
     return diag_fail(g->diag, ERR_INPUT,
@@ -132,7 +105,7 @@ static enum err find_overlaps(struct sampler *g, const struct samples *p, struct
         for (; k < p->n && p->region[k] == region; k++) {
             const int64_t other = table_find(t, g->regions, p, k);
             kept[k] = other < 0;
-            if (kept[k]) table_insert(t, k);
+            if (kept[k]) near_insert(t, k);
             if (kept[k] || yields_to(g, p, k, other)) continue;
             if (!wrong++) {
                 first = k;
@@ -179,7 +152,7 @@ enum err geometry_merge(struct sampler *g, const struct samples *p)
     struct near_table t;
     uint8_t *kept = arena_alloc(&g->temp, (size_t)p->n, 1, "overlaps", g->diag);
     if (!kept) return ERR_MEMORY;
-    TRY(table_create(&t, g, p));
+    TRY(near_create(&t, g->scene->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
     TRY(find_overlaps(g, p, &t, kept));
     for (int kind = 0; kind < KIND_COUNT; kind++) TRY(store(g, p, kept, (enum kind)kind));
     return ERR_OK;

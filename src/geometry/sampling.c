@@ -325,6 +325,7 @@ enum err scene_sample(struct scene *s, struct diag *d)
     if (!err) err = geometry_merge(&g, &points);
     if (!err) err = geometry_open(&g);
     if (!err) err = geometry_extent(&g);
+    if (!err) err = geometry_warn_of_gaps(&g);
     if (!err) err = geometry_warn_of_doubts(&g);
     arena_free(&g.temp);
     return err;

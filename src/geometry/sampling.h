@@ -63,6 +63,12 @@ enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
 
+/* Whether a point is inside a region's shapes, with the rounding of geometry_sample. */
+bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
+
+/* Warns of openings that sampling has closed or left one particle wide (geometry/gaps.c). */
+enum err geometry_warn_of_gaps(struct sampler *g) SPHFSI_CHECKED;
+
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 

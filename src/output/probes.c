@@ -412,6 +412,7 @@ static void values(const struct probe *pr, struct simulation *s, double *row)
     case PROBE_ACCELERATION: acceleration(pr, s, row); break;
     case PROBE_POSE: pose(pr, s, row); break;
     case PROBE_REACTION: reaction(pr, s, row); break;
+    case PROBE_SURFACE_PRESSURE: simulation_pressure_on(s, pr->point, pr->to, row); break;
     case PROBE_QUANTITIES: break;
     }
 }

@@ -178,3 +178,18 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
     }
     return sum;
 }
+
+void simulation_pressure_on(const struct simulation *s, const double a[2], const double b[2],
+                            double out[3])
+{
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    const int n = (int)max2(1, ceil(elementary_hypot(dx, dy) / s->scene->top.dp - 1e-9));
+    double sum = 0;
+    for (int k = 0; k < n; k++) {
+        const double at = (k + 0.5) / n;
+        sum += simulation_pressure_at(s, a[0] + at * dx, a[1] + at * dy);
+    }
+    out[0] = sum / n;
+    out[1] = out[0] * dy;
+    out[2] = -out[0] * dx;
+}

@@ -128,5 +128,9 @@ double simulation_front(const struct simulation *s, int direction);
 
 /* Flow through the line from a to b, positive to the right of that direction, m^2/s per depth. */
 double simulation_flux(const struct simulation *s, const double a[2], const double b[2]);
+/* Mean pressure along the line from a to b, Pa, and its force on a surface with the fluid to the left of the
+ * line, N/m: the midpoint rule over pieces of at most dp. */
+void simulation_pressure_on(const struct simulation *s, const double a[2], const double b[2],
+                            double out[3]);
 
 #endif

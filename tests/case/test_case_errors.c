@@ -297,6 +297,9 @@ static const struct {
      "bad.cfg:8: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
      "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
+    {TOP FLUID "[probe S]\nquantity = surface_pressure\n", NULL,
+     "bad.cfg:6: [probe S] measures the pressure on the line from `point` to `to`; the two points "
+     "must differ"},
     {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
      "bad.cfg:6: [probe Q] measures the flux through the line from `point` to `to`; the two points "
      "must differ"},

@@ -104,6 +104,86 @@ static void test_a_clamp_that_stays_while_its_wall_moves(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+#define PROBE "[probe P]\nquantity = pressure\npoint = "
+
+static void test_a_pressure_probe_in_a_wall_or_in_the_air(void)
+{
+    read(HEAD WATER SIDES FLOOR PROBE "0.05, -0.01\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies inside a wall or solid"), warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "doubts.cfg:14: [probe P] point = 0.05, -0.01"));
+    /* The common corner of two walls is inside; a point on a face is not. */
+    read(HEAD WATER SIDES FLOOR PROBE "-0.01, 0\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies inside a wall or solid"), warnings);
+    read(HEAD WATER SIDES FLOOR PROBE "0.05, 0\n"
+                                      "[probe Q]\nquantity = pressure\npoint = 0, 0.02\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD WATER SIDES FLOOR PROBE "0.05, 0.08\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "lies in the air"), warnings);
+    /* Beside the water, where a dam break may reach it. */
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.03, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
+             FLOOR PROBE "0.1, 0.04\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* A wave maker may throw water anywhere. */
+    read(HEAD WATER SIDES FLOOR PROBE
+         "0.05, 0.08\n"
+         "[wall paddle]\nshape = box 0.04, 0.12, 0.06, 0.14\nmotion = m\n"
+         "[motion m]\nvelocity = 0, -0.1\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_a_gap_of_one_particle(void)
+{
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
+             FLOOR "[wall post]\nshape = box 0.05, 0.005, 0.07, 0.05\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "is 0.005 m, no wider than dp = 0.005 m, so "
+                                                  "hardly any fluid passes"),
+                                 warnings);
+    TEST_ASSERT_NULL(strchr(strchr(warnings, '\n') + 1, '\n')); /* one warning */
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
+             FLOOR "[wall post]\nshape = box 0.05, 0.01, 0.07, 0.05\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* A polygon and a body. */
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
+             FLOOR
+         "[wall post]\nshape = polygon 0.05, 0.005; 0.07, 0.005; 0.07, 0.05; 0.05, 0.05\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "between [wall floor] and [wall post] at ("),
+                                 warnings);
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n" SIDES
+             FLOOR "[wall post]\nshape = polygon 0.05, 0; 0.07, 0; 0.07, 0.05; 0.05, 0.05\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_an_opening_that_sampling_closes(void)
+{
+    read(HEAD WATER SIDES FLOOR "[wall lid]\nshape = box 0, 0.06, 0.1, 0.08\n"
+                                "minus = box 0.051, 0.06, 0.052, 0.08\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "`minus` removes no particle of [wall lid]"),
+                                 warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "doubts.cfg:16: "));
+    read(HEAD WATER SIDES FLOOR "[wall lid]\nshape = box 0, 0.06, 0.1, 0.08\n"
+                                "minus = box 0.05, 0.06, 0.06, 0.08\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_shifting_where_nothing_gives_way(void)
+{
+#define CHANNEL                                                                               \
+    "dp = 5 mm\nend_time = 1 s\ngravity = 1, 0\n[fluid water]\nshape = box 0, 0, 0.1, 0.05\n" \
+    "sound_speed = 10\nshifting = 2\n[wall floor]\nshape = box 0, -0.02, 0.1, 0\n"            \
+    "[domain]\nlower = 0, -0.03\nupper = 0.1, 0.1\nperiodic = x\n"
+    read(CHANNEL "[wall roof]\nshape = box 0, 0.05, 0.1, 0.07\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "its mean pressure drifts with `shifting`, by "
+                                                  "about 1 % of rho c0^2 = 1e+05 Pa"),
+                                 warnings);
+    read(CHANNEL); /* a free surface */
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "drifts"), warnings);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -113,5 +193,9 @@ int main(void)
     RUN_TEST(test_a_density_of_one);
     RUN_TEST(test_a_clamp_that_covers_the_body);
     RUN_TEST(test_a_clamp_that_stays_while_its_wall_moves);
+    RUN_TEST(test_a_pressure_probe_in_a_wall_or_in_the_air);
+    RUN_TEST(test_a_gap_of_one_particle);
+    RUN_TEST(test_an_opening_that_sampling_closes);
+    RUN_TEST(test_shifting_where_nothing_gives_way);
     return UNITY_END();
 }

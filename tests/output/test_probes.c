@@ -220,6 +220,26 @@ static void flux_of_a_uniform_flow(void)
     assert_near(1e-14, -0.1, last_values()[0], "half of it, on the way down");
 }
 
+/* Hydrostatics on the left wall, rho g H/2 = 490.5 Pa over 0.1 m. The fluid within 2 h lies on one side of
+ * both ends of the line, which cancels but for the surface. */
+static void pressure_on_a_face(void)
+{
+    open_with("[probe S]\nquantity = surface_pressure\npoint = 0, 0.1\nto = 0, 0\n", NULL);
+    const double *row = last_values();
+    assert_near(0.02 * 490.5, 490.5, row[0], "mean pressure");
+    assert_near(0.02 * 49.05, -49.05, row[1], "force on the wall, away from the water");
+    assert_near(1e-15, 0, row[2], "force along the wall");
+    tearDown();
+    /* Upwards, so that the water lies to the right. */
+    open_with("[probe S]\nquantity = surface_pressure\npoint = 0, 0.01\nto = 0, 0.09\n", NULL);
+    row = last_values();
+    assert_near(0.02 * 490.5, 490.5, row[0], "mean pressure between the ends");
+    assert_near(0.02 * 39.24, 39.24, row[1], "force on a surface with the water to its left");
+    tearDown();
+    open_with("[probe S]\nquantity = surface_pressure\npoint = 0.2, 0.02\nto = 0.3, 0.02\n", NULL);
+    assert_near(0, 0, last_values()[0], "dry");
+}
+
 /* What walls and gate feel is what the fluid feels, with the sign reversed. */
 static void forces_balance(void)
 {
@@ -476,6 +496,7 @@ int main(void)
     RUN_TEST(front_without_single_drops);
     RUN_TEST(front_in_other_directions);
     RUN_TEST(flux_of_a_uniform_flow);
+    RUN_TEST(pressure_on_a_face);
     RUN_TEST(forces_balance);
     RUN_TEST(moment_about_a_point);
     RUN_TEST(walls_carry_forces_only_when_asked);

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT
+ * Warnings of openings between walls and solids that sampling has closed or left one particle wide. */
+#include "geometry/sampling.h"
+
+#include "base/elementary.h"
+#include "case/case.h"
+#include "geometry/near.h"
+
+#include <math.h>
+
+/* Widest gap that counts as one particle wide, in dp. */
+static const double one_wide = 1 + 1e-6;
+
+/* --- between boxes --- */
+
+static void warn_slit(struct sampler *g, const struct region *a, const struct shape *p,
+                      const struct region *b, const struct shape *q)
+{
+    if (p->kind != SHAPE_BOX || q->kind != SHAPE_BOX) return;
+    const double dp = g->scene->top.dp;
+    for (int c = 0; c < 2; c++) {
+        const double slit = max2(q->pt[0][c] - p->pt[1][c], p->pt[0][c] - q->pt[1][c]);
+        const double shared =
+            min2(p->pt[1][1 - c], q->pt[1][1 - c]) - max2(p->pt[0][1 - c], q->pt[0][1 - c]);
+        if (slit <= 1e-6 * dp || slit > dp * one_wide || shared <= 1e-6 * dp) continue;
+        const bool closed = slit < dp * (1 - 1e-6);
+        char place[LOCATION_TEXT];
+        scene_location(g->scene, q->line, place);
+        diag_warn(g->diag,
+                  "%s: the gap between [%s %s] and [%s %s] is %g m, %s dp = %g m, so %s; use a "
+                  "smaller dp or close the gap",
+                  place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit,
+                  closed ? "narrower than" : "no wider than", dp,
+                  closed ? "no fluid passes" : "hardly any fluid passes");
+        return;
+    }
+}
+
+static void warn_slits(struct sampler *g)
+{
+    enum { MAX_PAIRS = 1000000 }; /* not done for scenes of thousands of boxes */
+    long pairs = 0;
+    for (int i = 0; i < g->n_regions && g->scene->n_fluid; i++) {
+        for (int j = i; j < g->n_regions; j++) {
+            const struct region *a = &g->regions[i], *b = &g->regions[j];
+            if (b->kind == KIND_FLUID) break;
+            for (int k = 0; k < a->list->n; k++)
+                for (int l = i == j ? k + 1 : 0; l < b->list->n && pairs++ < MAX_PAIRS; l++)
+                    warn_slit(g, a, &a->list->item[k], b, &b->list->item[l]);
+        }
+    }
+}
+
+/* --- cut out by `minus` --- */
+
+/* Lattice points of the region that a piece of `minus` covers, up to `most`. */
+static int64_t count_removed(const struct sampler *g, const struct region *region,
+                             const struct outline *cut, int64_t most)
+{
+    const struct scene_lattice *const l = &region->lattice;
+    int64_t n = 0, from[2], to[2];
+    for (int c = 0; c < 2; c++) {
+        from[c] =
+            (int64_t)floor((max2(cut->low[c], region->low[c]) - l->origin[c]) / l->spacing[c]);
+        to[c] =
+            (int64_t)floor((min2(cut->high[c], region->high[c]) - l->origin[c]) / l->spacing[c]);
+    }
+    for (int64_t j = from[1]; j <= to[1]; j++)
+        for (int64_t i = from[0]; i <= to[0]; i++) {
+            const double x = l->origin[0] + ((double)i + 0.5 + NUDGE_X) * l->spacing[0];
+            const double y = l->origin[1] + ((double)j + 0.5 + NUDGE_Y) * l->spacing[1];
+            bool covered = false;
+            if (!outline_contains(cut, x, y, g->scratch)) continue;
+            for (int k = 0; k < region->add.n && !covered; k++)
+                covered = outline_contains(&region->add.item[k], x, y, g->scratch);
+            n += covered;
+            if (n >= most) return n;
+        }
+    return n;
+}
+
+static const struct shape_list *minus_of(const struct scene *s, const struct region *region)
+{
+    return region->kind == KIND_WALL    ? &s->wall[region->body].minus
+           : region->kind == KIND_SOLID ? &s->solid[region->body].minus
+                                        : &s->fluid[region->body].minus;
+}
+
+static void warn_of_cuts(struct sampler *g, const struct region *region)
+{
+    const struct shape_list *const list = minus_of(g->scene, region);
+    for (int shape = 0; shape < list->n; shape++) {
+        bool removes = false;
+        for (int k = 0; k < region->minus.n && !removes; k++)
+            removes = region->minus.shape[k] == shape &&
+                      count_removed(g, region, &region->minus.item[k], 1) > 0;
+        if (removes) continue;
+        char place[LOCATION_TEXT];
+        scene_location(g->scene, list->item[shape].line, place);
+        diag_warn(g->diag,
+                  "%s: `minus` removes no particle of [%s %s], because it is narrower than dp = %g "
+                  "m or lies outside, so the opening is closed; enlarge or move it, or use a "
+                  "smaller dp",
+                  place, kind_names[region->kind], region->name, region->lattice.dp);
+    }
+}
+
+/* --- between sections of any shape --- */
+
+/* Particles of walls and solids in one list. */
+struct faces {
+    struct near_table near;
+    int64_t n, n_wall;
+    double *x, *y;
+};
+
+static bool is_wall(const struct faces *f, int64_t k) { return k < f->n_wall; }
+
+static int section_of(const struct scene *s, const struct faces *f, int64_t k)
+{
+    return is_wall(f, k) ? s->points[KIND_WALL].body[k]
+                         : s->n_wall + s->points[KIND_SOLID].body[k - f->n_wall];
+}
+
+static const char *name_of(const struct scene *s, int section)
+{
+    return section < s->n_wall ? s->wall[section].common.name
+                               : s->solid[section - s->n_wall].common.name;
+}
+
+static int line_of(const struct scene *s, int section)
+{
+    return section < s->n_wall ? s->wall[section].common.line
+                               : s->solid[section - s->n_wall].common.line;
+}
+
+static enum err list_faces(struct faces *f, struct sampler *g)
+{
+    const struct scene_points *const w = &g->scene->points[KIND_WALL],
+                                     *const p = &g->scene->points[KIND_SOLID];
+    f->n_wall = w->n;
+    f->n = w->n + p->n;
+    f->x = arena_alloc(&g->temp, (size_t)f->n, sizeof *f->x, "gaps", g->diag);
+    f->y = arena_alloc(&g->temp, (size_t)f->n, sizeof *f->y, "gaps", g->diag);
+    if (!f->x || !f->y) return ERR_MEMORY;
+    for (int64_t k = 0; k < f->n; k++) {
+        f->x[k] = k < w->n ? w->x[k] : p->x[k - w->n];
+        f->y[k] = k < w->n ? w->y[k] : p->y[k - w->n];
+    }
+    TRY(near_create(&f->near, 2.1 * g->scene->top.dp, f->n, f->x, f->y, &g->temp, g->diag));
+    for (int64_t k = 0; k < f->n; k++) near_insert(&f->near, k);
+    return ERR_OK;
+}
+
+/* Whether a particle lies nearer to the point than `reach`, at most a cell's side. */
+static bool is_covered(const struct faces *f, double x, double y, double reach)
+{
+    const int64_t ci = near_cell(&f->near, x), cj = near_cell(&f->near, y);
+    for (int64_t j = cj - 1; j <= cj + 1; j++)
+        for (int64_t i = ci - 1; i <= ci + 1; i++)
+            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1])
+                if (square(f->x[n - 1] - x) + square(f->y[n - 1] - y) < square(reach)) return true;
+    return false;
+}
+
+/* A particle of another section, after k, across an empty gap in which at most one particle fits; -1: none.
+ * Centres on both sides of a gap of width w are w + dp apart. Where two lattices meet, they are up to 1.5 dp
+ * apart, and a particle lies nearer to their middle than 0.75 dp. */
+static int64_t across_gap(const struct scene *s, const struct faces *f, int64_t k)
+{
+    const double dp = s->top.dp, x = f->x[k], y = f->y[k];
+    const int64_t ci = near_cell(&f->near, x), cj = near_cell(&f->near, y);
+    for (int64_t j = cj - 1; j <= cj + 1; j++)
+        for (int64_t i = ci - 1; i <= ci + 1; i++)
+            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1]) {
+                const int64_t m = n - 1;
+                const double r = elementary_hypot(f->x[m] - x, f->y[m] - y);
+                if (m <= k || r < 1.5 * dp || r > (1 + one_wide) * dp) continue;
+                if (section_of(s, f, m) == section_of(s, f, k)) continue;
+                if (!is_covered(f, 0.5 * (f->x[m] + x), 0.5 * (f->y[m] + y), 0.75 * dp)) return m;
+            }
+    return -1;
+}
+
+static bool both_boxes(const struct sampler *g, int a, int b)
+{
+    int boxes = 0;
+    for (int k = 0; k < g->n_regions; k++) {
+        const struct region *const region = &g->regions[k];
+        const int section = region->kind == KIND_WALL    ? region->body
+                            : region->kind == KIND_SOLID ? g->scene->n_wall + region->body
+                                                         : -1;
+        if (section != a && section != b) continue;
+        bool only = true;
+        for (int n = 0; n < region->list->n; n++) only &= region->list->item[n].kind == SHAPE_BOX;
+        boxes += only;
+    }
+    return boxes == 2;
+}
+
+static enum err warn_of_gaps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const int n = s->n_wall + s->n_solid;
+    struct faces f = {0};
+    TRY(list_faces(&f, g));
+    bool *const said = arena_alloc(&g->temp, (size_t)n * (size_t)n, sizeof *said, "gaps", g->diag);
+    if (!said) return ERR_MEMORY;
+    for (int64_t k = 0; k < f.n; k++) {
+        const int64_t m = across_gap(s, &f, k);
+        if (m < 0) continue;
+        const int a = section_of(s, &f, k), b = section_of(s, &f, m);
+        if (said[a * n + b] || both_boxes(g, a, b)) continue;
+        said[a * n + b] = said[b * n + a] = true;
+        char place[LOCATION_TEXT];
+        scene_location(s, line_of(s, b), place);
+        diag_warn(g->diag,
+                  "%s: the gap between [%s %s] and [%s %s] at (%.4g, %.4g) m is no wider than "
+                  "dp = %g m, so hardly any fluid passes; use a smaller dp or close the gap",
+                  place, kind_names[is_wall(&f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a),
+                  kind_names[is_wall(&f, m) ? KIND_WALL : KIND_SOLID], name_of(s, b),
+                  0.5 * (f.x[k] + f.x[m]), 0.5 * (f.y[k] + f.y[m]), s->top.dp);
+    }
+    return ERR_OK;
+}
+
+enum err geometry_warn_of_gaps(struct sampler *g)
+{
+    for (int k = 0; k < g->n_regions; k++) warn_of_cuts(g, &g->regions[k]);
+    if (g->scene->n_fluid == 0) return ERR_OK;
+    warn_slits(g);
+    return warn_of_gaps(g);
+}
