@@ -136,8 +136,10 @@ void contact_forces(struct contact *c, const struct solid *s, struct particles *
         for (int64_t k = 0; k < c->n_pairs; k++) {
             const struct contact_force *const f = &c->force[k];
             if (!f->touches) continue;
-            add_force(c, p, c->pair_point[k], f->p);
-            add_force(c, p, c->edge[c->pair_edge[k]].a, f->a);
+            const int32_t point = c->pair_point[k], a = c->edge[c->pair_edge[k]].a;
+            c->touched |= c->body[a] < c->n_solids && c->body[point] != c->body[a];
+            add_force(c, p, point, f->p);
+            add_force(c, p, a, f->a);
             add_force(c, p, c->edge[c->pair_edge[k]].b, f->b);
         }
     }

@@ -131,6 +131,14 @@ static void join_at_once(struct simulation *s, double contact)
                   account_entry((enum kind)kind, section_at_index(s, (enum kind)kind, k)));
 }
 
+void account_touch(struct simulation *s)
+{
+    if (!(s->effects & FX_CONTACT) || !s->contact.touched) return;
+    s->contact.touched = false;
+    for (int k = 1; k < s->scene->n_solid; k++)
+        unite(&s->state.account, account_entry(KIND_SOLID, 0), account_entry(KIND_SOLID, k));
+}
+
 /* --- energies --- */
 
 struct energies {

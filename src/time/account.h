@@ -23,6 +23,10 @@ void account_work(struct account *a, enum account_source source, enum kind kind,
 /* Notes the work of a step: its change bounds the error of the sums over steps. */
 void account_step(struct account *a, enum account_source source, int entry, double work);
 
+/* Bodies that have touched in this step belong to one region from now on: they may part before the
+ * next check. */
+void account_touch(struct simulation *s);
+
 /* Checks the regions. Gradients and the pressure of dummies must be up to date. Returns the gain
  * that is the largest fraction of the available energy. One within the error of the sums counts as
  * none. */

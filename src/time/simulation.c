@@ -394,7 +394,7 @@ static void add_exchange(struct simulation *s)
     s->state.exchanged += s->state.dt * sqrt(fx * fx + fy * fy);
 }
 
-/* Work on the solid from outside in the last step. */
+/* What the last step has done to the solid from outside, and whether bodies have touched. */
 static void take_work(struct simulation *s)
 {
     s->state.wall_work += s->solid.work;
@@ -403,6 +403,7 @@ static void take_work(struct simulation *s)
         account_work(&s->state.account, SOURCE_OUTSIDE, KIND_SOLID, k, s->solid.work_on[k]);
         s->solid.work_on[k] = 0;
     }
+    account_touch(s);
 }
 
 /* Updates the solid's gradients if the guards or the search for the step read them after this
