@@ -116,7 +116,8 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
     struct simulation *const sim = &s->session.simulation;
     if (s->stopped)
         return diag_fail(d, ERR_GUARD,
-                         "step: a guard has stopped this simulation; create a new one");
+                         "step: this simulation was stopped because its state is not valid, as the "
+                         "earlier error says; create a new one");
     if (!(limit > sim->state.time))
         return diag_fail(d, ERR_INPUT,
                          "step: the limit must be later than the simulated time: it is %.17g s, "

@@ -51,7 +51,7 @@ static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
     param_choice_name(param_find(SECTION_top, "scheme"), c->top.scheme, name);
     session_say(o,
                 c->top.scheme == SCHEME_PAPER
-                    ? "scheme %s: all keys keep their defaults, the method of the article"
+                    ? "scheme %s: all keys have their defaults, the method of the article (--cite)"
                     : "scheme %s sets",
                 name);
     for (int k = 0; k < PARAM_COUNT; k++) {

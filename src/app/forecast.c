@@ -391,10 +391,11 @@ static void say_error(const struct scene *s, enum kind kind, int body, const cha
     snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
              band.low, band.high);
     if (!isfinite(band.low))
-        session_say(o,
-                    "  %s: %.0f particles across; unknown, because docs/accuracy.md has no case of "
-                    "this kind",
-                    name, n);
+        session_say(
+            o,
+            "  %s: %.0f particles across; error unknown, because docs/accuracy.md has no case of "
+            "this kind",
+            name, n);
     else if (band.coarser)
         session_say(o,
                     "  %s: %.0f particles across, fewer than in all cases of this kind in "

@@ -14,14 +14,18 @@ static const char *const section_meanings[][2] = {
     {"top", "Keys before the first section."},
     {"numerics",
      "Parameters of the numerical method. [theory.md](theory.md), Sec. 9, lists where the "
-     "defaults depart from the article."},
+     "defaults depart from the article. \"The article\" and \"Eq.\" refer to the publication that "
+     "the program reproduces, \"T-\" to equations of theory.md, which names it."},
     {"domain", "The region in which particles may be."},
     {"output", "What is written, and how often."},
+    {"relax", "A search for a state of rest before the run."},
     {"fluid",
      "Fluid at the start. Several sections may differ in shape, surface, pressure and velocity; "
      "their other values must be equal."},
     {"wall", "Rigid bodies, at rest or with a prescribed motion."},
     {"solid", "Elastic bodies."},
+    {"contact", "Parameters of contact between bodies, or no contact."},
+    {"load", "A force on a region of a solid."},
     {"motion",
      "A prescribed motion of walls or clamps: the displacement from their initial position."},
     {"probe", "A measurement."},
@@ -174,10 +178,10 @@ static void say_quantities(const struct sphfsi_options *o)
     };
     static const char *const needs[] = {
         [TARGET_SOLID_POINT] = "`body` (solid), `point`",
-        [TARGET_FLUID_POINT] = "`point`; `on`",
-        [TARGET_ANY_POINT] = "`point`; `body` or `on`",
+        [TARGET_FLUID_POINT] = "`point`, optional `on`",
+        [TARGET_ANY_POINT] = "`point`, optional `body` or `on`",
         [TARGET_SOLID] = "`body` (solid)",
-        [TARGET_BODY] = "`body` (solids or walls); `point` of the moment",
+        [TARGET_BODY] = "`body` (solids or walls), optional `point` of the moment",
         [TARGET_FLUID] = "",
         [TARGET_FLUID_LINE] = "`point`, `to`",
     };
@@ -193,7 +197,7 @@ static void say_quantities(const struct sphfsi_options *o)
         o, "A column is called PROBE_COLUMN, such as `tip_dx_m`. Forces, moments, energies and "
            "fluxes are per metre of depth.");
     session_say(o, "%s", "");
-    session_say(o, "| quantity | needs | columns | meaning |");
+    session_say(o, "| quantity | keys | columns | meaning |");
     session_say(o, "|---|---|---|---|");
     for (size_t k = 0; k < COUNT_OF(rows); k++)
         session_say(o, "| `%s` | %s | `%s` | %s |", rows[k][0], needs[targets[k]], rows[k][1],

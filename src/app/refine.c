@@ -417,7 +417,7 @@ static enum err check(struct refinement *x)
     if (x->options->restart || x->options->fork)
         return diag_fail(
             x->diag, ERR_INPUT,
-            "refine: continues an interrupted study by itself; leave out --restart and --fork");
+            "--refine continues an interrupted study by itself; leave out --restart and --fork");
     if (x->runs < 3 || x->runs > MOST_RUNS)
         return diag_fail(x->diag, ERR_INPUT,
                          "refine: %d resolutions are given, but 3 to %d are allowed", x->runs,

@@ -454,7 +454,9 @@ static enum err load_checkpoint(struct run *r)
     TRY(fork ? change_for_fork(info.case_text, r->case_text, r->diag)
              : change_for_restart(info.case_text, r->case_text, r->diag));
     if (strcmp(info.version, SPHFSI_VERSION) != 0)
-        diag_warn(r->diag, "%s was written by version %s, but this is %s: the bits may differ",
+        diag_warn(r->diag,
+                  "%s was written by version %s, but this is %s: results may differ "
+                  "in their last digits",
                   r->restarted_from, info.version, SPHFSI_VERSION);
     if (!fork) TRY(checkpoint_missed(&r->image, &r->record.snapshots_missed, r->diag));
     TRY(fork ? checkpoint_fork(&r->image, r->s, r->diag)

@@ -63,8 +63,9 @@ void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, 
 {
     const size_t overhead = BLOCK_HEADER + 2 * (size_t)ARENA_MARGIN;
     if (size && count > (SIZE_MAX - overhead - ARENA_ALIGN) / size) {
-        diag_fail(d, ERR_MEMORY, "%s: %zu items of %zu bytes exceed the address space", what, count,
-                  size);
+        diag_fail(d, ERR_MEMORY,
+                  "%s: %zu items of %zu bytes exceed the address space; use a larger dp", what,
+                  count, size);
         return NULL;
     }
     const size_t want = (count * size + ARENA_ALIGN - 1) / ARENA_ALIGN * ARENA_ALIGN;

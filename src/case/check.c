@@ -405,7 +405,8 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
         return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
                         l->common.name);
     if (!l->force.e[0] == !l->traction.e[0])
-        return bad_line(r, line, "[load %s] needs one of `force` and `traction`", l->common.name);
+        return bad_line(r, line, "[load %s] needs either `force` or `traction`, and has %s",
+                        l->common.name, l->force.e[0] ? "both" : "neither");
     return ERR_OK;
 }
 

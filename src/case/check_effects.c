@@ -106,7 +106,8 @@ enum err case_check_effects(struct reader *r)
     const char *const left_out = effect_left_out(r->scene);
     if (left_out)
         return bad_line(r, 1,
-                        "the case enables the effect %s, but this program was compiled without it",
+                        "the case enables the effect %s, but this program was compiled without it; "
+                        "build it without -DSPHFSI_WITHOUT",
                         left_out);
     for (size_t k = 0; k < COUNT_OF(rules); k++) TRY(case_go_on(r, check_rule(r, &rules[k])));
     for (size_t k = 0; k < COUNT_OF(owned); k++) TRY(case_go_on(r, check_owned(r, &owned[k])));

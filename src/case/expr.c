@@ -174,7 +174,7 @@ static bool multiply_dims(struct compiler *c, struct dim *a, const struct dim *b
     a->s += sign * b->s;
     if (plain && is_pure(a)) *a = (struct dim){DIM_PLAIN, 0, 0, 0};
     if (fabs(a->m) > 99 || fabs(a->kg) > 99 || fabs(a->s) > 99)
-        return say(c, "the power of its unit is above 99; check the exponents");
+        return say(c, "the unit of the result has a power above 99; check the exponents");
     return true;
 }
 
@@ -356,7 +356,7 @@ static bool unexpected(struct compiler *c, int ch, const char *expected)
     if (ch == '/' && c->rest.at > c->start && c->rest.at[-1] == '/')
         return say(c, "`//` where %s is expected; a comment begins with #", expected);
     if (isprint(ch)) return say(c, "`%c` where %s is expected", ch, expected);
-    return say(c, "byte %d where %s is expected", ch, expected);
+    return say(c, "a character outside ASCII (byte %d) where %s is expected", ch, expected);
 }
 
 static bool parse_primary(struct compiler *c, struct dim *dim)

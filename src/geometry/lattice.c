@@ -315,7 +315,8 @@ static void tell_shift(struct sampler *g, const struct region *region, const dou
     scene_location(g->scene, region->line, place);
     diag_warn(g->diag,
               "%s: [solid %s] begins at (%.6g, %.6g) m, off the lattice of dp = %.6g m, so it has "
-              "its own lattice, which begins there",
+              "its own lattice, which begins there. This is harmless; a solid that begins on the "
+              "lattice of the fluid shares it",
               place, region->name, corner[0], corner[1], region->lattice.dp);
 }
 

@@ -169,7 +169,7 @@ enum err geometry_open(struct sampler *g)
         const struct scene_open o = scene_open_at(s, k);
         const struct lattice l = lattice_of(s, &o);
         if ((double)l.across * l.rows > 1e8)
-            return fail_at(g, &o, "has space for more than 1e8 particles", o.from,
+            return fail_at(g, &o, "has a buffer for more than 1e8 particles", o.from,
                            "use a larger dp or a shorter line");
         more += (int64_t)l.across * l.rows;
     }

@@ -405,7 +405,7 @@ static enum err all_moments(struct solid *s, const struct bucket_grid *g, const 
             return diag_fail(
                 d, ERR_INPUT,
                 "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
-                "are bodies sampled twice, or is h_over_dp too large?",
+                "use a smaller h_over_dp; bodies that overlap also cause this",
                 p->X[i], p->Y[i], MAX_NEIGHBOURS);
         for (int k = 0; k < n; k++)
             if (p->body[found[k]] != p->body[i]) s->body[p->body[i]].touches = true;

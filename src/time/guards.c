@@ -89,9 +89,9 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     if (!s->guard.warned_dens && dens > DENS_WARNING) {
         s->guard.warned_dens = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's density deviates by %.3g of its reference. 0.01 is "
-                  "usual, and the run stops at %g; a higher sound_speed may help",
-                  s->state.time, dens, s->guard.dens_limit);
+                  "t = %.6g s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
+                  "usual, and the run stops at %g %%; a higher sound_speed may help",
+                  s->state.time, 100 * dens, 100 * s->guard.dens_limit);
     }
     return ERR_OK;
 }
@@ -312,11 +312,11 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
     char name[ACCOUNT_TEXT];
     double at[2];
     account_name(s, g->entry, name);
-    const int used = snprintf(
-        text, 400,
-        "t = %.6g s: %s has gained %.3g J/m of spurious energy by %s; its available energy "
-        "was at most %.3g J/m; most of its energy is in %s",
-        s->state.time, name, g->energy, source_of(g), g->available, most_of(g));
+    const int used =
+        snprintf(text, 400,
+                 "t = %.6g s: %s has gained %.3g J/m of energy that nothing supplied (available: "
+                 "%.3g J/m), in %s. Most of its energy is in %s",
+                 s->state.time, name, g->energy, g->available, source_of(g), most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
@@ -340,11 +340,11 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     /* A gain at the interface, or by the law of the fluid, may be less than what the rest loses. */
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
-        return diag_fail(d, ERR_GUARD, "%s: the run is unstable; a smaller %s%s may help", text,
+        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; a smaller %s%s may help", text,
                          step_key(s), step_remedy(s));
     if (s->guard.warned_energy) return ERR_OK;
     s->guard.warned_energy = true;
-    diag_warn(d, "%s: the results may be invalid; a smaller %s%s may help", text, step_key(s),
+    diag_warn(d, "%s. The results may be invalid; a smaller %s%s may help", text, step_key(s),
               step_remedy(s));
     return ERR_OK;
 }

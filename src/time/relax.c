@@ -120,8 +120,9 @@ enum err relax_step(struct simulation *s, struct diag *d)
     if (st->relaxed || st->relax_swings == 0 || st->relax_time < most) return ERR_OK;
     return diag_fail(
         d, ERR_GUARD,
-        "[relax]: no rest within %.3g s, %g times the longest swing of %.3g s: %.2g of "
-        "the first motion is left; a larger tolerance or limit, "
+        "[relax]: no state of rest within %.3g s (`limit` = %g times the longest time of %.3g s "
+        "between two stops): the speed is still %.2g of its largest value; a larger tolerance or "
+        "limit, "
         "`mass_damping` in a [solid]%s may help",
         st->relax_time, s->scene->relax.limit, longest, sqrt(st->relax_left / st->relax_most),
         s->effects & FX_FLUID && s->scene->top.scheme == SCHEME_PAPER
@@ -143,8 +144,8 @@ void relax_text(const struct simulation *s, char text[RELAX_TEXT])
     else
         snprintf(
             text, RELAX_TEXT,
-            "at rest after %.3g s and %lld swings: over the last %.3g s, twice the longest swing, "
-            "the motion stayed below %g of the first one",
+            "at rest after %.3g s and %lld stops: over the last %.3g s, twice the longest time "
+            "between two stops, the speed stayed below %g of its largest value",
             st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
             s->scene->relax.tolerance);
 }

@@ -165,7 +165,7 @@ static void test_a_gain_at_the_interface_is_named(void)
     go_on(start + 6e-3);
     TEST_ASSERT_TRUE(named > 0);
     assert_at_most(5e-3, named - start, "time until it is named");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "by the exchange between fluid and structure"),
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "in the exchange between fluid and structure"),
                                  warning);
 }
 

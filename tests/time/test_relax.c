@@ -138,7 +138,7 @@ static void test_no_rest_is_said(void)
 {
     rig_open(&rig, hanging, "relax.limit=0.5", NULL);
     TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
-    TEST_ASSERT_NOT_NULL(strstr(rig.diag.text, "no rest within"));
+    TEST_ASSERT_NOT_NULL(strstr(rig.diag.text, "no state of rest within"));
     rig_refuses(HEAD "[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY
                      "[relax]\n[motion m]\nstart = -1\nvelocity = 1, 0\n",
                 "no motion may begin before t = 0");
