@@ -163,11 +163,23 @@ def build(program, fault, folder):
     return objects
 
 
-def link(program, test, objects, folder):
+def object_of_test(program, test, fault, folder):
+    """The test's object, compiled anew if it includes the header with the fault."""
+    old = BUILD / test.replace(".c", ".o")
+    if not fault["file"].endswith(".h") or fault["file"] not in old.with_suffix(".d").read_text():
+        return str(old)
+    new = folder / "test.o"
+    unity = re.search(r"^UNITY_CFLAGS := (.*)", (ROOT / "build/unity.mk").read_text(), re.M)[1].split()
+    subprocess.run([program.compile[0], f"-I{folder}/tree/src", *program.compile[1:], "-w", "-Itests/support",
+                    *unity, "-c", "-o", new, test], cwd=ROOT, check=True)
+    return str(new)
+
+
+def link(program, test, fault, objects, folder):
     """The test, or for a script the program, with the objects in front of those without the fault."""
     if test.endswith(".c"):
         out = folder / test.removesuffix(".c")
-        parts = [str(BUILD / test).replace(".c", ".o"), *program.support]
+        parts = [object_of_test(program, test, fault, folder), *program.support]
     else:
         out, parts = folder / "sphfsi", [str(BUILD / "src/app/main.o")]
     if out.exists():
@@ -204,7 +216,7 @@ def judge(program, fault, seconds):
             if tried and used + usual > seconds:
                 break
             try:
-                link(program, test, objects, folder)
+                link(program, test, fault, objects, folder)
             except subprocess.CalledProcessError:
                 return "found", "linker"
             status, own = run_test(test, folder, folder / "sphfsi", int(5 + 5 * usual))

@@ -492,7 +492,7 @@ static enum err begin(struct run *r)
     r->record.threads = thread_count();
     r->record.start_time = time;
     r->record.start_particle_steps = r->s->state.particle_steps;
-    r->wall_start = r->wall_checkpoint = wall_clock();
+    r->wall_start = r->wall_checkpoint = r->wall_progress = wall_clock();
     forecast_say_preset(&r->session.scene, r->options);
     return ERR_OK;
 }

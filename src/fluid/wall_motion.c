@@ -6,7 +6,6 @@
 enum err wall_motion_create(struct wall_motion *m, struct arena *a, const struct scene *s,
                             const struct particles *walls, struct diag *d)
 {
-    memset(m, 0, sizeof *m);
     m->never_skip = s->test.never_skip;
     m->body = arena_alloc(a, (size_t)s->n_wall, sizeof *m->body, "moving walls", d);
     if (!m->body) return ERR_MEMORY;

@@ -4,6 +4,7 @@
 #include "tiny.h"
 #include "unity.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -137,8 +138,23 @@ static void on_progress(void *context, const struct sphfsi_progress *p)
 {
     (void)context;
     TEST_ASSERT_TRUE(p->time <= p->end_time && p->bound != NULL);
+    const double done = p->time - p->start_time, left = p->end_time - p->time;
+    if (done > 0)
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9 * p->wall_seconds / done, p->wall_seconds * left / done,
+                                  p->seconds_left);
     calls++;
     finished += p->finished;
+}
+
+/* The text of a file of the run, up to 64 KiB of it. */
+static const char *content(const char *path)
+{
+    static char text[1 << 16];
+    FILE *const file = fopen(path, "r");
+    TEST_ASSERT_NOT_NULL_MESSAGE(file, path);
+    text[fread(text, 1, sizeof text - 1, file)] = '\0';
+    fclose(file);
+    return text;
 }
 
 static void a_run_writes_its_files(void)
@@ -160,7 +176,61 @@ static void a_run_writes_its_files(void)
         TEST_ASSERT_EQUAL_INT_MESSAGE(0, stat(path, &info), path);
         TEST_ASSERT_TRUE(info.st_size > 0);
     }
+    TEST_ASSERT_NOT_NULL(strstr(content(tiny_path("run/probes.csv")), "\n0,"));
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
+}
+
+static int checkpoints(const char *folder)
+{
+    int n = 0;
+    DIR *const all = opendir(folder);
+    TEST_ASSERT_NOT_NULL(all);
+    for (const struct dirent *one; (one = readdir(all));) n += strstr(one->d_name, ".ckpt") != NULL;
+    closedir(all);
+    return n;
+}
+
+/* Within an hour there is one call, the last, and no checkpoint but that at the end. No phase took a
+ * negative time. */
+static void nothing_is_due_within_an_hour(void)
+{
+    const char *const sets[] = {"output.checkpoint_minutes=60"};
+    struct sphfsi_options o = tiny_options();
+    o.out = tiny_path("hour");
+    o.until = 0.002;
+    o.sets = sets;
+    o.n_sets = 1;
+    o.progress = on_progress;
+    o.progress_interval = 3600;
+    calls = 0;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_run(&o), sphfsi_error());
+    TEST_ASSERT_EQUAL_INT(1, calls);
+    TEST_ASSERT_EQUAL_INT(1, checkpoints(tiny_path("hour")));
+    const char *const text = content(tiny_path("hour/summary.json"));
+    const char *const phases = strstr(text, "\"phase_seconds\"");
+    TEST_ASSERT_NOT_NULL(phases);
+    const char *const end = strchr(phases, '}');
+    int n = 0;
+    for (const char *at = strchr(phases, '{'); at && at < end; at = strchr(at + 1, ','), n++) {
+        double seconds;
+        TEST_ASSERT_EQUAL_INT(1, sscanf(at + 1, " \"%*[a-z_]\": %lf", &seconds));
+        TEST_ASSERT_TRUE(seconds >= 0);
+    }
+    TEST_ASSERT_TRUE(n > 3);
+}
+
+static void a_path_that_is_too_long(void)
+{
+    static char path[4096];
+    memset(path, 'p', 3900);
+    struct sphfsi_options o = tiny_options();
+    o.out = path;
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
+    TEST_ASSERT_EQUAL_STRING("out: the path has 3900 characters, but 1 to 3795 are allowed",
+                             sphfsi_error());
+    o.out = "";
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_run(&o));
+    TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "0 characters"));
 }
 
 /* The hash that a run's summary has, as its 16 digits. */
@@ -241,6 +311,8 @@ int main(void)
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);
     RUN_TEST(a_run_writes_its_files);
+    RUN_TEST(nothing_is_due_within_an_hour);
+    RUN_TEST(a_path_that_is_too_long);
     RUN_TEST(steps_to_the_outputs_have_the_bits_of_a_run);
     RUN_TEST(probes_have_names);
     RUN_TEST(a_request_stops_a_run);

@@ -455,6 +455,7 @@ static void explain_is_data_too(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_explain_json(&o), sphfsi_error());
     TEST_ASSERT_TRUE(json[0] == '{');
     TEST_ASSERT_NOT_NULL(strstr(json, "\"fluid\": 100"));
+    TEST_ASSERT_NOT_NULL(strstr(json, "\"effects\": "));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"wall_seconds\": "));
     TEST_ASSERT_NOT_NULL(strstr(json, "\"warnings\": ["));
     TEST_ASSERT_EQUAL_STRING("}\n", json + strlen(json) - 2);

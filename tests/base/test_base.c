@@ -64,6 +64,22 @@ static void test_long_sentences_are_cut(void)
     TEST_ASSERT_EQUAL_UINT64(sizeof diag.text - 1, strlen(diag.text));
 }
 
+/* Further errors are kept whole or not at all. */
+static void test_more_errors_are_kept_while_there_is_room(void)
+{
+    char text[sizeof diag.more / 2];
+    memset(text, 'x', sizeof text - 1);
+    text[sizeof text - 2] = '\0';
+    diag_more(&diag, text);
+    diag_more(&diag, text + 1);
+    TEST_ASSERT_EQUAL_UINT64(sizeof diag.more - 3, strlen(diag.more));
+    diag_more(&diag, "ab");
+    TEST_ASSERT_EQUAL_UINT64(sizeof diag.more - 3, strlen(diag.more));
+    diag_more(&diag, "a");
+    TEST_ASSERT_EQUAL_UINT64(sizeof diag.more - 1, strlen(diag.more));
+    TEST_ASSERT_EQUAL_STRING("a\n", diag.more + sizeof diag.more - 3);
+}
+
 static void test_warnings_go_to_the_listener(void)
 {
     diag_warn(&diag, "dropped");
@@ -106,6 +122,9 @@ static void test_the_limit_refuses_and_says_what(void)
     TEST_ASSERT_EQUAL_INT(ERR_MEMORY, diag.code);
     TEST_ASSERT_NOT_NULL(strstr(diag.text, "the second"));
     TEST_ASSERT_EQUAL_UINT64(512, arena.bytes);
+    arena.limit = 1024; /* full to the last byte */
+    TEST_ASSERT_NOT_NULL(arena_alloc(&arena, 64, 8, "the third", &diag));
+    TEST_ASSERT_EQUAL_UINT64(1024, arena.bytes);
 }
 
 static void test_sizes_that_overflow_are_refused(void)
@@ -201,6 +220,10 @@ static void test_threads_follow_particles_and_idle_cores(void)
     TEST_ASSERT_EQUAL_INT(1, thread_idle_of(8, 8, 30));
     TEST_ASSERT_EQUAL_INT(2, thread_idle_of(2, 64, 31)); /* may use two of many */
     TEST_ASSERT_TRUE(thread_idle_cores() >= 1 && thread_idle_cores() <= thread_cores());
+    /* Seven looks with 2 ms in between. */
+    const double begin = wall_clock();
+    thread_idle_cores();
+    TEST_ASSERT_TRUE(wall_clock() - begin >= 0.012);
 }
 
 int main(void)
@@ -210,6 +233,7 @@ int main(void)
     RUN_TEST(test_exit_status_of_errors);
     RUN_TEST(test_the_first_failure_stays);
     RUN_TEST(test_long_sentences_are_cut);
+    RUN_TEST(test_more_errors_are_kept_while_there_is_room);
     RUN_TEST(test_warnings_go_to_the_listener);
     RUN_TEST(test_pieces_are_zero_aligned_and_have_margins);
     RUN_TEST(test_the_limit_refuses_and_says_what);

@@ -72,6 +72,48 @@ static void test_constants_in_any_order(void)
                               scene_expr_at(scene.solid[0].velocity.e[1], 0.008, 0));
 }
 
+/* A length that was written without its unit is a length in other expressions, too. */
+static void test_a_key_gives_its_unit(void)
+{
+    parse("dp = 0.001\nend_time = 1 s\n[constants]\nL = 4*dp + 6 mm\n[solid a]\n"
+          "shape = box 0, 0, L, 20 mm\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+          0, NULL);
+    TEST_ASSERT_EQUAL_INT64(200, scene.points[2].n);
+}
+
+static void test_pairs_of_names(void)
+{
+    char name[2][SCENE_TEXT];
+    TEST_ASSERT_TRUE(scene_pair("\ta , b c ", name));
+    TEST_ASSERT_EQUAL_STRING("a", name[0]);
+    TEST_ASSERT_EQUAL_STRING("b c", name[1]);
+    static const char *const bad[] = {"a", "a, b, c", "a,", ",b", "  , b", "a,  "};
+    for (size_t k = 0; k < COUNT_OF(bad); k++)
+        TEST_ASSERT_FALSE_MESSAGE(scene_pair(bad[k], name), bad[k]);
+}
+
+/* The buffer is as deep as the kernel reaches and one particle more: h = 1.35 dp needs four of them. */
+static void test_depth_of_an_open_boundary(void)
+{
+    parse("dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\n"
+          "sound_speed = 20\n[numerics]\nh_over_dp = 1.35\n[inflow in]\nfrom = 0, 20 mm\nto = 0, "
+          "0\nspeed = 0.1\n",
+          0, NULL);
+    const struct scene_open o = scene_open_at(&scene, 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-15, 4e-3, o.depth);
+}
+
+static void test_a_path_that_is_too_long(void)
+{
+    static char path[sizeof scene.path + 1];
+    memset(path, 'p', sizeof scene.path);
+    char message[96];
+    snprintf(message, sizeof message, "the path of the case file is longer than %d bytes",
+             (int)sizeof scene.path - 1);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&scene, "", path, 0, NULL, &diag));
+    TEST_ASSERT_EQUAL_STRING(message, diag.text);
+}
+
 static char warned[1024];
 
 static void on_warning(void *context, const char *text)
@@ -381,6 +423,10 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_defaults);
     RUN_TEST(test_constants_in_any_order);
+    RUN_TEST(test_a_key_gives_its_unit);
+    RUN_TEST(test_pairs_of_names);
+    RUN_TEST(test_depth_of_an_open_boundary);
+    RUN_TEST(test_a_path_that_is_too_long);
     RUN_TEST(test_retired_keys_are_passed_over_with_a_note);
     RUN_TEST(test_set_comes_before_evaluation);
     RUN_TEST(test_set_of_sections);

@@ -195,6 +195,11 @@ static void test_expression_as_rotation_and_polynomial(void)
     expect(1, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
     TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 1).d[1]);
     TEST_ASSERT_EQUAL_DOUBLE(2, motion_at(&scene, 0, 0).a[1]);
+    must_read("kind = expression\nx = max(t, 0.5)\ny = min(t, 0.5)\n");
+    expect(0.25, 0, 0, 0);
+    expect(0.75, 0.25, 1, 0);
+    TEST_ASSERT_EQUAL_DOUBLE(0.25, motion_at(&scene, 0, 0.25).d[1]);
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, motion_at(&scene, 0, 0.75).d[1]);
 }
 
 /* Every function of the language: derivatives against central differences, at times where none has a kink. */
@@ -283,14 +288,17 @@ static void test_jumps_and_poles(void)
             "expression");
     static const char *const bad[] = {"1e-6/(t - 0.33337)", "1e-9/(t - 0.33337)^2",
                                       "1e-6*tan(20*t)", "log(abs(t - 0.4443))",
-                                      "1e-9/(t - 0.3335)^2"};
+                                      "1e-9/(t - 0.3335)^2",
+                                      /* by 2e-6 of its size */
+                                      "1 + 1e-6*(t - 0.33337)/abs(t - 0.33337)"};
     for (size_t k = 0; k < COUNT_OF(bad); k++) {
         char text[128];
         snprintf(text, sizeof text, "kind = expression\ny = %s\n", bad[k]);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, read(text), bad[k]);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "jumps or is not finite 0."), diag.text);
     }
-    static const char *const good[] = {"0.1*tanh(1e6*(t - 0.33337))",
+    static const char *const good[] = {"1 + 4e-7*(t - 0.33337)/abs(t - 0.33337)",
+                                       "0.1*tanh(1e6*(t - 0.33337))",
                                        "0.1*cos(1000*pi*t)",
                                        "0.1*sin(12345*t)",
                                        "abs(t - 0.33337)",

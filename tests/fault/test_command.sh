@@ -64,6 +64,9 @@ grep -q $'\033' out err && fail "colours or cursor movements in a file"
 "$sphfsi" --explain cantilever.cfg --set "plate.lattice_angle=20 deg" --threads 1 >out 2>err &&
     grep -q "solid plate\] lattice at 20 degrees, cells of .* area off by .* bending stiffness" out ||
     fail "--explain of a turned lattice"
+[ "$(grep -c 'lattice at' out)" = 1 ] || fail "--explain: $(grep 'lattice at' out)"
+# Every 50 ms to 1 s, and at the start.
+grep -q "fields.vtkhdf: 21 snapshots of" out || fail "--explain: $(grep vtkhdf out)"
 # A report that cannot be written is a failure.
 if [ -c /dev/full ]; then
     for report in --new "--new tank" --keys --help --version "--cite cantilever.cfg" \
@@ -86,6 +89,14 @@ kill -HUP $pid
 wait $pid
 [ $? = 129 ] && ls hangup/*.ckpt >/dev/null || fail "SIGHUP leaves no checkpoint"
 grep -q 'to go on: .* --restart' out || fail "--quiet hides the command that goes on"
+
+# In a file there is a line for each tenth of the run, so none yet.
+"$sphfsi" cantilever.cfg --threads 1 --out lines >out 2>err & pid=$!
+while [ ! -s lines/ledger.csv ]; do sleep 0.05; done
+sleep 0.4
+kill -TERM $pid
+wait $pid
+grep -q "^ *0\.[0-9] %" err && fail "a line before a tenth of the run: $(cat err)"
 
 "$sphfsi" --version >/dev/null && "$sphfsi" --help >/dev/null || fail "--version, --help"
 "$sphfsi" >out 2>err

@@ -54,6 +54,19 @@ static void test_a_tank_without_a_floor(void)
     read("dp = 5 mm\nend_time = 1 s\ngravity = 9.81, 0\n"
          "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\n" SIDES);
     TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* The same against x, read first, so that nothing is left of another direction. */
+    static const char *const sides[] = {
+        "gravity = -9.81, 0\n[wall a]\nshape = box -0.02, 0, 0, 0.1\n",
+        "gravity = 9.81, 0\n[wall a]\nshape = box 0.1, 0, 0.12, 0.1\n"};
+    for (int k = 0; k < 4; k++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "dp = 5 mm\nend_time = 1 s\n%s[fluid water]\nshape = box 0, 0, 0.1, 0.05\n"
+                 "sound_speed = 10\n",
+                 sides[k % 2]);
+        read(text);
+        TEST_ASSERT_EQUAL_STRING("", warnings);
+    }
     /* A hole in the floor: what stands above it, but for its two edges. */
     read(HEAD WATER SIDES
          "[wall floor]\nshape = box -0.02, -0.02, 0.03, 0\nshape = box 0.06, -0.02, 0.12, 0\n");
@@ -69,6 +82,7 @@ static void test_surface_against_gravity_and_below_the_water(void)
              FLOOR);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "80 particles begin with a pressure below zero"),
                                  warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "reaches up to y = 0.05 m"), warnings);
 }
 
 static void test_a_density_of_one(void)

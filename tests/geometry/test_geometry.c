@@ -172,6 +172,9 @@ static void test_clamp_takes_the_place_of_the_wall(void)
 static void test_a_solid_off_the_lattice_keeps_its_corner(void)
 {
     must_read(gate, "x0=20.3 mm");
+    const char *const told = strstr(warnings, "[solid");
+    TEST_ASSERT_NOT_NULL(told);
+    TEST_ASSERT_EQUAL_STRING_LEN("geometry.cfg:", told - 16, 13);
     TEST_ASSERT_NOT_NULL(strstr(warnings, "so it has its own lattice, which begins there"));
     TEST_ASSERT_TRUE(scene.off_lattice);
     TEST_ASSERT_EQUAL_INT64(5 * 40, count(KIND_SOLID));
@@ -215,6 +218,27 @@ static void test_thin_walls_and_slits_are_told(void)
     TEST_ASSERT_NOT_NULL(strstr(warnings, "the gap between [wall a] and [wall b] is 0.0004 m"));
 }
 
+static void test_thin_solids_are_told(void)
+{
+    must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 5 mm, 5 mm\n[solid s]\nshape = box 5 mm, 0, 8 mm, 20 mm\n"
+              "density = 1000\nyoung = 1e6\npoisson = 0.3\n[numerics]\nh_over_dp = 2\n",
+              NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "geometry.cfg:6: [solid s] is 0.003 m thick, less "
+                                        "than the kernel's reach 2 h = 0.004 m"),
+                                 warnings);
+}
+
+/* Far from the origin of coordinates, whose digits they have left. */
+static void test_shapes_far_away(void)
+{
+    must_read("dp = 1 m\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 8e8, 0, 8e8 + 20, 20\n",
+              NULL);
+    TEST_ASSERT_EQUAL_INT64(400, count(KIND_FLUID));
+}
+
 static void test_domain_holds_moving_walls(void)
 {
     must_read("dp = 1 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
@@ -238,6 +262,8 @@ int main(void)
     RUN_TEST(test_a_solid_off_the_lattice_keeps_its_corner);
     RUN_TEST(test_off_lattice_edges_are_told);
     RUN_TEST(test_thin_walls_and_slits_are_told);
+    RUN_TEST(test_thin_solids_are_told);
+    RUN_TEST(test_shapes_far_away);
     RUN_TEST(test_domain_holds_moving_walls);
     return UNITY_END();
 }

@@ -120,6 +120,51 @@ static void test_cells_fit_a_bar(void)
     }
 }
 
+/* Off the lattice along one side only: cells of two lengths, and a spacing of their mean area. */
+static void test_cells_fit_one_side(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[solid b]\n" RUBBER "shape = box 0, 0, 53.7 mm, 10 mm\n",
+              NULL);
+    const struct scene_lattice *const l = &scene.solid_lattice[0];
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 53.7e-3 / 54, l->spacing[0]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-3, l->spacing[1]);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, sqrt(l->spacing[0] * l->spacing[1]), l->dp);
+}
+
+/* Two halves are one bar: the joint is no edge that the cells would be fitted to. */
+static void test_cells_ignore_a_joint(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[solid b]\n" RUBBER
+              "shape = box 0, 0, 20.5 mm, 10 mm\nshape = box 20.5 mm, 0, 50 mm, 10 mm\n",
+              NULL);
+    TEST_ASSERT_EQUAL_INT64(500, scene.points[KIND_SOLID].n);
+    TEST_ASSERT_FALSE(scene.solid_lattice[0].fitted);
+}
+
+/* Bodies that nothing joins have each a lattice of their own. */
+static void test_each_body_has_its_lattice(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[solid a]\n" RUBBER "shape = box 0, 0, 10 mm, 10 mm\n"
+              "[solid b]\n" RUBBER "shape = box 20.3 mm, 0.4 mm, 30.3 mm, 10.4 mm\n",
+              NULL);
+    const struct scene_lattice *const l = scene.solid_lattice;
+    double cells;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0, remainder(l[0].origin[0], 1e-3));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.3, modf(l[1].origin[0] / 1e-3, &cells));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.4, modf(l[1].origin[1] / 1e-3, &cells));
+    TEST_ASSERT_EQUAL_INT64(200, scene.points[KIND_SOLID].n);
+}
+
+/* An arch: rows of two legs below rows of one beam. */
+static void test_area_of_an_arch(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[solid b]\n" RUBBER
+              "shape = polygon 0, 0; 10 mm, 0; 10 mm, 30 mm; 40 mm, 30 mm; 40 mm, 0; 50 mm, 0; "
+              "50 mm, 40 mm; 0, 40 mm\n",
+              NULL);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1100e-6, scene.solid_lattice[0].area);
+}
+
 /* The lattice is fitted to the free part: from where the clamp ends to the tip. */
 static void test_cells_begin_at_a_clamp(void)
 {
@@ -283,6 +328,10 @@ int main(void)
     RUN_TEST(test_lattice_angle_overrides);
     RUN_TEST(test_shapes_without_a_main_direction);
     RUN_TEST(test_cells_fit_a_bar);
+    RUN_TEST(test_cells_fit_one_side);
+    RUN_TEST(test_cells_ignore_a_joint);
+    RUN_TEST(test_each_body_has_its_lattice);
+    RUN_TEST(test_area_of_an_arch);
     RUN_TEST(test_cells_begin_at_a_clamp);
     RUN_TEST(test_cells_begin_at_a_curved_clamp);
     RUN_TEST(test_area_is_told);

@@ -106,6 +106,32 @@ static void test_nothing_in_common(void)
     TEST_ASSERT_EQUAL_STRING("P_dx_m: its times do not overlap with those of r", text);
 }
 
+/* Zero everywhere: an error has no per cent. */
+static void test_a_reference_of_zero(void)
+{
+    const struct score c = score_of("formula = 0*t\n", "time_s,P_dx_m,P_dy_m\n0,0,0\n1,1,0\n");
+    TEST_ASSERT_EQUAL_DOUBLE(0, c.scale);
+    char text[300];
+    reference_line(&references.item[0], &c, text, sizeof text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "(nan % of the peak)"), text);
+}
+
+/* Each reference of a file begins with no points. */
+static void test_two_references_of_a_probe(void)
+{
+    struct score score[2];
+    TEST_ASSERT_EQUAL(ERR_OK,
+                      open_with("formula = w*t\n[reference q]\nprobe = P_dy_m\nformula = 0\n",
+                                "time_s,P_dx_m,P_dy_m"));
+    put("probes.csv", "time_s,P_dx_m,P_dy_m\n0,0,3\n1,3,3\n2,4,3\n");
+    TEST_ASSERT_EQUAL(ERR_OK,
+                      references_score(&references, 0, tiny_path("probes.csv"), score, &diag));
+    TEST_ASSERT_EQUAL(3, score[0].points);
+    TEST_ASSERT_EQUAL(3, score[1].points);
+    TEST_ASSERT_EQUAL_DOUBLE(sqrt(1 / 3.0), score[0].rms);
+    TEST_ASSERT_EQUAL_DOUBLE(3, score[1].rms);
+}
+
 static void refuses(const char *lines, const char *header, const char *words)
 {
     TEST_ASSERT_EQUAL(ERR_INPUT, open_with(lines, header));
@@ -151,6 +177,8 @@ int main(void)
     RUN_TEST(test_formula_and_window);
     RUN_TEST(test_one_row_is_constant_and_the_first_of_equal_peaks_counts);
     RUN_TEST(test_nothing_in_common);
+    RUN_TEST(test_a_reference_of_zero);
+    RUN_TEST(test_two_references_of_a_probe);
     RUN_TEST(test_missing_file);
     RUN_TEST(test_malformed_row);
     RUN_TEST(test_third_column);
