@@ -12,9 +12,16 @@ void setUp(void) {}
 
 void tearDown(void) { arena_fail_after(-1); }
 
-static void building_fails_cleanly(void)
+/* A beam with a load and a clamp that moves. */
+static const char beam[] =
+    "dp = 1 cm\nend_time = 1\n[motion m]\nvelocity = 0.1, 0\n[solid bar]\nshape = box 0, 0, 0.5, "
+    "0.04\n"
+    "clamp = box 0, 0, 0.04, 0.04\nclamp_motion = m\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+    "[load end]\nbody = bar\nshape = box 0.4, 0, 0.5, 0.04\nforce = 30, 0\n";
+
+static void each_allocation_fails(const char *text, int threads)
 {
-    const struct sphfsi_options o = {.case_text = tiny_case};
+    const struct sphfsi_options o = {.case_text = text, .threads = threads};
     enum sphfsi_status status = SPHFSI_MEMORY;
     long n = 0;
     for (; status && n < 5000; n++) {
@@ -30,6 +37,12 @@ static void building_fails_cleanly(void)
     }
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, status);
     TEST_ASSERT_TRUE(n > 50);
+}
+
+static void building_fails_cleanly(void)
+{
+    each_allocation_fails(tiny_case, 0);
+    each_allocation_fails(beam, 2);
 }
 
 static void a_run_fails_cleanly(void)

@@ -290,6 +290,35 @@ static void every_cut_is_found(void)
     printf("found: %zu lengths cut\n", image.size);
 }
 
+/* Too short for what every checkpoint has is told as that. */
+static void a_short_file_is_told(void)
+{
+    open_with(0, NULL);
+    store(tiny_path("short"), &first);
+    const size_t whole = image.size;
+    for (image.size = 0; image.size < 150; image.size++) {
+        diag.code = ERR_OK;
+        TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&image, "x.ckpt", &diag));
+        TEST_ASSERT_EQUAL_STRING(
+            "x.ckpt: is not a valid checkpoint: it is shorter than a header and a footer",
+            diag.text);
+    }
+    image.size = whole;
+}
+
+/* The version of the program that wrote a checkpoint, as far as there is room. */
+static void version_is_kept(void)
+{
+    open_with(0, NULL);
+    char version[CHECKPOINT_VERSION_TEXT + 20];
+    memset(version, 'v', sizeof version - 1);
+    version[sizeof version - 1] = '\0';
+    TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", version, &diag));
+    const struct image_info info = checkpoint_info(&image);
+    TEST_ASSERT_EQUAL_UINT64(sizeof info.version - 1, strlen(info.version));
+    TEST_ASSERT_EQUAL_STRING("the case", info.case_text);
+}
+
 static void bytes_behind_the_end_are_found(void)
 {
     open_with(0, NULL);
@@ -363,6 +392,8 @@ int main(void)
     RUN_TEST(every_flipped_byte_is_found);
     RUN_TEST(every_changed_byte_is_found);
     RUN_TEST(every_cut_is_found);
+    RUN_TEST(a_short_file_is_told);
+    RUN_TEST(version_is_kept);
     RUN_TEST(bytes_behind_the_end_are_found);
     RUN_TEST(the_last_two_are_kept);
     RUN_TEST(an_empty_folder_has_none);

@@ -348,6 +348,21 @@ static void force_on_several_bodies(void)
     }
 }
 
+/* The three of a list are three. */
+static void force_on_three_bodies(void)
+{
+    open_with("[wall one]\nshape = box 0.2, 0.2, 0.23, 0.23\n[wall two]\nshape = box 0.3, 0.3, "
+              "0.33, 0.33\n"
+              "[probe B]\nquantity = force\nbody = gate, one, two\npoint = 0.1, 0\n",
+              NULL);
+    const struct probe *const all = &probes.probe[probes.n - 1];
+    TEST_ASSERT_EQUAL_INT(2, all->n_more);
+    for (int k = 0; k < 2; k++) {
+        TEST_ASSERT_EQUAL_INT(KIND_WALL, all->more[k].kind);
+        TEST_ASSERT_EQUAL_STRING(k ? "two" : "one", rig.scene.wall[all->more[k].body].common.name);
+    }
+}
+
 /* --- strain, pose, acceleration, reaction --- */
 
 /* Turns the gate about the origin by an angle after stretching it along x by a share, and shifts it. */
@@ -503,6 +518,7 @@ int main(void)
     RUN_TEST(a_point_rides_on_a_solid);
     RUN_TEST(a_point_rides_on_a_wall);
     RUN_TEST(force_on_several_bodies);
+    RUN_TEST(force_on_three_bodies);
     RUN_TEST(strain_of_a_turned_body);
     RUN_TEST(pose_of_a_turned_body);
     RUN_TEST(acceleration_of_a_falling_body);

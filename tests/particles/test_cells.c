@@ -92,6 +92,28 @@ static void test_cells_are_no_smaller_than_the_reach(void)
     assert_near(1e-12, 0.5 * (narrow.side[0] - reach), narrow.skin, "stray");
 }
 
+/* A long channel has more columns than one digit of the sorting key tells apart. */
+static void test_a_long_channel_is_sorted(void)
+{
+    const double end[2] = {lower[0] + 2000 * reach, lower[1] + 4 * reach};
+    scatter(false);
+    struct cells channel;
+    struct particles *const p = &kinds[KIND_FLUID];
+    TEST_ASSERT_EQUAL_INT(ERR_OK,
+                          cells_create(&channel, &arena, lower, end, reach, stray, kinds, &diag));
+    uint64_t seed = 3;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] = lower[0] + 1000 * reach * (1 + noise(&seed));
+        p->y[i] = lower[1] + 2 * reach * (1 + noise(&seed));
+    }
+    TEST_ASSERT_EQUAL_INT64(0, cells_sort(&channel, KIND_FLUID, p));
+    TEST_ASSERT_TRUE(channel.nx > 1000 && channel.ny < 4);
+    int64_t listed = 0;
+    for (int32_t cell = 0; cell < channel.nx * channel.ny; cell++)
+        listed += channel.kind[KIND_FLUID].count[cell];
+    TEST_ASSERT_EQUAL_INT64(p->n, listed);
+}
+
 /* Every pair closer than the reach lies in cells that touch, within a kind and across kinds. */
 static void test_no_pair_is_missed(void)
 {
@@ -357,6 +379,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_cells_are_no_smaller_than_the_reach);
+    RUN_TEST(test_a_long_channel_is_sorted);
     RUN_TEST(test_no_pair_is_missed);
     RUN_TEST(test_clusters_of_a_lattice_are_squares);
     RUN_TEST(test_order_is_that_of_the_tree);

@@ -206,6 +206,27 @@ static void test_bad_input(void)
     rig_refuses(BAR "clamp_motion = m\n[motion m]\nvelocity = 1, 0\n", "no `clamp`");
 }
 
+/* Normals of the surface towards the fluid go where a clamp moves, and stay elsewhere. */
+static void test_normals_of_driven_particles(void)
+{
+    RIG_OPEN_SOLID(
+        "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n"
+        "[motion m]\nvelocity = 0.1, 0\n[solid gate]\nshape = box 0.1, 0, 0.13, 0.2\n"
+        "clamp = box 0.1, 0.17, 0.13, 0.2\nclamp_motion = m\ndensity = 1100\nyoung = 1e6\n"
+        "poisson = 0.4\n",
+        "integrator=leapfrog");
+    TEST_ASSERT_NOT_NULL(p->face_x);
+    for (int64_t i = 0; i < p->n; i++) p->face_x[i] = p->face_y[i] = 1;
+    clear_driven_normals(rig.sim.solid.loads, p);
+    int cleared = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double want = p->Y[i] > 0.17 ? 0 : 1;
+        TEST_ASSERT_TRUE(p->face_x[i] == want && p->face_y[i] == want);
+        cleared += want == 0;
+    }
+    TEST_ASSERT_EQUAL_INT(9, cleared);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -218,5 +239,6 @@ int main(void)
     RUN_TEST(test_zero_changes_no_bit);
     RUN_TEST(test_restart_and_threads);
     RUN_TEST(test_bad_input);
+    RUN_TEST(test_normals_of_driven_particles);
     return UNITY_END();
 }

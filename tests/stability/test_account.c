@@ -105,6 +105,52 @@ static void test_regions_that_meet(void)
                 "lowest dissipation");
 }
 
+/* Whether fluid b, of 3 x 3 particles, is in the region of fluid a, of 10 x 10 in 0 to 0.05 m, when its box
+ * begins there. */
+static bool meets(double x, double y)
+{
+    char text[512];
+    snprintf(text, sizeof text,
+             "dp = 5 mm\nend_time = 1\n[numerics]\nh_over_dp = 1.5\n[fluid a]\n"
+             "shape = box 0, 0, 0.05, 0.05\nsound_speed = 20\n[fluid b]\nlike = a\n"
+             "shape = box %g, %g, %g, %g\n[domain]\nlower = -1, -1\nupper = 2, 2\n",
+             x, y, x + 0.015, y + 0.015);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(text, NULL, 1e-3));
+    account_gain(&rig.sim);
+    return region(KIND_FLUID, 0) == region(KIND_FLUID, 1);
+}
+
+/* On each side: at a distance of two spacings within the kernel's reach of three, at four not. */
+static void test_regions_meet_on_any_side(void)
+{
+    for (int gap = 1; gap <= 3; gap += 2) {
+        const double after = 0.05 + gap * 0.005, before = -0.015 - gap * 0.005;
+        TEST_ASSERT_EQUAL_INT(gap == 1, meets(after, 0.02));
+        TEST_ASSERT_EQUAL_INT(gap == 1, meets(before, 0.02));
+        TEST_ASSERT_EQUAL_INT(gap == 1, meets(0.02, after));
+        TEST_ASSERT_EQUAL_INT(gap == 1, meets(0.02, before));
+    }
+}
+
+/* Bodies are apart until any are in contact, or joined. */
+static void test_bodies_in_contact_are_one_region(void)
+{
+    static const char bodies[] =
+        "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.04, 0.04\ndensity = 1000\n"
+        "young = 1e6\npoisson = 0.3\n[solid b]\nlike = a\nshape = box 0.05, 0, 0.09, 0.04\n"
+        "[solid c]\nlike = a\nshape = box 0.09, 0, 0.13, 0.04\njoined = b\n";
+    rig_open(&rig, bodies, NULL);
+    TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
+    TEST_ASSERT_TRUE(region(KIND_SOLID, 1) == region(KIND_SOLID, 2));
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->body[i]) p->ux[i] = -0.012;
+    contact_forget(&rig.sim.contact, &rig.sim.kind[KIND_WALL]);
+    account_begin(&rig.sim);
+    TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 1));
+    TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 2));
+}
+
 /* A strip under its weight that folds, by the paper's law, which has no stored energy. */
 static void test_gain_after_a_loss(void)
 {
@@ -170,6 +216,8 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_gain_beside_a_collapse);
     RUN_TEST(test_regions_that_meet);
+    RUN_TEST(test_regions_meet_on_any_side);
+    RUN_TEST(test_bodies_in_contact_are_one_region);
     RUN_TEST(test_gain_after_a_loss);
     RUN_TEST(test_work_on_what_rests);
     RUN_TEST(test_regions_add_up);

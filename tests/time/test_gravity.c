@@ -70,7 +70,7 @@ static void test_its_work_is_booked(void)
             start.kinetic + start.potential + start.internal + start.elastic + start.hourglass;
         rig_run(&rig, 0.1);
         const struct ledger end = simulation_ledger(&rig.sim);
-        assert_at_most(0.01 * end.kinetic, fabs(end.dissipated), "dissipated");
+        assert_at_most(5e-4 * end.kinetic, fabs(end.dissipated), "dissipated");
         TEST_ASSERT_TRUE(fabs(rig.sim.state.wall_work) > 0.05 * end.kinetic);
     }
 }

@@ -121,6 +121,17 @@ static void test_velocity_of_the_solid(void)
     expect(KIND_SOLID, 20, "speed");
 }
 
+/* A body as a whole may be as fast as it will. */
+static void test_velocity_of_a_body(void)
+{
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->vx[i] = 30 * rig.sim.solid.body[0].sound_speed;
+        p->vy[i] = -p->vx[i];
+    }
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+}
+
 /* A particle pushed through its neighbours turns the material inside out; found within 64 steps, where
  * the gradient is checked_at at, and in a lone solid after every batch. */
 static void test_inverted_solid(void)
@@ -325,10 +336,13 @@ static void test_warnings_before_the_end(void)
     rig.sim.kind[KIND_SOLID].Uxx[7] = -0.9;
     rig.sim.state.steps = 64;
     rig.sim.state.dt = 50 * rig.sim.guard.step_limit;
-    rig.sim.dt_bound[BOUND_output] = INFINITY;
+    for (int k = 0; k < BOUND_COUNT; k++) rig.sim.dt_bound[k] = k == 2 ? 1e-9 : (double)INFINITY;
     for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_INT(ERR_OK, check());
     TEST_ASSERT_EQUAL_INT(3, warnings);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "the time step has fallen"), warning);
+    char text[64];
+    snprintf(text, sizeof text, "limited by %s", bound_names[2]);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
 }
 
 static void test_substeps_without_end(void)
@@ -356,6 +370,7 @@ int main(void)
     RUN_TEST(test_density_of_the_fluid);
     RUN_TEST(test_tension_and_nan_of_the_density);
     RUN_TEST(test_velocity_of_the_solid);
+    RUN_TEST(test_velocity_of_a_body);
     RUN_TEST(test_inverted_solid);
     RUN_TEST(test_lone_solid_turned_inside_out);
     RUN_TEST(test_collapsed_step);

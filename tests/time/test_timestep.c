@@ -170,6 +170,11 @@ static void test_added_mass_bound_by_hand(void)
         assert_near(1e-12 * lag, lag * fmin(b / (1 + row[k].lead * b), 0.2 * (k ? 1 : 2)),
                     timestep_fluid_limit(&rig.sim), row[k].integrator);
     }
+    /* Of bodies that are equally light the first is named. */
+    rig_open(&rig, text, "gate.density=200", NULL);
+    int lightest;
+    timestep_added_mass(&rig.sim, &lightest);
+    TEST_ASSERT_EQUAL_INT(0, lightest);
     /* The step that it allows keeps the mean's weight at b. */
     rig_open(&rig, text, "cork.density=100", NULL);
     const double dt = timestep_fluid_limit(&rig.sim), mean = lag - 1.25 * dt;
@@ -231,6 +236,11 @@ static void test_a_lone_solid_hits_its_times_in_batches(void)
         }
         TEST_ASSERT_EQUAL_INT64(1 + 8 + 993, rig.sim.state.steps);
         TEST_ASSERT_EQUAL_INT64(rig.sim.state.steps, rig.sim.state.solid_substeps);
+        rig_open(&rig, block, integrator ? "integrator=verlet" : "integrator=symplectic", NULL);
+        TEST_ASSERT_EQUAL_INT(ERR_OK,
+                              simulation_step(&rig.sim, (EQUAL_STEPS - 0.5) * bound, &rig.diag));
+        assert_near(1e-12 * bound, (1 - 0.5 / EQUAL_STEPS) * bound, rig.sim.state.dt,
+                    "equal steps");
         rig_open(&rig, block, "numerics.fixed_step=1e-6", NULL);
         rig_run(&rig, 1e-4);
         TEST_ASSERT_EQUAL_INT64(100, rig.sim.state.steps);

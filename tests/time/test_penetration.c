@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT
+ * Fluid inside of walls: at any size, on any side of their particles, and across joined sides. */
+#include "time/guards.h"
+#include "rig.h"
+#include "unity.h"
+
+#include <stdio.h>
+
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+/* Fluid on four sides of every particle of the bed's upper row, at a share of a spacing. */
+static int64_t found(double dp, const char *periodic, double share)
+{
+    char text[512];
+    snprintf(text, sizeof text,
+             "dp = %g\nend_time = 1\n[domain]\nlower = 0, %g\nupper = %g, %g\nperiodic = %s\n"
+             "[fluid w]\nshape = box 0, 0, %g, %g\nsound_speed = 20\n"
+             "[wall bed]\nshape = box 0, %g, %g, 0\n",
+             dp, -5 * dp, 40 * dp, 20 * dp, periodic, 40 * dp, 10 * dp, -5 * dp, 40 * dp);
+    rig_open(&rig, text, NULL);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    for (int k = 0; k < 160; k++) {
+        const int side = k % 4;
+        p->x[k] = (k / 4 + 0.5 + share * (side == 0) - share * (side == 1)) * dp;
+        p->y[k] = (-0.5 + share * (side == 2) - share * (side == 3)) * dp;
+    }
+    rig_sort(&rig);
+    int64_t first;
+    return monitor_crossed(&rig.sim, &first);
+}
+
+static void test_fluid_in_a_bed(void)
+{
+    static const char *const periodic[] = {"none", "x"};
+    for (int k = 0; k < 2; k++)
+        for (double dp = 1e-3; dp < 200; dp *= 1e4) {
+            TEST_ASSERT_EQUAL_INT64(160, found(dp, periodic[k], 0.3));
+            TEST_ASSERT_EQUAL_INT64(0, found(dp, periodic[k], 0.4));
+        }
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_fluid_in_a_bed);
+    return UNITY_END();
+}
