@@ -198,7 +198,7 @@ static void test_bad_input(void)
     rig_refuses(LOAD "body = baa\nforce = 1, 0\nshape = box 0, 0, 0.1, 0.1\n",
                 "did you mean `bar`");
     rig_refuses(LOAD "body = bar\nforce = 1, 0\n", "needs a `shape`");
-    rig_refuses(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "one of `force` and `traction`");
+    rig_refuses(LOAD "body = bar\nshape = box 0, 0, 0.1, 0.1\n", "either `force` or `traction`");
     rig_refuses(LOAD "body = bar\nforce = 1, 0\nshape = box 1, 0, 2, 0.1\n",
                 "contains no particle");
     rig_refuses(BAR "velocity = t, 0\n", "`t`");
