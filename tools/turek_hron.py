@@ -159,11 +159,11 @@ def read(folder):
     spans = periods(times, series["uy"] if "uy" in series else series["lift"])
     with open(folder / "summary.json", encoding="utf-8") as file:
         run = json.load(file)
-    cost = folder / "cost.json"
+    cost = json.loads((folder / "cost.json").read_text()) if (folder / "cost.json").exists() else {}
     name, _, across = folder.name.rpartition("-")
     return {"case": name, "across": int(across), "time": times[-1], "exit": run["exit_reason"],
             "particles": run["particles"], "steps": run["steps"], "version": run["version"],
-            "cpu_seconds": json.loads(cost.read_text())["cpu_seconds"] if cost.exists() else None,
+            "cpu_seconds": cost.get("cpu_seconds"), "settings": cost.get("settings", []),
             "series": {k: summary(times, smoothed(k, times, v, spans), spans)
                        for k, v in series.items()}}
 
@@ -191,11 +191,14 @@ def run_case(args):
                "--threads", str(args.threads), "--set", f"across={args.across}"]
     if args.end:
         command += ["--set", f"end_time={args.end}"]
+    for setting in args.set:
+        command += ["--set", setting]
     begin = time.time()
     status = subprocess.run(command, check=False).returncode
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     (folder / "cost.json").write_text(json.dumps(
-        {"cpu_seconds": used.ru_utime + used.ru_stime, "wall_seconds": time.time() - begin}))
+        {"cpu_seconds": used.ru_utime + used.ru_stime, "wall_seconds": time.time() - begin,
+         "settings": args.set}))
     print(json.dumps(read(folder), indent=2))
     return status
 
@@ -214,6 +217,11 @@ def cost_of(run):
     return f"{used:.0f} | {used / run['time']:.1f}" if used else "not measured | "
 
 
+def changed(run):
+    """Constants that differ from those of the case."""
+    return f" ({', '.join(run['settings'])})" if run.get("settings") else ""
+
+
 def headline(kept):
     """The largest error of the means and amplitudes of each case at its finest run."""
     lines = []
@@ -228,7 +236,8 @@ def headline(kept):
             if found:
                 parts.append(f"{quantity} {show(quantity, found, reference)}")
         end = "" if best["exit"] == "finished" else f"; stopped at {best['time']:.3g} s"
-        lines.append(f"- **{case.upper()}** at {best['across']} across: {'; '.join(parts)}{end}.")
+        lines.append(f"- **{case.upper()}** at {best['across']} across{changed(best)}: "
+                     f"{'; '.join(parts)}{end}.")
     missing = [c.upper() for c in REFERENCE if not any(k["case"] == c for k in kept)]
     if missing:
         lines.append(f"- Not run yet: {', '.join(missing)}.")
@@ -245,7 +254,8 @@ def report():
             "| case | across | simulated s | end | particles (fluid, solid) | CPU s | CPU s a second | "
             "quantity | found | reference |", "|---|---|---|---|---|---|---|---|---|---|"]
     for run in kept:
-        head = (f"| {run['case'].upper()} | {run['across']} | {run['time']:.4g} | {run['exit']} | "
+        head = (f"| {run['case'].upper()} | {run['across']}{changed(run)} | {run['time']:.4g} | "
+                f"{run['exit']} | "
                 f"{run['particles']['fluid']}, {run['particles']['solid']} | "
                 f"{cost_of(run)} |")
         for quantity, wanted in REFERENCE[run["case"]].items():
@@ -307,6 +317,8 @@ def main():
     run.add_argument("case", choices=sorted(REFERENCE))
     run.add_argument("--across", type=int, default=10)
     run.add_argument("--end", type=float, help="end at this time instead, s")
+    run.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
+                     help="change a constant of the case; the report names it")
     run.add_argument("--threads", type=int, default=os.cpu_count())
     run.add_argument("--program", type=Path, default=ROOT / "sphfsi")
     for name in ("read", "keep"):
