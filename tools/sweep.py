@@ -161,6 +161,7 @@ SNAKEFILE = """# Written by tools/sweep.py; sweep.json beside it holds the runs.
 import json
 plan = json.load(open("sweep.json"))
 tool = plan["tool"] + " --out ."
+localrules: all, gather
 
 rule all:
     input: "table.csv", "sweep.png"
