@@ -177,7 +177,7 @@ def main():
     args = parser.parse_args()
 
     code = [path for folder in ("src", "include", "tests", "bench", "tools", "cases", "examples",
-                                "python")
+                                "python", "web")
             for path in sorted((ROOT / folder).rglob("*"))
             if path.suffix in (".c", ".h", ".def", ".py", ".sh", ".cfg")]
     for path in code + [ROOT / "Makefile", ROOT / "CMakeLists.txt"] + sorted(ROOT.glob("*.md")):

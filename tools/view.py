@@ -110,9 +110,10 @@ def probe_curves(run):
         words, scale, unit = column_words(column, np.abs(value).max())
         numbers = [[float(f"{v:.6g}") for v in values] for values in (time, scale * value)]
         own = [ref for ref in refs if ref.probe == column]
-        found.append({"label": words.replace("$", "").replace("\\sigma", "stress"), "unit": unit,
+        words = words.replace("$", "").replace("\\sigma", "stress")
+        found.append({"label": words, "name": words.removesuffix(f" ({unit})"), "unit": unit,
                       "time": numbers[0], "value": numbers[1],
-                      "references": [{"label": ref.label, "time": ref.time.tolist(),
+                      "references": [{"label": ref.label, "measured": ref.measured, "time": ref.time.tolist(),
                                       "value": (scale * ref.value).tolist()} for ref in own]})
     return found
 
@@ -152,6 +153,7 @@ def main():
     for name, text in (("TITLE", html.escape(title)), ("ABOUT", html.escape(about)),
                        ("FILM", json.dumps(film, separators=(",", ":")).replace("</", "<\\/")),
                        ("FRAMES", base64.b64encode(zlib.compress(data, 9)).decode()),
+                       ("DRAW", (HERE.parent / "web" / "draw.js").read_text(encoding="utf-8")),
                        ("SCRIPT", (HERE / "view.js").read_text(encoding="utf-8"))):
         page = page.replace(f"@{name}@", text)
     if len(page) > LARGEST:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the page that runs the program in a browser: one HTML file with both WebAssembly programs, the cases,
-their references, and the state hashes of the native program, which runs each case once for that.
+"""Writes the page that runs the program in a browser: one HTML file with both WebAssembly programs, the
+cases, their references, and the state hashes of the native program, which runs each case once for that.
 
     web/build.py --program ./sphfsi --fused build/web/fused.wasm --exact build/web/exact.wasm --out page.html
 """
@@ -29,20 +29,28 @@ except ImportError as missing:
 
 PALETTES = {"fluid": "viridis", "solid": "OrRd"}
 
-# Coarse enough for a browser. name: (what is other than in cases/, window x0, x1, y0, y1 in m or None)
+# Coarse or short enough for a browser. set: other than in cases/; view: x0, x1, y0, y1 of the picture, m;
+# fluid: the field that colours the fluid at first
 CASES = {
-    "gate": ({"dp": "2 mm", "wall": "6 mm"}, (-0.01, 0.45, -0.01, 0.17)),
-    "two_posts": ({"end_time": "0.3 s"}, None),
-    "rolling_tank": ({"end_time": "1.6 s"}, None),
-    "vortices": ({}, None),
-    "rotating_patch": ({}, None),
-    "channel": ({}, None),
-    "ringing_bar": ({}, None),
-    "cantilever": ({"ratio": "10"}, None),
-    "still_water": ({"dp": "10 mm"}, None),
-    "accelerated_tank": ({}, None),
+    "gate": {"set": {"dp": "2 mm", "wall": "6 mm"}, "view": (-0.01, 0.45, -0.01, 0.17)},
+    "two_posts": {"set": {"end_time": "0.3 s"}},
+    "rolling_tank": {"set": {"end_time": "1.6 s"}},
+    "wet_baffle": {"set": {"dp": "4 mm", "end_time": "0.6 s"}},
+    "sluice_gate": {"set": {"dp": "4 mm", "end_time": "0.6 s"}},
+    "hydrostatic_plate": {"set": {"dp": "25 mm", "wall": "0.1 m"}},
+    "elastic_valve": {"set": {"end_time": "0.25 s"}, "fluid": "velocity"},
+    "turek_hron/fsi2": {"set": {"end_time": "1 s"}, "fluid": "velocity"},
+    "vortices": {"fluid": "velocity"},
+    "rotating_patch": {"view": (-1.2, 1.2, -1.2, 1.2)},
+    "channel": {"fluid": "velocity"},
+    "ringing_bar": {},
+    "cantilever": {"set": {"ratio": "10"}},
+    "beam_on_beam": {},
+    "still_water": {"set": {"dp": "10 mm"}},
+    "accelerated_tank": {},
 }
-FUNCTIONS = {name: getattr(math, name) for name in ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")}
+FUNCTIONS = {name: getattr(math, name)
+             for name in ("sqrt", "sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "log")}
 FUNCTIONS.update(pi=math.pi, min=min, max=max, abs=abs, round=round)
 POINTS = 400  # of the curve of a formula
 
@@ -50,26 +58,31 @@ POINTS = 400  # of the curve of a formula
 def with_values(text, values):
     """The text of a case with other values at the top and of constants, and what they were."""
     for key, value in values.items():
-        text, found = re.subn(rf"(?m)^{key} = ([^#\n]*?)( *#.*)?$",
-                              lambda hit: f"{key} = {value}{hit[2] or ''}  # {hit[1]} in cases/"
-                              if not hit[2] else f"{key} = {value}{hit[2]}; {hit[1]} in cases/", text, count=1)
+        text, found = re.subn(
+            rf"(?m)^{key} = ([^#\n]*?)( *#.*)?$",
+            lambda hit: f"{key} = {value}" + (f"{hit[2]};" if hit[2] else "  #") + f" {hit[1]} in cases/",
+            text, count=1)
         if not found:
             raise SystemExit(f"web/build.py: the case has no line `{key} = `")
     return text
+
+
+def as_sets(values):
+    return [item for key, value in values.items() for item in ("--set", f"{key}={value}")]
 
 
 def native_run(program, name, values, folder):
     """The finished folder of a run by the native program, which is kept for the next time."""
     case = ROOT / "cases" / f"{name}.cfg"
     sum_of = hashlib.sha256(program.read_bytes() + case.read_bytes() + repr(values).encode()).hexdigest()[:16]
-    out = folder / f"{name}-{sum_of}"
+    stem = name.replace("/", "_")
+    out = folder / f"{stem}-{sum_of}"
     if not (out / "summary.json").exists() or files.Run(out).failure():
-        for old in folder.glob(f"{name}-*"):
+        for old in folder.glob(f"{stem}-*"):
             subprocess.run(["rm", "-rf", old], check=True)
         command = [program, case, "--out", out, "--threads", "1", "--quiet"]
         print(f"  native {name}", flush=True)
-        subprocess.run(command + [item for key, value in values.items() for item in ("--set", f"{key}={value}")],
-                       check=True, stderr=subprocess.DEVNULL)
+        subprocess.run(command + as_sets(values), check=True, stderr=subprocess.DEVNULL)
     return files.Run(out)
 
 
@@ -90,8 +103,8 @@ def formula_curve(keys, sections, end):
 
 
 def references(run, end):
-    found = [{"column": ref.probe, "label": ref.label, "measured": ref.measured, "time": ref.time, "value": ref.value}
-             for ref in files.references(run)]
+    found = [{"column": ref.probe, "label": ref.label, "measured": ref.measured, "time": ref.time,
+              "value": ref.value} for ref in files.references(run)]
     for kind, name, keys in run.case():
         if kind == "reference" and keys.get("formula"):
             time, value = formula_curve(keys, run.case(), end)
@@ -106,11 +119,13 @@ def references(run, end):
 
 
 def case_data(program, name, folder):
-    values, view = CASES[name]
+    own = CASES[name]
+    values = own.get("set", {})
     text = (ROOT / "cases" / f"{name}.cfg").read_text(encoding="utf-8")
     run = native_run(program, name, values, folder)
     title = run.summary.get("title") or name
-    return {"name": name, "title": title, "text": with_values(text, values), "view": view,
+    return {"name": name, "title": title, "text": with_values(text, values), "view": own.get("view"),
+            "fluid": own.get("fluid", "pressure"),
             "hash": run.summary["state_hash"], "references": references(run, run.summary["time"])}
 
 
@@ -123,7 +138,8 @@ def packed(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", type=Path, required=True, help="the native program")
     parser.add_argument("--fused", type=Path, required=True, help="built with relaxed SIMD")
     parser.add_argument("--exact", type=Path, required=True, help="built without")
@@ -132,7 +148,8 @@ def main():
     args = parser.parse_args()
     folder = args.out.parent / "runs"
     program = args.program.resolve()
-    version = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout.split()[-1]
+    said = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout
+    version = said.split()[-1]
     data = {"version": version, "palettes": {kind: palette(name) for kind, name in PALETTES.items()},
             "programs": {"fused": packed(args.fused), "exact": packed(args.exact)},
             "cases": [case_data(program, name, folder) for name in args.only]}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Drawing: particles by WebGL, colour bars, curves.
+// Drawing of particles, colour bars and curves, for the page of the program and the film of a run
+// (tools/view.js).
 "use strict";
 
 const VERTEX = `
@@ -16,8 +17,13 @@ void main() {
 }`;
 const GREY = [0.72, 0.72, 0.72, 1];
 
-// Draws points of x, y, value; null where there is no WebGL.
-function painter_of(canvas) {
+// Draws points of x, y, value: by WebGL where there is one.
+function painter_of(canvas) { return gl_painter_of(canvas) || plain_painter_of(canvas); }
+
+// Side of a particle in pixels.
+function size_of(spacing, scale) { return Math.max(1.5, 1.2 * spacing * scale); }
+
+function gl_painter_of(canvas) {
   const gl = canvas.getContext("webgl", { preserveDrawingBuffer: true });
   if (!gl) return null;
   const program = gl.createProgram();
@@ -28,6 +34,7 @@ function painter_of(canvas) {
     gl.attachShader(program, shader);
   }
   gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS)) return null;
   gl.useProgram(program);
   gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
   const point = gl.getAttribLocation(program, "point"), at = name => gl.getUniformLocation(program, name);
@@ -48,11 +55,32 @@ function painter_of(canvas) {
       const scale = canvas.width / view.w, h = canvas.height / scale;
       gl.bufferData(gl.ARRAY_BUFFER, points, gl.STREAM_DRAW);
       gl.uniform4f(at("view"), view.x, view.y, 2 / view.w, 2 / h);
-      gl.uniform1f(at("size"), Math.max(1.5, 1.2 * spacing * scale));
+      gl.uniform1f(at("size"), size_of(spacing, scale));
       gl.uniform2f(at("range"), ...(range || [0, 1]));
       gl.uniform4fv(at("plain"), palette ? [0, 0, 0, 0] : GREY);
       if (palette) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB, 256, 1, 0, gl.RGB, gl.UNSIGNED_BYTE, palette);
       gl.drawArrays(gl.POINTS, 0, points.length / 3);
+    },
+  };
+}
+
+function plain_painter_of(canvas) {
+  const c = canvas.getContext("2d");
+  return {
+    clear() {
+      c.fillStyle = "white";
+      c.fillRect(0, 0, canvas.width, canvas.height);
+    },
+    draw(points, spacing, view, palette, range) {
+      const scale = canvas.width / view.w, side = size_of(spacing, scale), [low, high] = range || [0, 1];
+      c.fillStyle = `rgb(${GREY.slice(0, 3).map(part => 255 * part)})`;
+      for (let i = 0; i < points.length; i += 3) {
+        const shade = (points[i + 2] - low) / Math.max(high - low, 1e-30);
+        const k = 3 * Math.round(255 * Math.min(Math.max(shade, 0), 1));
+        if (palette) c.fillStyle = `rgb(${palette[k]},${palette[k + 1]},${palette[k + 2]})`;
+        c.fillRect((points[i] - view.x) * scale + (canvas.width - side) / 2,
+                   (view.y - points[i + 1]) * scale + (canvas.height - side) / 2, side, side);
+      }
     },
   };
 }
@@ -104,7 +132,17 @@ function ticks(low, high, most) {
   return found;
 }
 
-// One curve beside its references: {time, value, name, style: line|dots|dashes, colour}.
+function legend_of(curves) {
+  return curves.map(curve => {
+    const item = document.createElement("span");
+    item.textContent = { line: "— ", dots: "● ", dashes: "- - " }[curve.style] + curve.name;
+    item.style.color = curve.colour;
+    return item;
+  });
+}
+
+// One curve beside its references: {time, value, name, style: line|dots|dashes, colour}. Gives a function from time to
+// pixels, its inverse, and the frame's upper and lower edge.
 function draw_chart(canvas, curves, end, label) {
   const c = canvas.getContext("2d"), ratio = devicePixelRatio || 1;
   const w = canvas.clientWidth, h = 230, left = 64, right = 10, top = 10, bottom = 34;
@@ -152,4 +190,5 @@ function draw_chart(canvas, curves, end, label) {
   }
   c.setLineDash([]);
   c.lineWidth = 1;
+  return { x_of: X, time_of: x => end * (x - left) / (w - left - right), top, bottom: h - bottom };
 }

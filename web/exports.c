@@ -79,10 +79,7 @@ EXPORT(next_output) double next_output(void) { return sphfsi_next_output(simulat
 EXPORT(now) double now(void) { return sphfsi_time(simulation); }
 EXPORT(end) double end(void) { return sphfsi_end_time(simulation); }
 EXPORT(steps) double steps(void) { return (double)sphfsi_steps(simulation); }
-EXPORT(count) int count(int kind)
-{
-    return (int)sphfsi_count(simulation, (enum sphfsi_kind)kind);
-}
+EXPORT(count) int count(int kind) { return (int)sphfsi_count(simulation, (enum sphfsi_kind)kind); }
 
 /* The state's hash as 16 digits. */
 EXPORT(hash) const char *hash(void)

@@ -10,7 +10,7 @@ const $ = id => document.getElementById(id);
 const painter = painter_of($("scene"));
 const worker = new Worker(URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" })));
 const state = { chosen: null, frame: null, columns: [], rows: [], ranges: {}, spacing: {}, view: null,
-                after: null, running: false, changed: false };
+                moved: false, after: null, running: false, changed: false };
 
 function palette(kind) { return Uint8Array.from(DATA.palettes[kind]); }
 
@@ -93,6 +93,7 @@ function choose(name) {
   $("case").value = state.chosen.name;
   $("text").value = state.chosen.text;
   make_sliders();
+  $("fluid").value = state.chosen.fluid;
   build();
 }
 
@@ -100,12 +101,13 @@ function choose(name) {
 
 // Builds the simulation at time zero; `after` is then sent to the worker.
 function build(after = null) {
-  Object.assign(state, { after, frame: null, rows: [], ranges: {}, spacing: {}, view: null,
+  Object.assign(state, { after, frame: null, rows: [], ranges: {}, spacing: {}, view: null, moved: false,
                          changed: $("text").value !== state.chosen.text || sets().length > 0 });
   $("verdict").textContent = $("verdict").className = "";
   document.body.dataset.state = "building";
   show_problems([]);
-  worker.postMessage({ what: "create", name: `${state.chosen.name}.cfg`, text: $("text").value, sets: sets() });
+  worker.postMessage({ what: "create", name: `${state.chosen.name}.cfg`, text: $("text").value, sets: sets(),
+                       fields: shown_fields() });
 }
 
 function set_running(running) {
@@ -199,6 +201,15 @@ function first_view(frame) {
   return { x: (x0 + x1) / 2, y: (y0 + y1) / 2, w: Math.max(w, h / aspect), aspect };
 }
 
+// Moves the view by as little as keeps a moving tank in it; what is larger than the view stays where it is.
+function keep_in_view(view, points) {
+  for (const [k, axis, size] of [[0, "x", view.w], [1, "y", view.w * view.aspect]]) {
+    let low = Infinity, high = -Infinity;
+    for (let i = k; i < points.length; i += 3) { low = Math.min(low, points[i]); high = Math.max(high, points[i]); }
+    if (high - low <= size) view[axis] = Math.min(Math.max(view[axis], high - size / 2), low + size / 2);
+  }
+}
+
 // A range of colours only grows, so that colours of different times can be compared.
 function range(kind, points) {
   const now = range_of(points), before = state.ranges[kind];
@@ -209,9 +220,9 @@ function range(kind, points) {
 function draw_scene(frame) {
   const canvas = $("scene"), ratio = devicePixelRatio || 1;
   state.view = state.view || first_view(frame);
+  if (!state.moved) keep_in_view(state.view, frame.wall.length ? frame.wall : frame.fluid);
   canvas.width = Math.round(canvas.clientWidth * ratio);
   canvas.height = Math.round(canvas.width * state.view.aspect);
-  if (!painter) return show_problems(["This browser has no WebGL: the particles are not drawn."]);
   painter.clear();
   for (const kind of ["wall", "fluid", "solid"]) {
     const points = frame[kind];
@@ -241,12 +252,7 @@ function draw_curves(frame) {
   curves.unshift({ time, value, style: "line", colour: "#0072b2", name: "here" });
   const [, name, unit] = column.match(/^(.+?)_((?:m2|m|Pa|Nm|N|J|rad|1)(?:_per_\w+)?)$/) || [0, column, "1"];
   draw_chart($("chart"), curves, frame.end, { name, unit: unit.replace("_per_", "/") });
-  $("legend").replaceChildren(...curves.map(curve => {
-    const item = document.createElement("span");
-    item.textContent = { line: "— ", dots: "● ", dashes: "- - " }[curve.style] + curve.name;
-    item.style.color = curve.colour;
-    return item;
-  }));
+  $("legend").replaceChildren(...legend_of(curves));
 }
 
 function draw() {
@@ -264,12 +270,14 @@ function draw() {
 
 // --- controls ---
 
+function shown_fields() { return { fluid: $("fluid").value, solid: $("solid").value }; }
+
 for (const kind of ["fluid", "solid"]) {
   $(kind).replaceChildren(...Object.entries(FIELDS[kind]).map(([name, [label]]) => new Option(label, name)));
   draw_bar($(`${kind}-legend`).querySelector("canvas"), palette(kind));
   $(kind).addEventListener("change", () => {
     state.ranges = {};
-    worker.postMessage({ what: "fields", fields: { fluid: $("fluid").value, solid: $("solid").value } });
+    worker.postMessage({ what: "fields", fields: shown_fields() });
   });
 }
 $("case").replaceChildren(...DATA.cases.map(c => new Option(c.title, c.name)));
@@ -287,11 +295,13 @@ window.addEventListener("resize", draw);
 $("scene").addEventListener("wheel", event => {
   event.preventDefault();
   if (!state.view) return;
+  state.moved = true;
   state.view.w *= 1.1 ** Math.sign(event.deltaY);
   draw();
 }, { passive: false });
 $("scene").addEventListener("pointermove", event => {
   if (!state.view || event.buttons !== 1) return;
+  state.moved = true;
   const metres = state.view.w / $("scene").clientWidth;
   state.view.x -= event.movementX * metres;
   state.view.y += event.movementY * metres;

@@ -5,7 +5,7 @@
 
 const SLICE = 60; // ms between looks at the messages
 
-let program, memory, running = false, shown = true, busy = 0, rows = [], columns = [];
+let program, memory, built = false, running = false, shown = true, busy = 0, rows = [], columns = [];
 let fields = { fluid: "pressure", solid: "von_mises" };
 const KINDS = ["fluid", "wall", "solid"];
 
@@ -97,12 +97,14 @@ function send_frame() {
   postMessage(frame, [frame.fluid.buffer, frame.wall.buffer, frame.solid.buffer]);
 }
 
-function create({ name, text, sets }) {
-  running = false;
+function create({ name, text, sets, fields: wanted }) {
+  running = built = false;
+  fields = wanted;
   if (program.create(put(name), put(text), put(sets.join("\n")), 0)) {
     postMessage({ what: "refused", problems: failure() });
     return;
   }
+  built = true;
   columns = [];
   for (let probe = 0, at; (at = program.probe_column(probe, 0)); probe++)
     for (let column = 0; (at = program.probe_column(probe, column)); column++)
@@ -154,7 +156,7 @@ const answers = {
   },
   fields(message) {
     fields = message.fields;
-    if (!running) send_frame();
+    if (built && !running) send_frame();
   },
   drawn() { shown = true; },
 };

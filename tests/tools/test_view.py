@@ -5,6 +5,7 @@ the whole page in a headless Chromium, as far as these are installed. Exit 77: a
 
 import base64
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -14,8 +15,10 @@ import zlib
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from scripts import PROGRAM, ROOT, TOOLS, packages
+from scripts import PROGRAM, TOOLS, packages
+import chromium
 with packages():
+    from PIL import Image
     import h5py  # noqa: F401
     import matplotlib  # noqa: F401
     import numpy as np
@@ -115,16 +118,68 @@ def check_node(folder, film, data):
     assert out["hit"] == ["fluid", 7, True, 2], out["hit"]
 
 
-def check_browser(program, page):
-    said = subprocess.run([program, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom",
-                           "--virtual-time-budget=5000", f"file://{page}"],
-                          check=True, capture_output=True, text=True, timeout=120).stdout
-    assert 'data-ready="yes"' in said, re.search("<body[^>]*>", said)[0]
-    assert "t = 0 s" in said and "<option" in said
+def check_mouse(page, film):
+    """A line drawn with the mouse has the length of its pixels times the scale of the picture; a double click
+    takes it away. The wheel enlarges about the mouse."""
+    left, top, wide, tall = page.run("(r => [r.x, r.y, r.width, r.height])(over.getBoundingClientRect())")
+    x0, x1, y0, y1 = film["window"]
+    scale = max((x1 - x0) / wide, (y1 - y0) / tall)  # metres of a pixel
+    middle = (left + wide / 2, top + tall / 2)
+    end = (middle[0] + 60, middle[1] - 30)
+    page.drag(middle, end)
+    length = float(page.run("document.body.dataset.length"))
+    assert abs(length - scale * np.hypot(60, 30)) < scale, (length, scale)
+    assert page.run("getComputedStyle(over).cursor") == "crosshair"
+    drawn = "over.getContext('2d').getImageData(0, 0, over.width, over.height).data.some(v => v)"
+    assert page.run(drawn)
+    where = page.run("document.getElementById('where').textContent")
+    x, y = ((x0 + x1) / 2 + 60 * scale, (y0 + y1) / 2 + 30 * scale)
+    said = [float(v) for v in re.search(r"x = (\S+) m, y = (\S+) m", where).groups()]
+    assert np.allclose(said, (x, y), atol=scale), (where, x, y)
+    page.mouse("mouseWheel", *middle, deltaX=0, deltaY=-400)
+    page.drag(middle, end)
+    enlarged = float(page.run("document.body.dataset.length"))
+    assert abs(enlarged - length / np.exp(0.6)) < scale, (enlarged, length)
+    page.mouse("mousePressed", *middle, clickCount=2)
+    page.mouse("mouseReleased", *middle, clickCount=2)
+    assert not page.run(drawn)
+
+
+def check_controls(page, film):
+    """Another field has another range; the scrubber and a click on the curve go to a time; it plays."""
+    before = page.run("document.getElementById('fluid-range').textContent")
+    page.run("fluid.value = 1; fluid.dispatchEvent(new Event('change'))")
+    assert page.run("document.getElementById('fluid-range').textContent") != before
+    page.run("scrub.value = 3; scrub.dispatchEvent(new Event('input'))")
+    assert page.run("document.body.dataset.frame") == "3"
+    assert page.run("document.getElementById('time').textContent") == "t = 0.015 s"
+    assert "at 0.015 s" in page.run("document.getElementById('reading').textContent")
+    left, top, tall = page.run("(r => [r.x, r.y, r.height])(curve.getBoundingClientRect())")
+    for what in ("mousePressed", "mouseReleased"):
+        page.mouse(what, left + 66, top + tall / 2)
+    assert page.run("document.body.dataset.frame") == "0"
+    page.run("document.getElementById('play').click()")
+    page.wait("document.body.dataset.frame === '2'", 20)
+    page.run("document.getElementById('play').click()")
+
+
+def check_browser(folder, film, path):
+    with chromium.Browser(folder) as page:
+        page.open(f"file://{path}")
+        page.wait("document.body.dataset.ready === 'yes'")
+        check_mouse(page, film)
+        check_controls(page, film)
+        page.screenshot(folder / "film.png")
+        kept = os.environ.get("PICTURE")
+        if kept:
+            shutil.copy(folder / "film.png", kept)
+        colours = np.asarray(Image.open(folder / "film.png").convert("RGB"), float)
+        assert (np.ptp(colours, axis=2) > 40).mean() > 0.02, "the particles have no colour"
+        assert not page.said, page.said
 
 
 def main():
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         (folder / "film.cfg").write_text(CASE)
         subprocess.run([PROGRAM, "film.cfg", "--out", "run", "--quiet", "--threads", "1"], check=True,
@@ -142,9 +197,8 @@ def main():
         if shutil.which("node"):
             check_node(folder, film, data)
             done.append("its script in node")
-        browser = shutil.which("chromium") or shutil.which("google-chrome")
-        if browser:
-            check_browser(browser, page)
+        if chromium.program():
+            check_browser(folder, film, page)
             done.append("the page in a browser")
         few = subprocess.run([*tool, folder / "run", "--every", "2", "--out", folder / "few.html"],
                              check=True, capture_output=True, text=True).stdout

@@ -19,7 +19,7 @@ with packages():
     from PIL import Image
 
 PAGE = ROOT / "build" / "web" / "index.html"
-CASES = ("channel", "ringing_bar", "vortices", "accelerated_tank")
+CASES = ("channel", "ringing_bar", "vortices", "rotating_patch")
 DONE = "['finished', 'refused', 'stopped'].includes(document.body.dataset.state)"
 WRONG = """dp = 1 cm
 end_time = 1
@@ -62,6 +62,15 @@ def check_software_build(page):
     page.run("worker.postMessage({what: 'load', fused: DATA.programs.exact, exact: DATA.programs.exact})")
     page.wait("document.querySelectorAll('footer')[0].textContent.split('Multiply-add').length === 3")
     check_case(page, "channel")
+
+
+def check_moving_view(page):
+    """The picture follows a tank that leaves it: coloured pixels are there at the end."""
+    choose(page, "accelerated_tank")
+    before = page.run("state.view.x")
+    click(page, "run")
+    page.wait(DONE, 300)
+    page.wait("state.view.x > 2 + %r" % before, 20)  # m; the tank goes 2.76 m
 
 
 def check_pause_and_step(page):
@@ -107,6 +116,8 @@ def check_refusal(page, folder):
     native = subprocess.run([PROGRAM, "gate.cfg"], cwd=folder, capture_output=True, text=True).stderr
     assert said in native and "sound_speed" in said, f"{said} is not in: {native}"
     assert page.run("document.querySelector('#lines .wrong').textContent") == "5"
+    # Without a simulation there is nothing to draw in another colour.
+    page.run("document.getElementById('fluid').dispatchEvent(new Event('change'))")
     page.screenshot(folder / "refused.png")
 
 
@@ -148,6 +159,7 @@ def main():
             print("multiply-add:", page.run("document.body.dataset.multiply_add"))
             for case in CASES:
                 check_case(page, case)
+            check_moving_view(page)
             check_pause_and_step(page)
             check_slider(page)
             check_picture(page, folder)
