@@ -209,8 +209,9 @@ def draw_panel(axes, columns, curves, refs):
     styles = reference_style(refs)
     several = len(curves[columns[0]]) > 1
     for ref in refs:
-        scale = column_words(ref.probe, size)[1]
-        axes.plot(ref.time, scale * ref.value, label=ref.label, **styles[ref])
+        words, scale, _ = column_words(ref.probe, size)
+        name = ref.label if len(columns) == 1 else f"{words.rpartition(' (')[0]},\n{ref.label}"
+        axes.plot(ref.time, scale * ref.value, label=name, **styles[ref])
     for c, column in enumerate(columns):
         words, scale, unit = column_words(column, size)
         for k, (run, time, value) in enumerate(curves[column]):

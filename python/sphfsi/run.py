@@ -176,17 +176,18 @@ def _style():
 
 def plot_probes(runs, columns: str | Sequence[str] = (), *, references: bool = True,
                 out: str | os.PathLike | None = None) -> Figure:
-    """Draws what probes of one or several runs recorded against time, with the references of their case.
+    """Draws what probes of one or several runs recorded against time, with the references of their case:
+    a panel for each unit, displacements above forces.
 
-    `columns`: such as "M1_dx_m" (default: those that have references); `out`: also a picture file."""
+    `columns`: such as "M1_dx_m" (default: all); `out`: also a picture file."""
     with _style():
         from . import draw_probes
         runs = _runs(runs)
         tables = [run.curves() for run in runs]
         refs = draw_probes.case_references(runs) if references else []
         asked = [columns] if isinstance(columns, str) else list(columns)
-        chosen = draw_probes.choose_columns(runs, tables, refs, asked)
-        figure, _ = draw_probes.draw_figure(chosen, draw_probes.curves_of(runs, tables, chosen), refs)
+        chosen = draw_probes.all_columns(runs, tables, refs, asked)
+        figure, _ = draw_probes.draw_panels(chosen, draw_probes.curves_of(runs, tables, chosen), refs)
         if out is not None:
             figure.savefig(out)
     return figure

@@ -176,6 +176,8 @@ def test_runs():
         sphfsi.plot_fields([run, other], 0.01, field="velocity", out="two.png")
         sphfsi.plot_probes(["runs/a", "runs/b"], "M1_dx_m", out="two-probes.png")
         assert Path("two.png").stat().st_size > 1000 and Path("two-probes.png").stat().st_size > 1000
+        panels = [axes.get_ylabel() for axes in other.plot_probes().axes]
+        assert panels == ["displacement (mm)"], panels
     raises(sphfsi.BadFile, "no fluid field speed", run.plot_fields, field="speed")
     raises(sphfsi.BadFile, "no such folder", sphfsi.open, "runs/none")
 
