@@ -219,8 +219,28 @@ static enum err check_motion_jumps(struct reader *r, const struct scene_motion *
     return ERR_OK;
 }
 
-/* Finite with its derivatives at the start and at a thousand times until the end; no jumps in
- * between. */
+static double motion_length(const struct reader *r, const struct scene_motion *m)
+{
+    return fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
+}
+
+/* Finite with its derivatives at the start and at a thousand times until the end. */
+static enum err check_motion_finite(struct reader *r, const struct scene_motion *m,
+                                    const struct expr *e)
+{
+    for (int n = 0; e && n <= MOTION_TIMES; n++) {
+        const double t = motion_length(r, m) * n / MOTION_TIMES;
+        const struct expr_jet at = expr_jet_at(e, t);
+        if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
+            return bad_line(r, m->common.line,
+                            "[motion %s] %.200s: displacement, velocity or acceleration is not "
+                            "finite %g s after `start`; change the expression",
+                            m->common.name, expr_source(e), t);
+    }
+    return ERR_OK;
+}
+
+/* Finite, and no jumps in between. */
 static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
 {
     const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
@@ -229,18 +249,10 @@ static enum err check_motion_expressions(struct reader *r, const struct scene_mo
         return bad_line(r, m->common.line,
                         "[motion %s] kind = expression needs `x`, `y` or `turn`, expressions in t",
                         m->common.name);
-    const double length = fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
     for (size_t k = 0; k < COUNT_OF(each); k++) {
-        for (int n = 0; each[k]->e[0] && n <= MOTION_TIMES; n++) {
-            const double t = length * n / MOTION_TIMES;
-            const struct expr_jet at = expr_jet_at(each[k]->e[0], t);
-            if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
-                return bad_line(r, m->common.line,
-                                "[motion %s] %.200s: displacement, velocity or acceleration is not "
-                                "finite %g s after `start`; change the expression",
-                                m->common.name, expr_source(each[k]->e[0]), t);
-        }
-        if (each[k]->e[0]) TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], length));
+        TRY(check_motion_finite(r, m, each[k]->e[0]));
+        if (each[k]->e[0])
+            TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], motion_length(r, m)));
     }
     return ERR_OK;
 }
@@ -289,6 +301,7 @@ static enum err check_motion(struct reader *r, const struct scene_motion *m)
                         m->common.name, m->start, m->stop);
     TRY(check_motion_keys(r, m));
     if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
+    for (int c = 0; c < 2; c++) TRY(check_motion_finite(r, m, m->velocity_in_time.e[c]));
     if (m->kind == MOTION_SINE && m->period == 0)
         return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
     if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)

@@ -468,6 +468,13 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
     return ERR_OK;
 }
 
+bool expr_varies(const struct expr *e)
+{
+    for (int k = 0; k < e->n; k++)
+        if (e->op[k].code == OP_T) return true;
+    return false;
+}
+
 bool expr_is_number(const struct expr *e) { return e->n == 1 && e->op[0].code == OP_NUMBER; }
 
 const char *expr_source(const struct expr *e) { return e->source; }

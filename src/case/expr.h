@@ -81,6 +81,9 @@ bool expr_steps(const struct expr *e);
  * steep, is never reported; a jump may be missed in an interval with many other changes. */
 bool expr_jumps(const struct expr *e, double from, double to, double size, double *at);
 
+/* Whether the value of one in x, y and t depends on t. */
+bool expr_varies(const struct expr *e);
+
 /* Whether it is a constant number. */
 bool expr_is_number(const struct expr *e);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Prescribed motion: constant velocity, a polynomial of time, a table, a sine, a rotation, or expressions
+ * Prescribed motion: a velocity, a polynomial of time, a table, a sine, a rotation, or expressions
  * in time. */
 #include "case/case.h"
 #include "base/elementary.h"
@@ -22,6 +22,71 @@ static void set_slopes(int n, const double *t, const double *d, double *v)
     }
 }
 
+/* --- the way of a velocity that depends on time --- */
+
+enum { WAY_PIECES = 4096 };
+
+static double velocity_of(const struct scene_motion *m, int c, double t)
+{
+    const struct expr *const e = m->velocity_in_time.e[c];
+    return e ? expr_jet_at(e, t).value : m->velocity[c];
+}
+
+/* Gauss-Legendre quadrature with three points, exact for polynomials of order 5. */
+static double way_between(const struct scene_motion *m, int c, double from, double to)
+{
+    const double half = 0.5 * (to - from), middle = 0.5 * (to + from), off = half * sqrt(0.6);
+    return half *
+           (5 * velocity_of(m, c, middle - off) + 8 * velocity_of(m, c, middle) +
+            5 * velocity_of(m, c, middle + off)) /
+           9;
+}
+
+/* Rows of the way at equal times until the end of the case, so that it is a function of time alone. */
+static enum err load_way(struct scene *s, const struct scene_motion *m, struct scene_table *table,
+                         struct diag *d)
+{
+    const double until_end = min2(s->top.end_time, m->stop) - m->start;
+    const double length = until_end > 0 ? until_end : s->top.end_time;
+    const int n = WAY_PIECES + 1;
+    table->t = arena_alloc(&s->arena, (size_t)n, sizeof *table->t, "motions", d);
+    table->x = arena_alloc(&s->arena, (size_t)n, sizeof *table->x, "motions", d);
+    table->y = arena_alloc(&s->arena, (size_t)n, sizeof *table->y, "motions", d);
+    if (!table->t || !table->x || !table->y) return ERR_MEMORY;
+    table->n = n;
+    for (int k = 1; k < n; k++) {
+        table->t[k] = length * k / WAY_PIECES;
+        table->x[k] = table->x[k - 1] + way_between(m, 0, table->t[k - 1], table->t[k]);
+        table->y[k] = table->y[k - 1] + way_between(m, 1, table->t[k - 1], table->t[k]);
+    }
+    return ERR_OK;
+}
+
+static struct motion_state velocity_at(const struct scene_motion *motion,
+                                       const struct scene_table *table, double t)
+{
+    struct motion_state m = {0};
+    for (int c = 0; c < 2; c++) {
+        m.v[c] = motion->velocity[c];
+        m.d[c] = motion->velocity[c] * t;
+    }
+    if (table->n == 0) return m;
+    const int last = table->n - 1, row = (int)min2(last, floor(t / table->t[last] * last));
+    for (int c = 0; c < 2; c++) {
+        const struct expr *const e = motion->velocity_in_time.e[c];
+        if (!e) continue;
+        const struct expr_jet now = expr_jet_at(e, t);
+        m.v[c] = now.value;
+        m.a[c] = now.d1;
+        double from = table->t[row];
+        m.d[c] = (c ? table->y : table->x)[row];
+        for (; t - from > table->t[1]; from += table->t[1]) /* a run that goes on after the end */
+            m.d[c] += way_between(motion, c, from, from + table->t[1]);
+        m.d[c] += way_between(motion, c, from, t);
+    }
+    return m;
+}
+
 enum err motion_load(struct scene *s, struct diag *d)
 {
     static const struct table_kind kind = {"a motion", "time (s), dx (m), dy (m)", true};
@@ -31,6 +96,8 @@ enum err motion_load(struct scene *s, struct diag *d)
     for (int k = 0; k < s->n_motion; k++) {
         const struct scene_motion *m = &s->motion[k];
         struct scene_table *const table = &s->motion_data[k];
+        const struct scene_expr *const v = &m->velocity_in_time;
+        if (m->kind == MOTION_VELOCITY && (v->e[0] || v->e[1])) TRY(load_way(s, m, table, d));
         const bool tabled = m->kind == MOTION_TABLE || (m->kind == MOTION_ROTATION && *m->file);
         if (!tabled) continue;
         char name[2 * SCENE_NAME];
@@ -125,12 +192,7 @@ static struct motion_state moving_at(const struct scene_motion *motion,
 {
     struct motion_state m = {0};
     switch ((enum motion_kind)motion->kind) {
-    case MOTION_VELOCITY:
-        for (int c = 0; c < 2; c++) {
-            m.v[c] = motion->velocity[c];
-            m.d[c] = motion->velocity[c] * t;
-        }
-        return m;
+    case MOTION_VELOCITY: return velocity_at(motion, table, t);
     case MOTION_POLYNOMIAL:
         polynomial_at(&motion->poly_x, t, &m.d[0], &m.v[0], &m.a[0]);
         polynomial_at(&motion->poly_y, t, &m.d[1], &m.v[1], &m.a[1]);

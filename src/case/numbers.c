@@ -155,7 +155,11 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     }
     /* It may be defined in an invalid line. */
     r->cause_named |= r->lost;
-    if (near.name)
+    if (strcmp(name, "t") == 0)
+        snprintf(why, EXPR_WHY,
+                 "unknown name `t`: the time is known only in keys that take an expression in t "
+                 "(of a [motion]: `velocity`, `x`, `y`, `turn`)");
+    else if (near.name)
         snprintf(why, EXPR_WHY, "unknown name `%s`; did you mean `%s`?", name, near.name);
     else
         snprintf(why, EXPR_WHY, "unknown name `%s`; define it in [constants]", name);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "solid/loads.h"
 
+#include "case/expr.h"
 #include "geometry/outline.h"
 
 #include <math.h>
@@ -79,18 +80,27 @@ static double row_spacing(const struct loads *v, const struct load_region *load,
 
 /* Each particle's part of the force, or the traction times the length of surface that it
  * represents. */
-static void set_forces(struct loads *v, const struct load_region *load, const struct particles *p)
+static void set_forces(struct loads *v, const struct load_region *load, const struct particles *p,
+                       double time)
+{
+    const struct scene_load *const from = &v->scene->load[load->section];
+    const struct scene_expr *const value = from->traction.e[0] ? &from->traction : &from->force;
+    for (int64_t k = load->first; k < load->end; k++) {
+        const int32_t i = v->loaded[k];
+        v->fx[k] = load->share * scene_expr_at_time(value->e[0], p->X[i], p->Y[i], time);
+        v->fy[k] = load->share * scene_expr_at_time(value->e[1], p->X[i], p->Y[i], time);
+    }
+}
+
+static void begin_load(struct loads *v, struct load_region *load, const struct particles *p)
 {
     const struct scene_load *const from = &v->scene->load[load->section];
     const bool traction = from->traction.e[0] != NULL;
     const struct scene_expr *const value = traction ? &from->traction : &from->force;
-    const double share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), p)
-                                  : 1 / (double)(load->end - load->first);
-    for (int64_t k = load->first; k < load->end; k++) {
-        const int32_t i = v->loaded[k];
-        v->fx[k] = share * scene_expr_at(value->e[0], p->X[i], p->Y[i]);
-        v->fy[k] = share * scene_expr_at(value->e[1], p->X[i], p->Y[i]);
-    }
+    load->share = traction ? row_spacing(v, load, scene_find_solid(v->scene, from->body), p)
+                           : 1 / (double)(load->end - load->first);
+    load->varies = expr_varies(value->e[0]) || expr_varies(value->e[1]);
+    set_forces(v, load, p, 0);
 }
 
 static enum err find_loads(struct loads *v, struct arena *a, const struct particles *p,
@@ -112,7 +122,7 @@ static enum err find_loads(struct loads *v, struct arena *a, const struct partic
     v->factor = arena_alloc(a, (size_t)v->n_loads, sizeof *v->factor, "loads", d);
     if (!v->loaded || !v->fx || !v->fy || !v->factor) return ERR_MEMORY;
     for (size_t k = 0; k < n; k++) v->loaded[k] = found[k];
-    for (int k = 0; k < v->n_loads; k++) set_forces(v, &v->load[k], p);
+    for (int k = 0; k < v->n_loads; k++) begin_load(v, &v->load[k], p);
     return ERR_OK;
 }
 
@@ -165,6 +175,7 @@ void loads_forces(struct loads *v, const struct solid *s, struct particles *p, d
     for (int n = 0; n < v->n_loads; n++) {
         const struct expr *const history = v->scene->load[v->load[n].section].history.e[0];
         const double factor = v->factor[n] = history ? scene_expr_at(history, max2(time, 0), 0) : 1;
+        if (v->load[n].varies) set_forces(v, &v->load[n], p, max2(time, 0));
         for (int64_t k = v->load[n].first; k < v->load[n].end; k++) {
             const int32_t i = v->loaded[k];
             const double per_mass = factor * p->free[i] / s->body[p->body[i]].mass;

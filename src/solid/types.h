@@ -231,6 +231,8 @@ struct contact {
 struct load_region {
     int section;
     int64_t first, end;
+    double share; /* of a particle in the force; or the length of surface that it represents, m */
+    bool varies;  /* with time, beyond `history` */
 };
 
 struct loads {

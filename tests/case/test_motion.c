@@ -70,6 +70,28 @@ static void test_velocity_between_start_and_stop(void)
     expect(9, 1, 0, 0);
 }
 
+static void test_velocity_in_time(void)
+{
+    must_read("velocity = 0.3*sin(4*pi*t), 0.1\nstart = 0.25\n");
+    const double w = 4 * M_PI;
+    expect(0.25, 0, 0, 0.3 * w);
+    for (int k = 1; k < 30; k++) { /* also after end_time */
+        const double t = 0.0437 * k;
+        expect(0.25 + t, 0.3 / w * (1 - cos(w * t)), 0.3 * sin(w * t), 0.3 * w * cos(w * t));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-15, 0.1 * t, motion_at(&scene, 0, 0.25 + t).d[1]);
+    }
+    scene_free(&scene);
+    must_read("velocity = 2*min(t/0.1, 1), 0\nstop = 0.5\n"); /* a kink */
+    const struct motion_state m = motion_at(&scene, 0, 0.7);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-7, 0.9, m.d[0]);
+    TEST_ASSERT_EQUAL_DOUBLE(0, m.v[0]);
+    scene_free(&scene);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("velocity = 1/(0.5 - t), 0\n"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "finite 0.5 s after `start`"), diag.text);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("kind = rotation\nangle = sin(t)\n"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "`turn`"), diag.text);
+}
+
 static void test_polynomial(void)
 {
     must_read("kind = polynomial\npoly_x = 1, 2, 3\npoly_y = 0, 1\nstart = 1\nstop = 3\n");
@@ -355,6 +377,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_velocity_between_start_and_stop);
+    RUN_TEST(test_velocity_in_time);
     RUN_TEST(test_polynomial);
     RUN_TEST(test_sine);
     RUN_TEST(test_rotation_by_hand);

@@ -50,6 +50,31 @@ static void test_loads_by_hand(void)
     TEST_ASSERT_EQUAL_INT(1 + 4 + 10, loaded);
 }
 
+/* Force and traction as functions of place and time: the work is that of the same load by `history`. */
+static void test_loads_in_time(void)
+{
+    static const char *const loads[] = {
+        "force = 0, 20*sin(300*t)*(1 + x)\n",
+        "force = 0, 20*(1 + x)\nhistory = sin(300*t)\n",
+        "traction = 0, 500*sin(300*t)*(1 + x)\n",
+    };
+    double uy[3], work[3];
+    for (int k = 0; k < 3; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 BAR "[load end]\nbody = bar\nshape = box 0.19, 0, 0.2, 0.04\n%s", loads[k]);
+        RIG_OPEN_SOLID(text, "dp=1 cm");
+        rig_run(&rig, 0.02);
+        uy[k] = p->uy[p->n - 1];
+        work[k] = rig.sim.state.wall_work;
+    }
+    for (int k = 1; k < 3; k++) {
+        assert_near(1e-9 * fabs(uy[0]), uy[0], uy[k], "displacement");
+        assert_near(1e-9 * fabs(work[0]), work[0], work[k], "work");
+    }
+    TEST_ASSERT_TRUE(fabs(uy[0]) > 1e-6);
+}
+
 /* A free bar pushed at one end: momentum is the impulse, and the energy that the load has put in is that
  * of motion and strain. */
 static void test_work_of_a_load(void)
@@ -231,6 +256,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_loads_by_hand);
+    RUN_TEST(test_loads_in_time);
     RUN_TEST(test_work_of_a_load);
     RUN_TEST(test_bar_under_traction);
     RUN_TEST(test_traction_on_fitted_cells);
