@@ -45,26 +45,37 @@ STAGES = [
 ]
 
 
+def cost_and_error(points, case, error, paper):
+    """(CPU seconds, error in %) of a case with default settings, or with the scheme of the paper."""
+    return sorted((min(t["cpu"] for t in p["timing"]), 100 * abs(p["errors"][error])) for p in points
+                  if p["case"] == case and p["outcome"] == "finished" and p["errors"].get(error)
+                  and (p["knob"] == "scheme" and p["value"] == "paper" if paper else p["knob"] == "base"))
+
+
 def draw_accuracy():
-    """Error against CPU seconds of every case with default settings."""
+    """Error against CPU seconds of every case with default settings; thin: with the scheme of the paper."""
     points = json.loads((ROOT / "tools/study/results.json").read_text())["points"]
     figure, axes = plt.subplots(figsize=(6, 3.8))
+    paper = False
     for case, (label, error, against) in MAIN_ERROR.items():
-        rows = [(min(t["cpu"] for t in p["timing"]), 100 * abs(p["errors"][error])) for p in points
-                if p["case"] == case and p["knob"] == "base" and p["outcome"] == "finished"
-                and p["errors"].get(error)]
+        rows = cost_and_error(points, case, error, False)
         if rows:
-            rows.sort()
             line, = axes.loglog(*zip(*rows), STYLE[against], marker="o", ms=4, label=label)
             # An error below that of a finer run has changed its sign on the way: a zero crossing.
             lucky = [row for k, row in enumerate(rows) if any(row[1] < 0.9 * e for _, e in rows[k + 1:])]
             for cpu, off in lucky:
                 axes.plot(cpu, off, "o", ms=4, color="white", markeredgecolor=line.get_color())
+            beside = cost_and_error(points, case, error, True)
+            if beside:
+                axes.loglog(*zip(*beside), STYLE[against], marker="x", ms=4, lw=0.7, color=line.get_color())
+                paper = True
     for against, style in STYLE.items():
         axes.plot([], [], style, color="0.3", label=f"error against: {against}")
     axes.set(xlabel="CPU time (s)", ylabel="error (%)")
     axes.grid(True, which="major", alpha=0.3)
     axes.plot([], [], "o", ms=4, color="white", markeredgecolor="0.3", label="zero crossing")
+    if paper:
+        axes.plot([], [], marker="x", ms=4, lw=0.7, color="0.3", label="scheme = paper")
     axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1, 0.5))
     save(figure, "accuracy")
 

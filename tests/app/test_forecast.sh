@@ -10,6 +10,7 @@ explain() { "$SPHFSI" --explain "${still[@]}" 2>/dev/null; }
 
 explain | grep -q 'measured in one second of trial steps' || fail "no calibration"
 [ -s "$work/cache/sphfsi/costs" ] || fail "nothing was kept"
+explain | grep -q 'nine of ten runs take .* s to .* s;' || fail "no band of the time"
 explain | grep -q 'from an earlier calibration' || fail "what was kept is not used"
 first=$(cat "$work/cache/sphfsi/costs")
 sed -i 's/ .*/ 1e-9 nonsense/' "$work/cache/sphfsi/costs"
