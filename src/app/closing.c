@@ -124,7 +124,7 @@ void closing_command(const struct sphfsi_options *o, const struct simulation *s,
     for (int k = 0; k < o->n_sets; k++) add(&w, "--set", o->sets[k]);
     halve_steps(s, setting);
     if (guard) add(&w, "--set", setting);
-    snprintf(number, sizeof number, "%.17g", o->until);
+    snprintf(number, sizeof number, "%.12g", o->until); /* as session_time rounds it */
     if (o->until > 0) add(&w, "--until", number);
     snprintf(number, sizeof number, "%d", o->threads);
     if (o->threads > 0) add(&w, "--threads", number);

@@ -141,6 +141,17 @@ static bool evaluate_constant(struct reader *r, struct constant *c, char why[EXP
     return false;
 }
 
+/* A unit followed by digits, as in kg/m3: then as it is written, m^3. */
+static bool unit_with_power(const char *name, char unit[EXPR_NAME])
+{
+    const size_t length = strcspn(name, "0123456789");
+    snprintf(unit, EXPR_NAME, "%.*s", (int)length, name);
+    if (!name[length] || name[length + strspn(name + length, "0123456789")] || !unit_known(unit))
+        return false;
+    snprintf(unit, EXPR_NAME, "%.*s^%.*s", (int)length, name, 8, name + length);
+    return true;
+}
+
 bool case_name(void *context, const char *name, struct quantity *q, char why[EXPR_WHY])
 {
     struct reader *r = context;
@@ -155,7 +166,10 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     }
     /* It may be defined in an invalid line. */
     r->cause_named |= r->lost;
-    if (strcmp(name, "t") == 0)
+    char unit[EXPR_NAME];
+    if (unit_with_power(name, unit))
+        snprintf(why, EXPR_WHY, "unknown name `%s`; did you mean the unit `%s`?", name, unit);
+    else if (strcmp(name, "t") == 0)
         snprintf(why, EXPR_WHY,
                  "unknown name `t`: the time is known only in keys that take an expression in t "
                  "(of a [motion]: `velocity`, `x`, `y`, `turn`)");

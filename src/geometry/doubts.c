@@ -136,6 +136,34 @@ static void warn_of_density(struct sampler *g)
         }
 }
 
+/* A weakly compressible fluid stays within 1 % of its density (Monaghan 1994); its own weight compresses
+ * it by g H/c0^2. */
+static void warn_of_soft_fluid(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_FLUID];
+    const double *const gravity = s->top.gravity;
+    for (int c = 0; c < 2; c++)
+        if (scene_periodic(s, c) && gravity[c] != 0) return; /* it carries no weight */
+    for (int f = 0; f < s->n_fluid; f++) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (int64_t k = 0; k < p->n; k++) {
+            if (p->body[k] != f) continue;
+            low = min2(low, dot(gravity, p->x[k], p->y[k]));
+            high = max2(high, dot(gravity, p->x[k], p->y[k]));
+        }
+        const double compression = (high - low) / square(s->c0);
+        if (!(compression > 0.01)) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, s->fluid[f].common.line, place);
+        diag_warn(
+            g->diag,
+            "%s: [fluid %s] is compressed by %.2g %% under its own weight, because its speed "
+            "of sound is only %.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
+            place, s->fluid[f].common.name, 100 * compression, s->c0, sqrt(high - low));
+    }
+}
+
 static void warn_of_full_clamps(struct sampler *g)
 {
     const struct scene *const s = g->scene;
@@ -295,6 +323,7 @@ enum err geometry_warn_of_doubts(struct sampler *g)
 {
     warn_of_surface(g);
     warn_of_density(g);
+    warn_of_soft_fluid(g);
     warn_of_full_clamps(g);
     warn_of_resting_clamps(g);
     warn_of_pressure_probes(g);

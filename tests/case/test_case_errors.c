@@ -303,6 +303,8 @@ static const struct {
      "bad.cfg:8: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
      "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
+    {TOP FLUID "density = 1000 kg/m3\n", NULL,
+     "bad.cfg:6: density = 1000 kg/m3: unknown name `m3`; did you mean the unit `m^3`?"},
     {TOP FLUID "[probe S]\nquantity = surface_pressure\n", NULL,
      "bad.cfg:6: [probe S] measures the pressure on the line from `point` to `to`; the two points "
      "must differ"},

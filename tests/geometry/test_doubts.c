@@ -91,6 +91,17 @@ static void test_a_density_of_one(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has a density of 1 kg/m^3"), warnings);
 }
 
+static void test_a_speed_of_sound_that_is_too_low(void)
+{
+    /* 9.81*0.045/1.5^2 = 0.196 between the centres of the first and the last row. */
+    read(HEAD
+         "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 1.5\nsurface = 0.05\n" SIDES
+             FLOOR);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "compressed by 20 % under its own weight"),
+                                 warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "`max_speed` of 0.664 m/s"));
+}
+
 static void test_a_clamp_that_covers_the_body(void)
 {
     static const char post[] = HEAD "[solid post]\nshape = box 0, 0, 0.02, 0.1\n" POST;
@@ -205,6 +216,7 @@ int main(void)
     RUN_TEST(test_a_tank_without_a_floor);
     RUN_TEST(test_surface_against_gravity_and_below_the_water);
     RUN_TEST(test_a_density_of_one);
+    RUN_TEST(test_a_speed_of_sound_that_is_too_low);
     RUN_TEST(test_a_clamp_that_covers_the_body);
     RUN_TEST(test_a_clamp_that_stays_while_its_wall_moves);
     RUN_TEST(test_a_pressure_probe_in_a_wall_or_in_the_air);
