@@ -16,7 +16,7 @@
 #   make reliability     run the rehearsals and write docs/reliability.md
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
-#   make verify-fluid    small scenes of rest, waves, impact, with both schemes: docs/fluid_verification.md
+#   make verify-fluid    rest, waves, impact, openings with both schemes: docs/fluid_verification.md
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
 #   make gallery         run the small cases, draw the pictures of the README's table
