@@ -71,6 +71,7 @@ static void add_slice(const struct simulation *s, int64_t from, int64_t end, str
     const double more[2] = {s->fluid.k.gravity[0] - g[0], s->fluid.k.gravity[1] - g[1]};
     const bool outer = s->gravity_varies || s->external[KIND_FLUID].at;
     const double stiff = square(s->fluid.k.c0) / EOS_GAMMA;
+    memset(of, 0, (size_t)s->scene->n_fluid * sizeof *of);
     if (s->scene->n_fluid == 1 && !p->m) {
         of[0] = slice_power(s, from, end);
     } else {
@@ -87,7 +88,6 @@ static void find_powers(const struct simulation *s, struct power of[SCENE_MAX_SE
 {
     const int64_t n = s->kind[KIND_FLUID].n;
     struct power part[SLICES][SCENE_MAX_SECTIONS];
-    memset(part, 0, sizeof part);
     memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
 #pragma omp parallel for schedule(static) num_threads(s->fluid.threads)
     for (int m = 0; m < SLICES; m++) add_slice(s, n * m / SLICES, n * (m + 1) / SLICES, part[m]);
