@@ -388,8 +388,8 @@ int main(int argc, char **argv)
     measure("list", "sweep", sweep_lists, reps);
     measure("cluster", "sort", sort_clusters, reps);
     measure("cluster", "fill", fill_clusters, reps);
-    measure("cluster", "look and sweep", sweep_clusters, reps);
-    measure("share", "look and sweep", sweep_chunks, reps);
+    measure("cluster", "list and sweep", sweep_clusters, reps);
+    measure("chunk", "list and sweep", sweep_chunks, reps);
     double off = 0, top = 0, mean = 0;
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < N; i++) {
@@ -401,7 +401,7 @@ int main(int argc, char **argv)
     for (int i = 0; i < N; i++) mean += (double)neighbours[i] / N;
     say("list", "entries", "1/particle", mean);
     say("cluster", "pairs", "1/particle", (double)full_pairs / N);
-    say("share", "pairs", "1/particle", (double)half_pairs / N);
+    say("chunk", "pairs", "1/particle", (double)half_pairs / N);
     say("all", "largest difference", "of the largest", off / top);
     arena_free(&arena);
     free(list);

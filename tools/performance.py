@@ -188,17 +188,17 @@ def table(header, rows):
 
 
 def neighbour_words(rows):
-    """Clusters in shares and without, against a tile and a neighbour list (bench/neighbours.c)."""
+    """Clusters in chunks and without, against a tile and a neighbour list (bench/neighbours.c)."""
     found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
              if key[0] == "neighbours"}
     n = next(key[2] for key in rows if key[0] == "neighbours")
-    swept = {"clusters, pairs once": found["share", "look and sweep"],
-             "clusters": found["cluster", "look and sweep"], "tile": found["tile", "copy and sweep"],
+    swept = {"clusters, pairs once": found["chunk", "list and sweep"],
+             "clusters": found["cluster", "list and sweep"], "tile": found["tile", "copy and sweep"],
              "list": found["list", "sweep"]}
     return (f"Four methods of neighbour search are compared, with the bare laws over {n} particles on one "
             "thread (ns a particle):\n\n"
             "* Neighbour clusters, each pair within a chunk of cells taken once: "
-            f"{swept['clusters, pairs once']:.1f} ns ({found['share', 'pairs']:.0f} pairs).\n"
+            f"{swept['clusters, pairs once']:.1f} ns ({found['chunk', 'pairs']:.0f} pairs).\n"
             f"* Neighbour clusters, all pairs from both sides: {swept['clusters']:.1f} ns "
             f"({found['cluster', 'pairs']:.0f} pairs).\n"
             f"* A tile of candidates around each cell: {swept['tile']:.1f} ns with its copies.\n"
