@@ -7,13 +7,15 @@
     tools/coverage.py --missing        lists the lines and branches that no test took
 
 A test is run again only if it has changed, or if a source has. Branches of a line are merged over the
-functions that the compiler made of it (a law is compiled for float and for double).
+functions that the compiler made of it (a law is compiled for float and for double), and over the copies of
+an inlined function (a law is inlined for each set of effects, and each copy has one outcome only).
 """
 import argparse
 import gzip
 import hashlib
 import json
 import os
+import re
 import resource
 import shutil
 import subprocess
@@ -27,6 +29,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "coverage"
 KEPT = BUILD / "taken"
+SUMMARY = ROOT / "tests" / "mutants" / "coverage.json"
 ENV = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive",
        "PYTHON": sys.executable, "XDG_CACHE_HOME": str(ROOT / "build/coverage/cache")}
 # Tests of tools, of installing and of the set-up run no line of src/ that others do not. The audit counts
@@ -149,11 +152,40 @@ def collect(names, jobs=2):
     return {name: json.loads(kept(name).read_text()) for name in names}
 
 
+DECISION = re.compile(r"\?|&&|\|\||\b(?:if|for|while)\b")
+
+
+def one_copy(text, taken):
+    """The branches of a line with those of its inlined copies merged: two for each decision in its text."""
+    n = 2 * max(1, len(DECISION.findall(text)))
+    if len(taken) <= n or len(taken) % n:
+        return taken
+    return [any(taken[k::n]) for k in range(n)]
+
+
 def total_of(tests):
     total = {}
     for test in tests.values():
         merge(total, test["files"])
+    for name, file in total.items():
+        text = (ROOT / name).read_text().split("\n")
+        for line, taken in file["branches"].items():
+            file["branches"][line] = one_copy(text[line - 1], taken)
     return total
+
+
+def keep_summary(tests):
+    """Keeps in SUMMARY what tools/mutants.py reports."""
+    total, folders = total_of(tests), {}
+    for name, file in total.items():
+        folders.setdefault(name.split("/")[1], {})[name] = file
+    lines = [(name, line, (ROOT / name).read_text().split("\n")[line - 1].strip())
+             for name, line, what in missing(total) if what == "line"]
+    version = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True)
+    SUMMARY.write_text(json.dumps({
+        "version": version.stdout.strip(), "tests": len(tests), "of": len(all_tests()),
+        "all": shares(total), "folders": {name: shares(files) for name, files in sorted(folders.items())},
+        "missing": lines}, indent=1) + "\n")
 
 
 def shares(total):
@@ -181,7 +213,10 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--missing", action="store_true", help="list what no test took")
     args = parser.parse_args()
-    total = total_of(collect(all_tests(args.filter), args.jobs))
+    tests = collect(all_tests(args.filter), args.jobs)
+    total = total_of(tests)
+    if not args.filter:
+        keep_summary(tests)
     if args.missing:
         for name, line, what in missing(total):
             text = (ROOT / name).read_text().split("\n")[line - 1].strip()

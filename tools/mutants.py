@@ -12,6 +12,8 @@ condition. The objects that hold the changed line are compiled, and the tests th
 tools/coverage.py) are linked and run, the shortest first, until one finds it or their time is used up. A
 fault whose object code is that of the program is equivalent. So are those that tests/mutants/equivalent.txt
 explains. Results are kept in tests/mutants/results.json; a run that was interrupted goes on from there.
+Faults of a seed other than 1 are reported apart as they were judged first, since tests were written for those
+of the first sample that were not found. The coverage is that which tools/coverage.py kept last.
 """
 import argparse
 import json
@@ -266,25 +268,51 @@ def listed(results):
         yield f"{r['file']}:{r['line']}", r["kind"], f"`{before}`", f"`{after}`", by
 
 
-def report(results, tests, seconds):
+def rate(results):
+    count = Counter(r["verdict"] for r in results)
+    real = count["found"] + count["not found"] + count["not run"]
+    return f"{100 * count['found'] / real:.1f} % of {real}" if real else "an unknown share"
+
+
+def second_sample(results):
+    """How many faults of other seeds were found when they were judged first."""
+    count = Counter(r["verdict"] for r in results)
+    real = count["found"] + count["not found"] + count["not run"]
+    if not real:
+        return []
+    missed = [r for r in results if r["verdict"].startswith("not ")]
+    return ["## Second sample", "",
+            f"Tests were written for faults of the first sample that were not found. Of {real} faults drawn "
+            f"anew, judged once, the tests of up to {results[0].get('longest', LONGEST):g} s found "
+            f"{count['found']}: {100 * count['found'] / real:.1f} %. Those not found were not examined; "
+            "some may be equivalent. "
+            f"{count['equivalent']} more gave the same object code.", "",
+            *table(listed(missed), "where", "kind", "before", "after", "tests that were run")]
+
+
+def report(results, seconds):
     """docs/mutants.md"""
-    reasons = explained()
-    results = [r for r in map(lambda r: {**r, **(standing(r) or {"verdict": "line deleted"})}, results)]
+    reasons, cover = explained(), json.loads(coverage.SUMMARY.read_text())
+    second = [r for r in results if r.get("seed", 1) != 1]
+    results = [r for r in results if r.get("seed", 1) == 1]
+    results = [{**r, **(standing(r) or {"verdict": "line deleted"})} for r in results]
     for r in results:
         if r["verdict"] in ("not found", "not run") and key(r) in reasons:
             r.update(verdict="equivalent", by=reasons[key(r)])
     results.sort(key=lambda r: (r["file"], r["line"]))
     count = Counter(r["verdict"] for r in results)
     real = count["found"] + count["not found"] + count["not run"]
-    total = coverage.total_of(tests)
-    lines, all_lines, branches, all_branches = coverage.shares(total)
+    lines, all_lines, branches, all_branches = cover["all"]
     own = [r for r in results if r["verdict"] == "equivalent" and r["by"] != "same object code"]
     text = [
         "# What the tests find", "",
         f"Of {real} small faults put into the sources, the tests find {count['found']}: "
-        f"{100 * count['found'] / max(1, real):.1f} %. The tests run {100 * lines / all_lines:.2f} % of the "
-        f"{all_lines} lines of `src/` and take {100 * branches / all_branches:.2f} % of the {all_branches} "
-        "branches.", "",
+        f"{100 * count['found'] / max(1, real):.1f} %. This includes tests written for faults that had not "
+        f"been found; of faults drawn anew the tests find {rate(second)}. "
+        f"{cover['tests']} of {cover['of']} tests run "
+        f"{100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
+        f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version {cover['version']}).",
+        "",
         f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
         f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} give the "
         f"same object code, {len(own)} are explained below. {count['does not compile']} do not compile. "
@@ -295,11 +323,10 @@ def report(results, tests, seconds):
         "as not found.", "",
         "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "
         "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in the "
-        "unoptimised build (gcov).", "", "## By folder", ""]
+        "unoptimised build (gcov); copies of an inlined line count once.", "", "## By folder", ""]
     rows = []
-    for folder in sorted({r["file"].split("/")[1] for r in results}):
+    for folder, share in cover["folders"].items():
         c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
-        share = coverage.shares({n: f for n, f in total.items() if n.split("/")[1] == folder})
         rows.append((folder, c["found"], c["not found"], c["not run"], c["equivalent"],
                      f"{100 * share[0] / share[1]:.2f} %", f"{100 * share[2] / max(1, share[3]):.2f} %"))
     text += table(rows, "folder", "found", "not found", "on no line that tests run", "equivalent", "lines",
@@ -308,28 +335,24 @@ def report(results, tests, seconds):
     rows = [(kind, sum(r["kind"] == kind and r["verdict"] == "found" for r in results),
              sum(r["kind"] == kind and r["verdict"].startswith("not") for r in results))
             for kind in sorted({r["kind"] for r in results})]
-    text += table(rows, "kind", "found", "not found")
+    text += table(rows, "kind", "found", "not found") + second_sample(second)
     text += ["## Not found", "", *table(listed(r for r in results if r["verdict"].startswith("not ")),
                                        "where", "kind", "before", "after", "tests that were run")]
     text += ["## Equivalent", "", *table(listed(own), "where", "kind", "before", "after", "why"),
-             *left_over(total)]
+             *left_over(cover["missing"])]
     (ROOT / "docs/mutants.md").write_text("\n".join(text).rstrip() + "\n")
     print("\n".join(text[:6]))
 
 
-def left_over(total):
+def left_over(missing):
     """The lines that no test runs, with the reason that tests/mutants/uncovered.txt gives for their text."""
     path = ROOT / "tests" / "mutants" / "uncovered.txt"
     groups = path.read_text().strip().split("\n\n") if path.exists() else []
     reasons = {}
     for file, *rest in ([line.strip() for line in group.split("\n")] for group in groups):
         reasons |= {(file, line): rest[-1] for line in rest[:-1]}
-    rows = []
-    for file, line, what in coverage.missing(total):
-        if what == "line":
-            source = (ROOT / file).read_text().split("\n")[line - 1].strip()
-            shown = source.replace("|", "\\|")
-            rows.append((f"{file}:{line}", f"`{shown}`", reasons.get((file, source), "")))
+    rows = [(f"{file}:{line}", "`" + text.replace("|", "\\|") + "`", reasons.get((file, text), ""))
+            for file, line, text in missing]
     return ["## Lines that no test runs", "", *table(rows, "where", "line", "why")]
 
 
@@ -347,7 +370,7 @@ def main():
     args = parser.parse_args()
     results = json.loads(KEPT.read_text()) if KEPT.exists() else []
     if args.report:
-        report(results, coverage.collect(all_tests(), args.jobs), args.seconds)
+        report(results, args.seconds)
         return 0
     WORK.mkdir(parents=True, exist_ok=True)
     KEPT.parent.mkdir(exist_ok=True)
@@ -370,14 +393,14 @@ def main():
             return
         verdict, by = judge(program, fault, args.seconds)
         with LOCK:
-            results.append({**fault, "verdict": verdict, "by": by})
+            results.append({**fault, "verdict": verdict, "by": by, "seed": fault.get("seed", args.seed)})
             KEPT.write_text(json.dumps(results, indent=1) + "\n")
             where = f"{fault['file']}:{fault['line']}"
             print(f"{len(results)} {where} {fault['kind']}: {verdict} {by}", flush=True)
 
     with ThreadPoolExecutor(args.jobs) as pool:
         list(pool.map(one, faults))
-    report(results, program.tests, args.seconds)
+    report(results, args.seconds)
     return 0
 
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The time step: its bounds by hand, output times hit exactly, sub-steps, and that the solid's bound
  * is the one that matters: stable below, unstable above. */
+#include "time/warnings.h"
 #include "rig.h"
 #include "time/timestep.h"
 #include "unity.h"
@@ -343,6 +344,49 @@ static void test_bound_scales_as_it_must(void)
     assert_near(1e-6, 2, rig.sim.solid.stable_step / step, "dp by 2");
 }
 
+/* The bound of a body that is stretched by 1 % and pulls at its ends, and the stiffness at 20 % in both
+ * directions, are near those of the body at rest: not the forces count but their changes. */
+static void test_bound_of_a_stretched_block(void)
+{
+    for (int much = 0; much < 2; much++) {
+        rig_open(&rig, block, "block.law=svk", NULL);
+        struct particles *const p = &rig.sim.kind[KIND_SOLID];
+        const double share = much ? 0.2 : 0.01, before = rig.sim.solid.omega_max;
+        for (int64_t i = 0; i < p->n; i++) {
+            p->ux[i] = share * p->X[i];
+            p->uy[i] = much * share * p->Y[i];
+        }
+        solid_stress(&rig.sim.solid, p);
+        const double stiffening = solid_stiffening(&rig.sim.solid, p);
+        TEST_ASSERT_TRUE(much ? stiffening > 1 && stiffening < 5 : stiffening == 1);
+        double omega, damping;
+        solid_stable_step(&rig.sim.solid, p, &omega, &damping);
+        if (!much) assert_near(0.1 * before, before, omega, "frequency");
+    }
+}
+
+static int warned;
+static void count_warning(void *context, const char *text)
+{
+    (void)context, (void)text;
+    warned++;
+}
+
+/* A fixed step is too long for a solid that takes the same steps, and for nothing else. */
+static void test_warning_of_a_fixed_step(void)
+{
+    static const char water[] =
+        "dp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = 1e-4\n[fluid w]\n"
+        "shape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n";
+    struct diag diag = {.warn = count_warning};
+    for (int k = 0; k < 2; k++) {
+        rig_open(&rig, k ? block : water, k ? "numerics.fixed_step=1" : NULL, NULL);
+        warned = 0;
+        simulation_warn_of_steps(&rig.sim, &diag);
+        TEST_ASSERT_EQUAL_INT(k, warned);
+    }
+}
+
 int main(void)
 {
     rig_one_thread();
@@ -363,5 +407,7 @@ int main(void)
     RUN_TEST(test_unstable_beyond_the_bound);
     RUN_TEST(test_bound_knows_the_hourglass_springs);
     RUN_TEST(test_bound_scales_as_it_must);
+    RUN_TEST(test_bound_of_a_stretched_block);
+    RUN_TEST(test_warning_of_a_fixed_step);
     return UNITY_END();
 }
