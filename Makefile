@@ -17,6 +17,7 @@
 #   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
 #                        it was interrupted
 #   make verify-fluid    rest, waves, impact, openings with both schemes: docs/fluid_verification.md
+#   make stability-map   1440 plates over density, thickness and stiffness: docs/stability_map.json, picture
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
 #   make gallery         run the small cases, draw the pictures of the README's table
@@ -123,6 +124,7 @@ TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
 .PHONY: gallery absence faults fuzz reliability validate docs stability test-neon performance examples
+.PHONY: stability-map
 .PHONY: test-thread memcheck analyze
 .PHONY: all help debug sanitize serial test test-sanitize bench gate check format info install \
         dist clean distclean FORCE
@@ -249,6 +251,9 @@ verify-manufactured: $(PROGRAM) $(SHARED)
 
 verify-open: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_open.py $(ARGS)
+
+stability-map: $(PROGRAM)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/stability_map.py $(ARGS)
 
 stability: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
