@@ -62,6 +62,15 @@ SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid
     return k->rho0 * square(k->c0) * excess;
 }
 
+/* Pressure that acts on the neighbours of the four particles from i on: T-3, and T-9a. */
+SPHFSI_INLINE four_double acting_pressure(const struct fluid *f, const struct particles *p,
+                                          int32_t i)
+{
+    const four_double dens = FOUR(p->dens, i), pressure = pressure_of(dens, &f->k);
+    if (!(f->effects & FX_DAMPER)) return pressure;
+    return pressure + damper_pressure(dens - FOUR(p->dens_slow, i), &f->k);
+}
+
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
  * next cell. */
 SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
@@ -76,10 +85,7 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p
     four_double own = volume / (1 + dens);
     if (f->effects & FX_MASSES) own = FOUR(p->m, i) * own;
     put_four(out, PACKED_VOLUME, own);
-    four_double pressure = pressure_of(dens, &f->k);
-    if (f->effects & FX_DAMPER)
-        pressure = pressure + damper_pressure(dens - FOUR(p->dens_slow, i), &f->k);
-    put_four(out, PACKED_P, pressure);
+    put_four(out, PACKED_P, acting_pressure(f, p, i));
     put_four(out, PACKED_DENS, dens);
 }
 

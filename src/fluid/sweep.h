@@ -112,12 +112,12 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
 }
 
 /* Power of walls and structures on `count` particles from i on: what their terms of T-6 and T-7 add
- * to kinetic and compression energy. The deferred sums contain fluid only. */
+ * to kinetic and compression energy and to that of the damper. The deferred sums contain fluid only. */
 SPHFSI_INLINE void touch_store(const struct fluid *f, struct particles *p, int32_t i, int count,
                                const struct touch_sums *with, const struct touch_sums *without)
 {
     const struct fluid_constants *const k = &f->k;
-    const four_double dens = FOUR(p->dens, i), pressure = pressure_of(dens, k);
+    const four_double pressure = acting_pressure(f, p, i);
     const four_double ax = own_sum(with->ax) - own_sum(without->ax);
     const four_double ay = own_sum(with->ay) - own_sum(without->ay);
     const four_double rate = own_sum(with->rate) - own_sum(without->rate);

@@ -124,6 +124,23 @@ static void test_the_terms_add_up(void)
     }
 }
 
+/* A drop that meets a wall: its damper takes work of the wall as of the fluid, so its dissipation gains
+ * nothing. */
+static void test_the_damper_dissipates(void)
+{
+    static const char drop[] = "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n"
+                               "[fluid drop]\nshape = circle 0.2, 0.06, 0.05\nmax_speed = 3\n"
+                               "velocity = 0, -2\nartificial_viscosity = 0.02\n"
+                               "acoustic_damper = 4\n[wall bed]\nshape = box 0, -0.02, 0.4, 0\n";
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        begin(drop, integrators[k], NULL, NULL);
+        go_on(0.02);
+        const struct account *const a = &rig.sim.state.account;
+        assert_at_most(1e-4 * a->top, a->most[TERM_DISSIPATION], integrators[k]);
+        rig_close(&rig);
+    }
+}
+
 /* A solid whose bound is forgotten: named within 5 ms and before a tenth of the available energy is
  * gained, or stopped. */
 static void test_an_unstable_solid_is_named(void)
@@ -176,6 +193,7 @@ int main(void)
     RUN_TEST(test_the_fluid_closes_with_the_step);
     RUN_TEST(test_the_solid_closes_with_the_step);
     RUN_TEST(test_the_terms_add_up);
+    RUN_TEST(test_the_damper_dissipates);
     RUN_TEST(test_an_unstable_solid_is_named);
     RUN_TEST(test_a_gain_at_the_interface_is_named);
     return UNITY_END();
