@@ -44,7 +44,8 @@ def kill_in_the_middle(cluster, out, log):
     for _ in range(1200):
         time.sleep(0.1)
         done = list((out / "runs").glob("*.done"))
-        if done or whole.poll() is not None:
+        under_way = (out / "runs" / "1" / "probes.csv").exists()
+        if (done and under_way) or whole.poll() is not None:
             break
     os.killpg(whole.pid, signal.SIGKILL)
     whole.wait()
