@@ -28,11 +28,12 @@ def oscillation(time, value, period):
             "amplitude": np.abs(value).max(), "late": tops[-1], "loss": 1 - math.exp(slope)}
 
 
-def damped_sine(time, value, omega):
-    """Frequency and decay of C exp(-g t) cos(w t + phi) that fits best, near `omega`."""
+def damped_sine(time, value, omega, mean=False):
+    """Frequency and decay of C exp(-g t) cos(w t + phi) that fits best, near `omega`; with `mean` of
+    exp(-g t) (C cos(w t + phi) + D)."""
     def misfit(w, g):
         fade = np.exp(-g * time)
-        base = np.stack([fade * np.cos(w * time), fade * np.sin(w * time)], axis=1)
+        base = np.stack([fade * np.cos(w * time), fade * np.sin(w * time)] + [fade] * mean, axis=1)
         coefficients = np.linalg.lstsq(base, value, rcond=None)[0]
         return float(np.sum((base @ coefficients - value) ** 2))
 

@@ -17,6 +17,7 @@ KINDS = {
     "phase": ("name", "column", "reference"),
     "settled": ("name", "column", "reference", "from"),
     "noise": ("name", "column", "from"),
+    "noise_about_mean": ("name", "column", "window", "scale"),
     "final": ("name", "column", "reference"),
     "peak_finest": ("name", "column"),
     "against_file": ("name", "column", "file"),
@@ -55,9 +56,12 @@ def period(error, run, _finest, _root):
 
 
 def damped(error, run):
-    """Frequency and decay of the damped sine that fits best. Noise disturbs it less than zero crossings."""
+    """Frequency and decay of the damped sine that fits best. Noise disturbs it less than zero crossings. An
+    energy oscillates and decays twice as fast as the amplitude, about a mean that decays with it."""
     time, value = window(*column(run, error["column"]), error)
-    return metrics.damped_sine(time, value, 2 * np.pi / error["reference"])
+    times = 2 if error.get("energy") else 1
+    frequency, decay = metrics.damped_sine(time, value, times * 2 * np.pi / error["reference"], times == 2)
+    return frequency / times, decay / times
 
 
 def damped_period(error, run, _finest, _root):
@@ -89,6 +93,15 @@ def settled(error, run, _finest, _root):
 def noise(error, run, _finest, _root):
     _, value = window(*column(run, error["column"]), error)
     return value.std(), value.std() / abs(error.get("scale", value.mean()))
+
+
+def noise_about_mean(error, run, _finest, _root):
+    """Standard deviation from the running mean over `window` seconds."""
+    time, value = column(run, error["column"])
+    n = 1 + 2 * round(error["window"] / (time[1] - time[0]) / 2)
+    mean = metrics.running_mean(value, n)
+    _, rest = window(time[n // 2:n // 2 + len(mean)], value[n // 2:n // 2 + len(mean)] - mean, error)
+    return rest.std(), rest.std() / error["scale"]
 
 
 def final(error, run, _finest, _root):

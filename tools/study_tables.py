@@ -30,6 +30,33 @@ def aims_table(study):
     return table(["case", "error", "against"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
 
 
+def cheapest(study, points, aim):
+    """Cost and text of the cheapest point within an error; a zero crossing counts only where nothing else does."""
+    good = sorted((study.crosses(p), cost(p)) for p in points if (study.error(p) or np.inf) <= aim)
+    return (good[0][1], f"{good[0][1]:.3g} s{f' {CROSSING}' if good[0][0] else ''}") if good else (None, "-")
+
+
+def schemes_table(study):
+    """What an error costs with either scheme of the fluid, and what a step does."""
+    rows = []
+    for case, entry in study.cases.items():
+        paper, standard = study.of(case, "scheme", "paper"), study.of(case, "base")
+        if not paper:
+            continue
+        cells = []
+        for aim in AIMS[1:4]:
+            (new, say_new), (old, say_old) = cheapest(study, standard, aim), cheapest(study, paper, aim)
+            cells.append(f"{say_new} / {say_old}" + (f" = {new / old:.2f}" if new and old else ""))
+        errors = [" to ".join(percent(study.error(p)) for p in (points[0], points[-1]))
+                  for points in ([p for p in of if study.error(p)] for of in (standard, paper)) if points]
+        steps = [cost(p) / p["particle_steps"] / (cost(q) / q["particle_steps"])
+                 for p, q in zip(standard, paper) if finished(p) and finished(q)]
+        rows.append([entry.get("title", case), main_error(entry), *errors, *cells,
+                     f"{np.median(steps):.2f}" if steps else "-"])
+    return table(["case", "error", "standard, coarsest to finest (%)", "paper (%)",
+                  *(f"{100 * aim:g} %: standard / paper" for aim in AIMS[1:4]), "particle step"], rows)
+
+
 def base_table(study, case):
     entry = study.cases[case]
     names = [e["name"] for e in entry["error"]]

@@ -9,7 +9,7 @@ enum { EVIDENCE_TEXT = 96 };
 
 struct evidence {
     enum scene_kind kind;
-    char accuracy[EVIDENCE_TEXT]; /* draft, standard, fine */
+    char accuracy[EVIDENCE_TEXT]; /* draft, standard, fine; paper: that scheme, standard */
     char name[EVIDENCE_TEXT], error[EVIDENCE_TEXT];
     char what[EVIDENCE_TEXT]; /* that `resolution` counts */
     double resolution, percent;

@@ -200,7 +200,8 @@ static void evidence_is_read_row_by_row(void)
         TEST_ASSERT_TRUE_MESSAGE(row.resolution > 1 && row.percent > 0, row.name);
         TEST_ASSERT_TRUE_MESSAGE(strcmp(row.accuracy, "draft") == 0 ||
                                      strcmp(row.accuracy, "standard") == 0 ||
-                                     strcmp(row.accuracy, "fine") == 0,
+                                     strcmp(row.accuracy, "fine") == 0 ||
+                                     strcmp(row.accuracy, "paper") == 0,
                                  row.accuracy);
         kinds |= 1 << row.kind;
     }
