@@ -28,6 +28,7 @@ MAIN_ERROR = {  # case of the accuracy study: its name, its main error, what the
     "plate": ("hydrostatic plate, deflection", "settled deflection", "exact"),
     "still": ("still water, pressure", "pressure (L2)", "exact"),
     "wave": ("standing wave, period", "period", "exact"),
+    "impact": ("impact, noise of the pressure", "noise of the pressure", "exact"),
     "dam": ("dam break, front", "front", "experiment"),
     "gate": ("elastic gate, motion", "tip motion (RMS) from the finest run", "finest run"),
 }

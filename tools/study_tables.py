@@ -31,7 +31,7 @@ def aims_table(study):
 
 
 def cheapest(study, points, aim):
-    """Cost and text of the cheapest point within an error; a zero crossing counts only where nothing else does."""
+    """Cost and text of the cheapest point within an error; zero crossings only where nothing else is."""
     good = sorted((study.crosses(p), cost(p)) for p in points if (study.error(p) or np.inf) <= aim)
     return (good[0][1], f"{good[0][1]:.3g} s{f' {CROSSING}' if good[0][0] else ''}") if good else (None, "-")
 

@@ -66,6 +66,8 @@ grep -q '^expected error at accuracy = draft' "$work/said" ||
     fail "a run with a preset does not say what error to expect: $(cat "$work/said")"
 grep -Eq '^  water: [0-9]+ particles (over its height: error of about|across, fewer)' "$work/said" ||
     fail "without evidence: $(cat "$work/said")"
+"$SPHFSI" --explain cases/gate.cfg 2>&1 | grep -q '^expected error with scheme = paper, at accuracy' ||
+    fail "no word of the scheme that the error is of"
 "$SPHFSI" --explain cases/templates/baffle.cfg >"$work/said" 2>&1
 grep -q '^  baffle: 4 particles across: error of the tip displacement about [0-9.]* % to' "$work/said" ||
     fail "no word of the body's error: $(cat "$work/said")"
