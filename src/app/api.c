@@ -51,10 +51,12 @@ static enum err begin(struct sphfsi_simulation *s, const char *name, struct diag
     *d = (struct diag){.code = ERR_OK};
     if (!s) return diag_fail(d, ERR_INPUT, "%s: the simulation is NULL", name);
     if (atomic_exchange(&s->busy, true))
-        return diag_fail(d, ERR_INPUT,
-                         "%s: this simulation is in use by another call, from another thread or "
-                         "around this callback; wait until that call has returned",
-                         name);
+        return diag_fail(
+            d, ERR_INPUT,
+            "%s: this simulation is in use by another call. In another thread, wait until "
+            "that call has returned; in a callback, do this after the call that "
+            "invoked the callback has returned",
+            name);
     const enum err e = host_enter(&s->host, s->threads, d);
     if (e) atomic_store(&s->busy, false);
     return e;

@@ -70,8 +70,9 @@ static void propose(const struct session *x, const struct unit_costs *c, int thr
     if (best > 0)
         session_say(o, "finest dp within the budget: --set dp=%.6g", best);
     else
-        session_say(o, "no dp of those listed fits all bodies to the lattice with a run within the "
-                       "budget; allow more time or choose another dp");
+        session_say(o,
+                    "no listed dp both fits all bodies to the lattice and runs within the budget; "
+                    "allow more time or choose another dp");
 }
 
 enum err budget_session(struct session *x, int threads, double seconds,

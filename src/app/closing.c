@@ -32,7 +32,9 @@ static void say_losses(const struct sphfsi_options *o, const struct simulation *
                 s->state.gain, 100 * s->state.gain_share);
     if (!(s->effects & FX_FLUID)) return;
     if (bodies)
-        session_say(o, "fluid particles lost: %lld; inside walls and solids at once: at most %lld",
+        session_say(o,
+                    "fluid particles lost: %lld; largest number inside walls and solids at the "
+                    "same time: %lld",
                     (long long)lost, (long long)s->state.entered);
     else
         session_say(o, "fluid particles lost: %lld", (long long)lost);

@@ -15,7 +15,7 @@ static const char *const section_meanings[][2] = {
     {"numerics",
      "Parameters of the numerical method. [theory.md](theory.md), Sec. 9, lists where the "
      "defaults depart from the article. \"The article\" and \"Eq.\" refer to the publication that "
-     "the program reproduces, \"T-\" to equations of theory.md, which names it."},
+     "the program reproduces, \"T-\" to equations of theory.md. The article is named there."},
     {"domain", "The region in which particles may be."},
     {"output", "What is written, and how often."},
     {"relax", "A search for a state of rest before the run."},

@@ -149,9 +149,9 @@ int session_threads(const struct scene *scene, const struct sphfsi_options *o, i
     if (asked == 0) return threads_by_default(n, offered < limit ? offered : limit, o);
     if (asked <= limit) return asked;
     diag_warn(d,
-              "%s = %d is more than %lld particles on %d cores can use, so the run uses %d "
-              "threads; give that number or fewer",
-              name, asked, (long long)n, thread_cores(), limit);
+              "%s = %d is too many: %lld particles on %d cores can use at most %d thread%s, so the "
+              "run uses %d; give that number or fewer",
+              name, asked, (long long)n, thread_cores(), limit, limit == 1 ? "" : "s", limit);
     return limit;
 }
 

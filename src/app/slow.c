@@ -54,12 +54,12 @@ static void warn_of_bound(const struct simulation *s, struct diag *d)
     static const struct {
         enum bound bound;
         enum section_id section;
-        const char *key;
-    } owner[] = {{BOUND_diffusion, SECTION_fluid, "density_diffusion"},
-                 {BOUND_artificial, SECTION_fluid, "artificial_viscosity"},
-                 {BOUND_repulsion, SECTION_fluid, "wall_repulsion"},
-                 {BOUND_viscous, SECTION_fluid, "laminar_viscosity"},
-                 {BOUND_fixed, SECTION_numerics, "fixed_step"}};
+        const char *key, *change;
+    } owner[] = {{BOUND_diffusion, SECTION_fluid, "density_diffusion", "smaller"},
+                 {BOUND_artificial, SECTION_fluid, "artificial_viscosity", "smaller"},
+                 {BOUND_repulsion, SECTION_fluid, "wall_repulsion", "smaller"},
+                 {BOUND_viscous, SECTION_fluid, "laminar_viscosity", "smaller"},
+                 {BOUND_fixed, SECTION_numerics, "fixed_step", "larger"}};
     char place[PLACE_TEXT];
     const double acoustic = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
     for (size_t k = 0; k < COUNT_OF(owner); k++) {
@@ -68,8 +68,8 @@ static void warn_of_bound(const struct simulation *s, struct diag *d)
         place_of(s->scene, owner[k].section, 0, owner[k].key, place);
         diag_warn(d,
                   "%s%s limits the time step to %.3g s, while sound waves would allow %.3g times "
-                  "as much. The run takes as many times longer; another value may help",
-                  place, owner[k].key, bound, acoustic / bound);
+                  "as much. The run takes that many times longer; a %s %s may help",
+                  place, owner[k].key, bound, acoustic / bound, owner[k].change, owner[k].key);
     }
 }
 

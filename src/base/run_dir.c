@@ -109,7 +109,9 @@ static enum err lock_run_dir(struct run_dir *dir, struct diag *d)
         struct stat mine, named;
         if (fstat(fd, &mine) == 0 && stat(path, &named) == 0 && mine.st_ino == named.st_ino) {
             if (ftruncate(fd, 0) != 0 || dprintf(fd, "%ld\n", (long)getpid()) < 0)
-                diag_warn(d, "%s: cannot write the process ID, which others would be told: %s",
+                diag_warn(d,
+                          "%s: cannot write the process ID, so a second run cannot say which "
+                          "process holds the folder: %s",
                           path, strerror(errno));
             dir->lock = fd;
             return ERR_OK;

@@ -245,11 +245,15 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
         if (!means_section(s, prefix)) continue;
         meant++;
         if (!takes_key(r, k, e->key, &near)) continue;
-        if (*target >= 0)
+        if (*target >= 0) {
+            const struct case_section *const first = &r->sections[*target], *const named =
+                                                                                *first->name ? first
+                                                                                             : s;
             return bad_entry(r, e,
-                             "[%s %s] and [%s %s] both have `%s`; write the section's kind too",
-                             section_word(r->sections[*target].id), r->sections[*target].name,
-                             section_word(s->id), s->name, e->key);
+                             "[%s %s] and [%s %s] both have `%s`; write for example \"%s %s.%s\"",
+                             section_word(first->id), first->name, section_word(s->id), s->name,
+                             e->key, section_word(named->id), named->name, e->key);
+        }
         *target = k;
     }
     if (*target >= 0) return ERR_OK;

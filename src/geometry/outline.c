@@ -66,7 +66,7 @@ static enum err cut_polyline(const struct scene *s, const struct shape *p, struc
         if (!mitre(p, k, far[k]))
             return diag_fail(d, ERR_INPUT,
                              "%s: the polyline turns too sharply at its point %d (%g, %g); use a "
-                             "larger angle or another point between",
+                             "larger angle or insert a point",
                              place, k + 1, p->pt[k][0], p->pt[k][1]);
     for (int k = 0; k + 1 < p->n; k++) {
         const double along = (p->pt[k + 1][0] - p->pt[k][0]) * (far[k + 1][0] - far[k][0]) +

@@ -280,8 +280,8 @@ static enum err check_header(const struct image *m, const char *path, struct dia
     if (head.format != FORMAT)
         return diag_fail(d, ERR_IO,
                          "%s: has format %u, but this program reads format %d; continue the run "
-                         "with the version that bytes 88 to 135 of the file name",
-                         path, head.format, FORMAT);
+                         "with version %.*s, which wrote the file (its bytes 88 to 135)",
+                         path, head.format, FORMAT, (int)sizeof head.version - 1, head.version);
     if (head.header_size != sizeof head || head.block_header_size != sizeof(struct block_header) ||
         head.sum != checksum(&head, offsetof(struct file_header, sum)))
         return damaged(d, path, "its header is damaged");

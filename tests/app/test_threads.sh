@@ -12,7 +12,7 @@ expect 0 'simulated' tests/fault/tiny.cfg --out "$dir/tiny"
 
 # --- a number far too large, by either name, is reduced with a word ---
 expect 0 'simulated' "${large[@]}" --threads 1 --out "$dir/one"
-expect 0 'threads = 4096 is more than 6000 particles on .* can use' "${large[@]}" --threads 4096 \
+expect 0 'threads = 4096 is too many: 6000 particles .* at most' "${large[@]}" --threads 4096 \
     --out "$dir/many"
 # A build without OpenMP has one thread, whatever the variable says.
 if [ "$(threads "$dir/many")" = 1 ]; then
@@ -20,8 +20,8 @@ if [ "$(threads "$dir/many")" = 1 ]; then
     exit 0
 fi
 export OMP_NUM_THREADS=100000
-expect 0 'OMP_NUM_THREADS = 100000 is more than' "${large[@]}" --out "$dir/variable"
-expect 0 'OMP_NUM_THREADS = 100000 is more than' "${large[@]}" --explain
+expect 0 'OMP_NUM_THREADS = 100000 is too many' "${large[@]}" --out "$dir/variable"
+expect 0 'OMP_NUM_THREADS = 100000 is too many' "${large[@]}" --explain
 unset OMP_NUM_THREADS
 [ "$(threads "$dir/many")" -le $((4 * cores)) ] || fail "$(threads "$dir/many") threads on $cores cores"
 [ "$(threads "$dir/variable")" = "$(threads "$dir/many")" ] || fail "OMP_NUM_THREADS has another limit"

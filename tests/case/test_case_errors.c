@@ -390,8 +390,8 @@ static const struct {
     {TOP SOLID, "a.yuong=1 MPa", "--set a.yuong=1 MPa: unknown key `yuong`; did you mean `young`?"},
     {TOP SOLID, "solid a.young=", "--set solid a.young=: `young` has no value"},
     {TOP SOLID "[wall a]\nshape = box 20 mm, 0, 30 mm, 20 mm\n", "a.shape=circle 0, 0, 1",
-     "--set a.shape=circle 0, 0, 1: [solid a] and [wall a] both have `shape`; write the section's "
-     "kind too"},
+     "--set a.shape=circle 0, 0, 1: [solid a] and [wall a] both have `shape`; write for "
+     "example \"solid a.shape\""},
     {TOP SOLID, "numerics.clf=1", "--set numerics.clf=1: unknown key `clf`; did you mean `cfl`?"},
 };
 
