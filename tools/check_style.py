@@ -122,6 +122,15 @@ def check_flags():
                f"CITATION.cff {versions[2]}")
 
 
+def check_test_names():
+    """CMake names a test by folder and stem, so that these are unique."""
+    seen = {}
+    for path in sorted((ROOT / "tests").rglob("test_*")):
+        stem = path.with_suffix("")
+        if path.suffix in (".c", ".py", ".sh") and seen.setdefault(stem, path) != path:
+            report(path, 0, f"has the name of {seen[stem].name}; CMake needs another stem")
+
+
 def check_symbols(library):
     """What the library shows to programs that are linked with it begins with sphfsi_."""
     tool = shutil.which("readelf")
@@ -197,6 +206,7 @@ def main():
     for where, line, text in layers.findings(ROOT, build):
         report(where, line, text)
     check_flags()
+    check_test_names()
     check_commits()
     check_format([path for path in code if path.suffix in (".c", ".h")])
     for library in args.library:

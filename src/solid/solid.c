@@ -250,7 +250,7 @@ static void force_sweeps(const struct chunk *own)
 {
     sweep(own, own->s->sweeps->forces);
     sweep(own, add_own_forces);
-    if (FX_MASS_DAMPING && own->s->mass_damped) sweep(own, add_mass_damping);
+    if (FX_MASS_DAMPING != 0 && own->s->mass_damped) sweep(own, add_mass_damping);
     if (!own->part) barrier_wait(own->s->barrier);
 }
 

@@ -27,7 +27,7 @@ static enum bound lone_bounds(struct simulation *s)
 
 static void advance_lone(struct simulation *s, double dt, int n)
 {
-    const enum integrator by = s->scene->top.integrator;
+    const int by = s->scene->top.integrator;
     if (by == INTEGRATOR_SYMPLECTIC) {
         for (int k = 0; k < n; k++) symplectic_solid(s, dt);
     } else {
