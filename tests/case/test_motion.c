@@ -217,6 +217,7 @@ static void test_expression_as_rotation_and_polynomial(void)
     expect(1, 1 + 2 + 3, 1 + 4 + 9, 4 + 18);
     TEST_ASSERT_EQUAL_DOUBLE(1, motion_at(&scene, 0, 1).d[1]);
     TEST_ASSERT_EQUAL_DOUBLE(2, motion_at(&scene, 0, 0).a[1]);
+    scene_free(&scene);
     must_read("kind = expression\nx = max(t, 0.5)\ny = min(t, 0.5)\n");
     expect(0.25, 0, 0, 0);
     expect(0.75, 0.25, 1, 0);
