@@ -273,8 +273,8 @@ static void every_changed_byte_is_found(void)
     store_two(tiny_path("change"));
     for (size_t k = 0; k < image.size; k++) {
         const unsigned char was = image.bytes[k];
-        const int some = k % 997 == 0, first = some ? 1 : 1 << k % 8;
-        for (int c = first; c <= (some ? 255 : first); c++) {
+        const int some = k % 997 == 0, lowest = some ? 1 : 1 << k % 8;
+        for (int c = lowest; c <= (some ? 255 : lowest); c++) {
             image.bytes[k] = was ^ (unsigned char)c;
             diag.code = ERR_OK;
             TEST_ASSERT_EQUAL_INT(ERR_IO, checkpoint_check(&image, "x.ckpt", &diag));
