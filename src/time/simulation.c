@@ -424,9 +424,10 @@ enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
         if (s->effects & FX_MOTION) move_walls(s, s->state.time);
         find_speed(s);
         show_strain(s);
+        /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
+        book_check_solid_only(s, steps);
         TRY(guards_check(s, d));
         timestep_recheck_solid(s);
-        book_check_solid_only(s, steps);
         return ERR_OK;
     }
     const double speed2_before = s->extremes.speed2;
