@@ -219,7 +219,7 @@ static enum err lay_layers(struct sampler *g, struct region *region)
     }
     region->n = l.points.n;
     region->n_layered = l.points.n - l.first;
-    region->layer_point = l.points.pt + l.first;
+    if (region->n_layered > 0) region->layer_point = l.points.pt + l.first;
     return ERR_OK;
 }
 
