@@ -36,6 +36,14 @@ class CaseWarning(UserWarning):
     """What the program warns of: consequence and remedy are in the sentence."""
 
 
+def _level_of_caller() -> int:
+    """The stack level, as warnings.warn counts it, of the first caller outside this package."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back and Path(frame.f_code.co_filename).parent == Path(__file__).parent:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
 def _declarations(header: str) -> str:
     """What cffi takes of the header: no comments, no preprocessor, no attributes."""
     text = re.sub(r"/\*.*?\*/", " ", header, flags=re.S)
@@ -145,7 +153,7 @@ class Call:
 
     def _on_message(self, kind: int, message: Any) -> None:
         if kind == lib.SPHFSI_WARNING:
-            warnings.warn(text(message), CaseWarning, stacklevel=2)
+            warnings.warn(text(message), CaseWarning, stacklevel=_level_of_caller())
         elif self._notes:
             self._notes(text(message))
         else:

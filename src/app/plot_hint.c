@@ -58,7 +58,7 @@ void say_plot_hint(const char *folder, const struct sphfsi_options *o)
     char run[QUOTED_BYTES], tool[QUOTED_BYTES], setup[QUOTED_BYTES];
     shell_quote(run, folder);
     if (!find_clone(root)) {
-        session_say(o, "plot it with: python3 -m sphfsi plot %s (needs the Python package)", run);
+        session_say(o, "plot it with: python3 -m sphfsi plot %s  # needs the Python package", run);
         return;
     }
     snprintf(path, sizeof path, "%stools/plot_probes.py", root);

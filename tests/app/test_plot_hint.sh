@@ -32,8 +32,10 @@ cd ..
 
 # A program that is installed somewhere.
 mkdir bin && cp "$SPHFSI" bin/sphfsi
-hint bin/sphfsi "$tiny" --out c | grep -q '^python3 -m sphfsi plot c ' || fail "an installed program"
-PYTHONPATH=$root/python "$PYTHON" -m sphfsi plot c >out.txt 2>&1 || fail "python3 -m sphfsi: $(cat out.txt)"
+command=$(hint bin/sphfsi "$tiny" --out c)
+printf '#!/bin/sh\nexec "%s" "$@"\n' "$PYTHON" >python3 && chmod +x python3
+PATH=$PWD:$PATH PYTHONPATH=$root/python sh -c "$command" >out.txt 2>&1 ||
+    fail "'$command' does not run: $(cat out.txt)"
 [ -s c/probes.png ] || fail "python3 -m sphfsi plot draws nothing"
 PYTHONPATH=$root/python "$PYTHON" -m sphfsi plot none 2>&1 | grep -q "no such folder" || fail "a missing run"
 exit 0

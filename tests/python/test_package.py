@@ -229,7 +229,8 @@ def test_errors():
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
         sphfsi.Case(TINY).simulation(threads=1)
-    assert any("only 3 particles thick" in str(w.message) for w in seen)
+    thin = [w for w in seen if "only 3 particles thick" in str(w.message)]
+    assert thin and thin[0].filename == __file__, "a warning names the caller's line"
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         raises(sphfsi.CaseWarning, "only 3 particles thick", sphfsi.Case(TINY).simulation, threads=1)
