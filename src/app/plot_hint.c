@@ -28,8 +28,8 @@ static bool find_clone(char root[PATH_BYTES])
     char program[PATH_BYTES], path[PATH_BYTES + sizeof tool], here[PATH_BYTES];
     const ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
     if (n <= 0) return false;
-    for (int up = 1; up <= 3; up += 2) {
-        program[n] = '\0';
+    program[n] = '\0';
+    for (int up = 1; up <= 2; up++) { /* its folder, then two above that */
         if (!cut_names(program, up)) return false;
         snprintf(path, sizeof path, "%s%s", program, tool);
         if (access(path, R_OK) != 0) continue;

@@ -29,6 +29,10 @@ cd clone || exit 1
 [ "$(hint ./sphfsi "$tiny" --out b)" = "$PYTHON tools/plot_probes.py b" ] ||
     fail "the path at the top of a clone"
 cd ..
+# One of a build folder belongs to that clone, too.
+mkdir clone/build/debug && cp "$SPHFSI" clone/build/debug/sphfsi
+[ "$(hint clone/build/debug/sphfsi "$tiny" --out d)" = "$PYTHON $work/clone/tools/plot_probes.py d" ] ||
+    fail "a program in a folder of build/"
 
 # A program that is installed somewhere.
 mkdir bin && cp "$SPHFSI" bin/sphfsi
