@@ -9,11 +9,13 @@
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or inverts a
 condition. The objects that hold the changed line are compiled, and the tests that run it (by gcov,
-tools/coverage.py) are linked and run, the shortest first, until one finds it or their time is used up. A
-fault whose object code is that of the program is equivalent. So are those that tests/mutants/equivalent.txt
-explains. Results are kept in tests/mutants/results.json; a run that was interrupted goes on from there.
-Faults of a seed other than 1 are reported apart as they were judged first, since tests were written for those
-of the first sample that were not found. The coverage is that which tools/coverage.py kept last.
+tools/coverage.py) are linked and run, the shortest first, until one finds it or their time is used up. Faults
+that none finds are judged again with the build of `make test-sanitize`, which sees what is read behind an
+array, or not freed. A fault whose object code is that of the program is equivalent. So are those that
+tests/mutants/equivalent.txt explains. Results are kept in tests/mutants/results.json; a run that was
+interrupted goes on from there. How a fault was judged first is kept beside its present verdict: tests are
+written for those of each sample that were not found, so only a fresh sample measures the tests. The coverage
+is that which tools/coverage.py kept last.
 """
 import argparse
 import json
@@ -32,7 +34,7 @@ from pathlib import Path
 import coverage
 from coverage import ROOT, all_tests, run_test
 
-BUILD = ROOT / "build" / "mutant"
+SANITIZER = "AddressSanitizer"
 WORK = ROOT / "build" / "mutants"
 KEPT = ROOT / "tests" / "mutants" / "results.json"
 EXPLAINED = ROOT / "tests" / "mutants" / "equivalent.txt"
@@ -94,35 +96,52 @@ def draw(paths, count, seed):
 
 
 class Program:
-    """The build without faults: how its objects are compiled and linked, and how long its tests take."""
+    """A build without faults: how its objects are compiled and linked."""
 
-    def __init__(self, jobs):
-        goals = [f"build/mutant/{t.removesuffix('.c')}" for t in all_tests() if t.endswith(".c")]
-        subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=mutant", "all", *goals], cwd=ROOT,
+    def __init__(self, config):
+        self.build = ROOT / "build" / config
+        goals = [f"build/{config}/{t.removesuffix('.c')}" for t in all_tests() if t.endswith(".c")]
+        subprocess.run(["make", "-s", "-j2", "SETUP=no", f"CONFIG={config}", "all", *goals], cwd=ROOT,
                        check=True)
-        info = subprocess.run(["make", "-s", "SETUP=no", "CONFIG=mutant", "info"], cwd=ROOT, check=True,
+        info = subprocess.run(["make", "-s", "SETUP=no", f"CONFIG={config}", "info"], cwd=ROOT, check=True,
                               capture_output=True, text=True).stdout
         self.compile = re.search(r"^compile +(.*)", info, re.M)[1].split()
         self.libraries = re.search(r"^link +(.*)", info, re.M)[1].split()
         self.uses = {}  # header or source: objects
-        for path in BUILD.glob("src/*/*.d"):
+        for path in self.build.glob("src/*/*.d"):
             for name in re.findall(r"src/[\w./]+", path.read_text().split("\n\n")[0]):
                 self.uses.setdefault(name, set()).add(path.with_suffix(".o"))
-        self.support = sorted(map(str, BUILD.glob("tests/support/*.o"))) + [str(BUILD / "unity.o")]
-        self.seconds = self.baseline(jobs)
-        self.tests = coverage.collect([t for t, s in self.seconds.items() if s <= LONGEST], jobs)
-        self.taken = {name: one["files"] for name, one in self.tests.items()}
+        self.support = sorted(map(str, self.build.glob("tests/support/*.o"))) + [str(self.build / "unity.o")]
+        self.sound = {}  # test: whether it passes without a fault
 
-    def baseline(self, jobs):
+    def passes(self, test, seconds):
+        if test not in self.sound:
+            status, _ = run_test(test, self.build, self.build / "sphfsi", seconds)
+            self.sound[test] = status == 0
+        return self.sound[test]
+
+
+class Tests:
+    """The tests: how long they take without faults, and which lines they run."""
+
+    def __init__(self, program, jobs):
+        self.seconds = self.baseline(program, jobs)
+        self.kept = coverage.collect([t for t, s in self.seconds.items() if s <= LONGEST], jobs)
+        self.taken = {name: one["files"] for name, one in self.kept.items()}
+        self.uses = {file: {str(o.relative_to(program.build).with_suffix(".c")) for o in objects}
+                     for file, objects in program.uses.items()}
+
+    def baseline(self, program, jobs):
         """{test: seconds of the processor}, of those that pass on the build without faults."""
         kept, seconds = WORK / "baseline.json", {}
         key = coverage.digest_of(coverage.sources())
         if kept.exists() and (old := json.loads(kept.read_text()))["key"] == key:
             seconds = old["seconds"]
+
         def measure(test):
             name = f"{test} {coverage.digest_of([ROOT / test])}"
             if name not in seconds:
-                status, used = run_test(test, BUILD, BUILD / "sphfsi", 120)
+                status, used = run_test(test, program.build, program.build / "sphfsi", 120)
                 with LOCK:
                     seconds[name] = used if status == 0 else None
                     kept.write_text(json.dumps({"key": key, "seconds": seconds}))
@@ -140,6 +159,9 @@ class Program:
         known = {int(line) for one in lines.values() for line in one if int(line) <= fault["line"]}
         line = str(max(known, default=0))
         names = [test for test, one in lines.items() if test in self.seconds and one.get(line)]
+        if not any(lines.values()):  # constants only: whatever runs a file that includes it
+            names = [test for test, files in self.taken.items() if test in self.seconds and any(
+                any(files.get(file, {"lines": {}})["lines"].values()) for file in self.uses[fault["file"]])]
         return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
 
 
@@ -150,11 +172,11 @@ def build(program, fault, folder):
     lines = (ROOT / fault["file"]).read_text().split("\n")
     lines[fault["line"] - 1] = fault["text"]
     source.write_text("\n".join(lines))
-    objects, version = [], f'-DSPHFSI_VERSION="{(BUILD / "version").read_text().strip()}"'
+    objects, version = [], f'-DSPHFSI_VERSION="{(program.build / "version").read_text().strip()}"'
     for old in sorted(program.uses.get(fault["file"], ())):
-        name = str(old.relative_to(BUILD).with_suffix(".c"))
+        name = str(old.relative_to(program.build).with_suffix(".c"))
         path = source if name == fault["file"] else ROOT / name
-        new = folder / str(old.relative_to(BUILD)).replace("/", "_")
+        new = folder / str(old.relative_to(program.build)).replace("/", "_")
         first = [program.compile[0], f"-I{folder}/tree/src"]
         made = subprocess.run([*first, *program.compile[1:], "-w", version, "-c", "-o", new, path], cwd=ROOT,
                               capture_output=True)
@@ -167,7 +189,7 @@ def build(program, fault, folder):
 
 def object_of_test(program, test, fault, folder):
     """The test's object, compiled anew if it includes the header with the fault."""
-    old = BUILD / test.replace(".c", ".o")
+    old = program.build / test.replace(".c", ".o")
     if not fault["file"].endswith(".h") or fault["file"] not in old.with_suffix(".d").read_text():
         return str(old)
     new = folder / "test.o"
@@ -183,7 +205,7 @@ def link(program, test, fault, objects, folder):
         out = folder / test.removesuffix(".c")
         parts = [object_of_test(program, test, fault, folder), *program.support]
     else:
-        out, parts = folder / "sphfsi", [str(BUILD / "src/app/main.o")]
+        out, parts = folder / "sphfsi", [str(program.build / "src/app/main.o")]
     if out.exists():
         return
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -191,18 +213,18 @@ def link(program, test, fault, objects, folder):
                               "fdopen opendir".split())] if test.endswith("/test_alloc.c") else []
     parts = [part for part in parts if not any(o.endswith("src_app_main.o") for o in objects)
              or not part.endswith("main.o")]
-    core = str(BUILD / "core.a")
+    core = str(program.build / "core.a")
     subprocess.run([*program.compile, "-w", *wrap, "-o", out, *parts, *objects, core, *program.libraries],
                    cwd=ROOT, check=True)
     if "/python/" in test:
-        rest = [str(o) for o in BUILD.glob("src/*/*.o") if o.name != "main.o"
-                and not any(x.endswith(str(o.relative_to(BUILD)).replace("/", "_")) for x in objects)]
+        rest = [str(o) for o in program.build.glob("src/*/*.o") if o.name != "main.o"
+                and not any(x.endswith(str(o.relative_to(program.build)).replace("/", "_")) for x in objects)]
         subprocess.run([*program.compile, "-w", "-shared", "-o", folder / "libsphfsi.so", *rest,
                         *[o for o in objects if not o.endswith("main.o")], *program.libraries],
                        cwd=ROOT, check=True)
 
 
-def judge(program, fault, seconds):
+def judge(program, tests, fault, seconds, slower=1):
     """(found, not found, not run, equivalent or does not compile; by what)"""
     folder = WORK / f"fault-{threading.get_ident()}"
     shutil.rmtree(folder, ignore_errors=True)
@@ -213,8 +235,11 @@ def judge(program, fault, seconds):
         if not objects:
             return "equivalent", "same object code"
         used, tried = 0, []
-        for test in program.covering(fault):
-            usual = program.seconds[test]
+        for test in tests.covering(fault):
+            usual = slower * tests.seconds[test]
+            # The interpreter is not built with the sanitizer.
+            if slower > 1 and (test.endswith(".py") or not program.passes(test, int(20 + 5 * usual))):
+                continue
             if tried and used + usual > seconds:
                 break
             try:
@@ -268,47 +293,51 @@ def listed(results):
         yield f"{r['file']}:{r['line']}", r["kind"], f"`{before}`", f"`{after}`", by
 
 
-def rate(results):
-    count = Counter(r["verdict"] for r in results)
+def counted(results, name="verdict"):
+    """(found, of so many that are not equivalent, share in words)"""
+    count = Counter(r[name] for r in results)
     real = count["found"] + count["not found"] + count["not run"]
-    return f"{100 * count['found'] / real:.1f} % of {real}" if real else "an unknown share"
+    return count["found"], real, f"{100 * count['found'] / real:.1f} %" if real else "an unknown share"
 
 
-def second_sample(results):
-    """How many faults of other seeds were found when they were judged first."""
-    count = Counter(r["verdict"] for r in results)
-    real = count["found"] + count["not found"] + count["not run"]
-    if not real:
-        return []
-    missed = [r for r in results if r["verdict"].startswith("not ")]
-    return ["## Second sample", "",
-            f"Tests were written for faults of the first sample that were not found. Of {real} faults drawn "
-            f"anew, judged once, the tests of up to {results[0].get('longest', LONGEST):g} s found "
-            f"{count['found']}: {100 * count['found'] / real:.1f} %. Those not found were not examined; "
-            "some may be equivalent. "
-            f"{count['equivalent']} more gave the same object code.", "",
-            *table(listed(missed), "where", "kind", "before", "after", "tests that were run")]
+def samples(results):
+    """A line for each sample: how its faults were judged first, and what the present tests find of them."""
+    rows = []
+    for seed in sorted({r["seed"] for r in results}):
+        own = [r for r in results if r["seed"] == seed and not (
+            r["verdict"] == "equivalent" and r["first"].startswith("not "))]
+        found, real, share = counted(own, "first")
+        rows.append((seed, found if seed > 1 else "", real if seed > 1 else "", share if seed > 1 else "",
+                     *counted([r for r in results if r["seed"] == seed])))
+    return ["## By sample", "",
+            "Tests are written for the faults of each sample that were not found. Only faults drawn anew, "
+            "and judged before that, measure the tests. Faults that were later explained as equivalent do "
+            "not count. Of the first sample the first verdicts were not kept.", "",
+            *table(rows, "seed", "found at first", "of", "share", "found now", "of", "share")]
 
 
 def report(results, seconds):
     """docs/mutants.md"""
     reasons, cover = explained(), json.loads(coverage.SUMMARY.read_text())
-    second = [r for r in results if r.get("seed", 1) != 1]
-    results = [r for r in results if r.get("seed", 1) == 1]
+    fresh = max((r["seed"] for r in results), default=1)
     results = [{**r, **(standing(r) or {"verdict": "line deleted"})} for r in results]
     for r in results:
         if r["verdict"] in ("not found", "not run") and key(r) in reasons:
             r.update(verdict="equivalent", by=reasons[key(r)])
     results.sort(key=lambda r: (r["file"], r["line"]))
     count = Counter(r["verdict"] for r in results)
-    real = count["found"] + count["not found"] + count["not run"]
-    lines, all_lines, branches, all_branches = cover["all"]
+    found, real, share = counted(results)
+    by_samples = samples(results)
     own = [r for r in results if r["verdict"] == "equivalent" and r["by"] != "same object code"]
+    last = [r for r in results if r["seed"] == fresh and r not in own]
+    at_first = counted(last, "first")
+    sanitized = sum(r["verdict"] == "found" and r["by"].startswith(SANITIZER) for r in results)
+    lines, all_lines, branches, all_branches = cover["all"]
     text = [
         "# What the tests find", "",
-        f"Of {real} small faults put into the sources, the tests find {count['found']}: "
-        f"{100 * count['found'] / max(1, real):.1f} %. This includes tests written for faults that had not "
-        f"been found; of faults drawn anew the tests find {rate(second)}. "
+        f"Of {real} small faults put into the sources, the tests find {found}: {share}. This includes tests "
+        f"written for faults that had not been found; of {at_first[1]} faults drawn anew last, before that, "
+        f"they found {at_first[2]}. "
         f"{cover['tests']} of {cover['of']} tests run "
         f"{100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
         f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version {cover['version']}).",
@@ -316,14 +345,16 @@ def report(results, seconds):
         f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
         f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} give the "
         f"same object code, {len(own)} are explained below. {count['does not compile']} do not compile. "
-        f"{count['line deleted']} stood on lines that have since been changed or deleted. A fault counts as "
+        f"{count['line deleted']} stood on lines that have since been changed or deleted. "
+        f"{sanitized} are found with the build of `make test-sanitize` only. A fault counts as "
         "not found if the tests that run its line, the shortest first, have not found it within "
         f"{seconds:.0f} s of the processor; tests of more than {LONGEST} s were not run with faults. So the "
         "share is a lower bound, and faults that are equivalent for a reason nobody has written down count "
         "as not found.", "",
         "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "
         "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in the "
-        "unoptimised build (gcov); copies of an inlined line count once.", "", "## By folder", ""]
+        "unoptimised build (gcov); copies of an inlined line count once.", "", *by_samples,
+        "## By folder", ""]
     rows = []
     for folder, share in cover["folders"].items():
         c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
@@ -335,7 +366,7 @@ def report(results, seconds):
     rows = [(kind, sum(r["kind"] == kind and r["verdict"] == "found" for r in results),
              sum(r["kind"] == kind and r["verdict"].startswith("not") for r in results))
             for kind in sorted({r["kind"] for r in results})]
-    text += table(rows, "kind", "found", "not found") + second_sample(second)
+    text += table(rows, "kind", "found", "not found")
     text += ["## Not found", "", *table(listed(r for r in results if r["verdict"].startswith("not ")),
                                        "where", "kind", "before", "after", "tests that were run")]
     text += ["## Equivalent", "", *table(listed(own), "where", "kind", "before", "after", "why"),
@@ -374,12 +405,12 @@ def main():
         return 0
     WORK.mkdir(parents=True, exist_ok=True)
     KEPT.parent.mkdir(exist_ok=True)
-    program = Program(args.jobs)
+    program = Program("mutant")
+    tests = Tests(program, args.jobs)
     if args.again:
         reasons = explained()
-        old = [r for r in results if r["verdict"].startswith("not ") and key(r) not in reasons]
-        faults = [fault for r in old if (fault := standing(r))]
-        results = [r for r in results if r not in old or not standing(r)]
+        faults = [now for r in results if r["verdict"].startswith("not ") and key(r) not in reasons
+                  and (now := standing(r))]
     else:
         under = ROOT / args.files
         paths = [under] if under.is_file() else \
@@ -388,18 +419,32 @@ def main():
         faults = [f for f in draw(paths, args.count, args.seed) if key(f) not in done]
     start = time.time()
 
-    def one(fault):
+    def one(fault, program, slower):
         if time.time() - start > 60 * args.minutes:
             return
-        verdict, by = judge(program, fault, args.seconds)
+        verdict, by = judge(program, tests, fault, slower * args.seconds, slower)
+        if slower > 1:
+            if verdict != "found":
+                return
+            by = f"{SANITIZER}, {by}"
         with LOCK:
-            results.append({**fault, "verdict": verdict, "by": by, "seed": fault.get("seed", args.seed)})
+            known = [r for r in results if key(r) == key(fault)]
+            first = known[0]["first"] if args.again else verdict
+            results[:] = [r for r in results if r not in known]
+            results.append({**fault, "verdict": verdict, "by": by, "first": first,
+                            "seed": fault.get("seed", args.seed)})
             KEPT.write_text(json.dumps(results, indent=1) + "\n")
             where = f"{fault['file']}:{fault['line']}"
             print(f"{len(results)} {where} {fault['kind']}: {verdict} {by}", flush=True)
 
     with ThreadPoolExecutor(args.jobs) as pool:
-        list(pool.map(one, faults))
+        list(pool.map(lambda fault: one(fault, program, 1), faults))
+    drawn = {key(fault) for fault in faults}
+    missed = [r for r in results if key(r) in drawn and r["verdict"].startswith("not ")]
+    if missed:
+        sanitized = Program("sanitize")
+        with ThreadPoolExecutor(args.jobs) as pool:
+            list(pool.map(lambda fault: one(fault, sanitized, 4), missed))
     report(results, args.seconds)
     return 0
 
