@@ -43,6 +43,8 @@ static void test_spacing(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, own.particles / 4, coarse.particles);
     TEST_ASSERT_TRUE(coarse.steps <= own.steps && coarse.seconds <= own.seconds / 4);
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 0.02, coarse.steps * coarse.dt);
+    const double thread = (double)rig.sim.fluid.thread_bytes;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, (own.memory - thread) / 4, coarse.memory - thread);
 }
 
 /* Five snapshots of 140 bytes a particle twice, two checkpoints of all arrays, and rows of 18 bytes a number:

@@ -196,6 +196,13 @@ static void numbers_that_no_run_has_are_refused(void)
     first.kind[KIND_FLUID].ax[7] = (double)NAN;
     refuses("block ax holds nan for fluid particle 7");
     first.kind[KIND_FLUID].ax[7] = 0;
+    REFUSES(account.step_work[1], -1, "account = -1");
+    REFUSES(account.region[0], -2, "account = -2");
+    first.kind[KIND_SOLID].body[5] = 1;
+    refuses("solid particle 5 belongs to section 1, but the case has sections 0 to 0");
+    first.kind[KIND_SOLID].body[5] = -1;
+    refuses("solid particle 5 belongs to section -1");
+    first.kind[KIND_SOLID].body[5] = 0;
     TEST_ASSERT_EQUAL_INT(ERR_OK, checkpoint_capture(&image, &first, "the case", "1", &diag));
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_apply(&image, &second, &diag), diag.text);
 }
@@ -323,6 +330,12 @@ static void version_is_kept(void)
     const struct image_info info = checkpoint_info(&image);
     TEST_ASSERT_EQUAL_UINT64(sizeof info.version - 1, strlen(info.version));
     TEST_ASSERT_EQUAL_STRING("the case", info.case_text);
+    /* A file made wrong: the text in its header does not end. */
+    size_t at = 0;
+    while (memcmp(image.bytes + at, "vvv", 3) != 0) at++;
+    memset(image.bytes + at, 'w', sizeof info.version);
+    const struct image_info wrong = checkpoint_info(&image);
+    TEST_ASSERT_EQUAL_UINT64(sizeof wrong.version - 1, strlen(wrong.version));
 }
 
 static void bytes_behind_the_end_are_found(void)

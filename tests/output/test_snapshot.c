@@ -18,8 +18,25 @@ static struct scene scene;
 static struct simulation simulation;
 static struct snapshots writer;
 
+/* Files, datasets, spaces, types, property lists that HDF5 holds open. */
+static hsize_t held(void)
+{
+    static const H5I_type_t types[] = {H5I_FILE,    H5I_GROUP, H5I_DATATYPE,   H5I_DATASPACE,
+                                       H5I_DATASET, H5I_ATTR,  H5I_GENPROP_LST};
+    hsize_t sum = 0;
+    for (size_t k = 0; k < COUNT_OF(types); k++) {
+        hsize_t n = 0;
+        H5Inmembers(types[k], &n);
+        sum += n;
+    }
+    return sum;
+}
+
+static hsize_t held_before;
+
 void setUp(void)
 {
+    held_before = held();
     diag = (struct diag){.code = ERR_OK};
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_load_text(&scene, tiny_case, "tiny.cfg", 0, NULL, &diag));
     TEST_ASSERT_EQUAL_INT(ERR_OK, simulation_create(&simulation, &scene, &diag));
@@ -30,6 +47,7 @@ void tearDown(void)
     snapshots_close(&writer);
     simulation_free(&simulation);
     scene_free(&scene);
+    TEST_ASSERT_EQUAL_UINT64_MESSAGE(held_before, held(), "HDF5 holds something open");
 }
 
 static void begin(const char *folder)
@@ -253,6 +271,7 @@ static void everything_in_single_precision_unless_chosen(void)
 
 int main(void)
 {
+    H5open();
     UNITY_BEGIN();
     RUN_TEST(snapshots_are_appended);
     RUN_TEST(a_restart_drops_later_ones);

@@ -97,6 +97,11 @@ def check_repacked(folder, whole):
     for first, then in ((2, 0), (0, 2)):
         place = folder / str(first)
         run(place, "--until", "0.012", "--set", f"output.snapshot_compression={first}")
+        with h5py.File(place / "fields.vtkhdf") as a:
+            for name in ("Points", "PointData/pressure"):
+                assert a["VTKHDF"][name].compression == ("gzip" if first else None), name
+                assert a["VTKHDF"][name].compression_opts == (first or None), name
+                assert a["VTKHDF"][name].shuffle == (first > 0), name
         run(place, "--restart", "--set", f"output.snapshot_compression={then}")
         with h5py.File(place / "fields.vtkhdf") as a, h5py.File(whole) as b:
             n = b["VTKHDF/NumberOfPoints"][0]

@@ -89,15 +89,34 @@ static void test_what_does_not_vary_keeps_its_bits(void)
                                 hash_after("gravity=1, -9.81 + 0*t", integrators[k]));
 }
 
-/* Straight between rows, and beyond the last one as it is there: v = 5 t^2 up to 0.05 s. */
-static void test_a_table_is_added(void)
+static void open_with_table(const char *gravity, const char *rows)
 {
     FILE *const table = fopen("test_gravity.tmp", "w");
     TEST_ASSERT_NOT_NULL(table);
-    fputs("# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n", table);
+    fputs(rows, table);
     fclose(table);
-    rig_open(&rig, solid, "gravity=0, -1", "gravity_file=test_gravity.tmp", NULL);
+    rig_open(&rig, solid, gravity, "gravity_file=test_gravity.tmp", NULL);
     remove("test_gravity.tmp");
+}
+
+/* Straight between rows, which need not begin at zero, and constant outside of them. */
+static void test_a_table_between_its_rows(void)
+{
+    static const double at[][3] = {{0, 2, 1},    {0.1, 2, 1},  {0.125, 1.5, 1.25}, {0.2, 0, 2},
+                                   {0.35, 3, 0}, {0.5, 6, -2}, {9, 6, -2}};
+    open_with_table("gravity=1, -3", "0.1, 1, 4\n0.2, -1, 5\n0.5, 5, 1\n");
+    for (size_t k = 0; k < COUNT_OF(at); k++) {
+        double g[2];
+        scene_gravity_at(&rig.scene, at[k][0], g);
+        assert_near(1e-12, at[k][1], g[0], "gx");
+        assert_near(1e-12, at[k][2], g[1], "gy");
+    }
+}
+
+/* v = 5 t^2 up to 0.05 s, and on with the last row's. */
+static void test_a_table_is_added(void)
+{
+    open_with_table("gravity=0, -1", "# t, gx, gy\n0, 0, 1\n0.05, 0.5, 1\n");
     rig_run(&rig, 0.1);
     const struct particles *const p = &rig.sim.kind[KIND_SOLID];
     for (int64_t i = 0; i < p->n; i++) {
@@ -113,6 +132,7 @@ int main(void)
     RUN_TEST(test_fluid_falls_as_gravity_says);
     RUN_TEST(test_its_work_is_booked);
     RUN_TEST(test_what_does_not_vary_keeps_its_bits);
+    RUN_TEST(test_a_table_between_its_rows);
     RUN_TEST(test_a_table_is_added);
     return UNITY_END();
 }
