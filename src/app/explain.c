@@ -21,6 +21,17 @@ static void say_scene(const struct session *x, const struct sphfsi_options *o)
                     (long long)x->simulation.kind[k].n);
 }
 
+/* Whether a lattice begins between the lines of the common one. */
+static bool is_shifted(const struct scene *s, const struct scene_lattice *l)
+{
+    bool shifted = false;
+    for (int c = 0; c < 2; c++) {
+        const double lines = (l->origin[c] - s->lattice.origin[c]) / l->spacing[c];
+        shifted |= fabs(lines - round(lines)) > 1e-6;
+    }
+    return shifted;
+}
+
 /* How bodies are sampled where the lattice is not simply the common one. */
 static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
 {
@@ -34,6 +45,11 @@ static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
         for (int64_t i = 0; i < s->points[KIND_SOLID].n; i++)
             n += s->points[KIND_SOLID].body[i] == k;
         const double off = (double)n * square(l->dp) / l->area - 1;
+        if (l->angle == 0 && !l->fitted && is_shifted(s, l))
+            session_say(o,
+                        "  [solid %s] has a lattice of its own, which begins at its corner (%.6g, "
+                        "%.6g) m",
+                        s->solid[k].common.name, l->origin[0], l->origin[1]);
         if (l->angle == 0 && !l->fitted && fabs(off) < 5e-5) continue;
         session_say(o,
                     "  [solid %s] lattice at %.4g degrees, cells of %.5g x %.5g m, area off by "
@@ -190,10 +206,10 @@ static void text_of_bytes(double bytes, char text[32])
         snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
 }
 
-/* Measured over forecast CPU time: 1.04 to 1.28 in quiet flows and solids on an idle machine
- * (docs/accuracy.md). On a loaded one 1.22 to 1.46 in gate, sluice, baffle, tank and two posts, and 2.05
- * in a dam break, where impacts make the steps 1.4 times shorter. */
-static const double least_of_forecast = 0.9, most_of_forecast = 2.1;
+/* Measured over forecast CPU time of one thread: 0.90 to 1.39 in 23 runs on a loaded machine, 13 of them
+ * violent dam breaks, impacts and jets; 18 below 1.2. In the shipped gate and sluice a step gets dearer as
+ * the water spreads. */
+static const double least_of_forecast = 0.9, most_of_forecast = 1.4;
 
 static void say_cost(const struct simulation *s, const struct unit_costs *c, int threads,
                      const struct sphfsi_options *o)
@@ -212,15 +228,15 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c, int
     text_of_seconds(f.seconds, time);
     text_of_bytes(f.memory, memory);
     text_of_bytes(f.disk, disk);
+    const bool shared = s->kind[KIND_FLUID].n && s->kind[KIND_SOLID].n && f.substeps <= f.steps;
     session_say(o, "  about %.3g steps of %.3g s%s", f.steps, f.dt,
-                f.substeps > f.steps ? "" : ", the same for fluid and solid");
+                shared ? ", the same for fluid and solid" : "");
     if (f.substeps > f.steps) session_say(o, "  about %.3g solid sub-steps", f.substeps);
     session_say(o, "  %s on this machine when idle, memory %s, disk at most %s", time, memory,
                 disk);
     text_of_seconds(least_of_forecast * f.seconds, least);
     text_of_seconds(most_of_forecast * f.seconds, most);
-    session_say(o, "  nine of ten runs take %s to %s; violent impacts shorten the steps", least,
-                most);
+    session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer", least, most);
 }
 
 static enum err say_trial(struct simulation *s, int threads, const struct sphfsi_options *o,

@@ -275,13 +275,15 @@ static double expected_step(const struct simulation *s)
     return limit * s->fluid.k.c0 / (s->fluid.k.c0 + approach);
 }
 
-/* Number of steps, which must end at every output time. Only the shortest interval counts: the others are
- * usually multiples of it. */
+/* Number of steps, which must end at every output time. Only the shortest interval counts, also of a probe
+ * that has its own: the others are usually multiples of it. */
 static double count_steps(const struct simulation *s, double dt)
 {
     const struct scene_output *const out = &s->scene->output;
     double piece = s->scene->top.end_time;
     if (s->scene->n_probe > 0) piece = min2(piece, out->probe_interval);
+    for (int k = 0; k < s->scene->n_probe; k++)
+        if (s->scene->probe[k].interval > 0) piece = min2(piece, s->scene->probe[k].interval);
     piece = min2(piece, min2(out->ledger_interval, out->snapshot_interval));
     if (out->checkpoint_interval > 0) piece = min2(piece, out->checkpoint_interval);
     return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));

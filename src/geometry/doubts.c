@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a body clamped
- * all over. Each gets a warning with the consequence and the remedy. */
+ * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a surface below
+ * the water. Each gets a warning with the consequence and the remedy. Bodies: doubts_solid.c. */
 #include "geometry/sampling.h"
 #include "base/elementary.h"
 
@@ -82,40 +82,103 @@ static enum err warn_of_missing_floor(struct sampler *g)
     return ERR_OK;
 }
 
-/* The hydrostatic start of `surface` assumes gravity along -y and water up to that height. */
-static void warn_of_surface(struct sampler *g)
+static void warn_of_upward_gravity(struct sampler *g, const struct scene_fluid *fluid)
+{
+    char place[LOCATION_TEXT];
+    if (!(g->scene->top.gravity[1] > 0)) return;
+    scene_location(g->scene, fluid->common.line, place);
+    diag_warn(g->diag,
+              "%s: `surface` with upward gravity: the initial pressure decreases with depth, and "
+              "the water will be torn apart; for gravity that points down, use gravity = 0, -9.81",
+              place);
+}
+
+static void warn_of_low_surface(struct sampler *g, int f)
 {
     const struct scene *const s = g->scene;
     const struct scene_points *const p = &s->points[KIND_FLUID];
-    for (int f = 0; f < s->n_fluid; f++) {
-        const struct scene_fluid *const fluid = &s->fluid[f];
-        if (isnan(fluid->surface)) continue;
-        if (s->top.gravity[1] > 0) {
-            char place[LOCATION_TEXT];
-            scene_location(s, fluid->common.line, place);
-            diag_warn(
-                g->diag,
-                "%s: "
-                "`surface` with upward gravity: the initial pressure decreases with depth, and the "
-                "water will be torn apart; for gravity that points down, use gravity = 0, -9.81",
-                place);
-        }
-        int64_t above = 0;
-        double top = -HUGE_VAL;
-        for (int64_t k = 0; k < p->n; k++) {
-            if (p->body[k] != f) continue;
-            above += p->y[k] > fluid->surface;
-            top = max2(top, p->y[k] + 0.5 * s->top.dp);
-        }
-        if (above == 0) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, fluid->common.line, place);
-        diag_warn(g->diag,
-                  "%s: [fluid %s] reaches up to y = %.4g m, above its `surface = %.4g m`: %lld "
-                  "particles begin "
-                  "with a pressure below zero; `surface` is the height of the free surface",
-                  place, fluid->common.name, top, fluid->surface, (long long)above);
+    const struct scene_fluid *const fluid = &s->fluid[f];
+    int64_t above = 0;
+    double top = -HUGE_VAL;
+    for (int64_t k = 0; k < p->n; k++) {
+        if (p->body[k] != f) continue;
+        above += p->y[k] > fluid->surface;
+        top = max2(top, p->y[k] + 0.5 * s->top.dp);
     }
+    if (above == 0) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, fluid->common.line, place);
+    diag_warn(g->diag,
+              "%s: [fluid %s] reaches up to y = %.4g m, above its `surface = %.4g m`: %lld "
+              "particles begin with a pressure below zero; `surface` is the height of the free "
+              "surface",
+              place, fluid->common.name, top, fluid->surface, (long long)above);
+}
+
+/* The lowest free particle of a fluid whose column of width dp ends more than one spacing below its
+ * `surface`, with nothing above it; its height, or infinity. */
+static enum err lowest_free(struct sampler *g, int f, double *y)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_FLUID];
+    const double dp = s->top.dp;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    *y = HUGE_VAL;
+    for (int64_t k = 0; k < p->n; k++)
+        if (p->body[k] == f) low = min2(low, p->x[k]), high = max2(high, p->x[k]);
+    if (low > high) return ERR_OK;
+    const int64_t n = (int64_t)((high - low) / dp) + 2;
+    double *const top = arena_alloc(&g->temp, (size_t)n, sizeof *top, "columns", g->diag);
+    if (!top) return ERR_MEMORY;
+    for (int64_t m = 0; m < n; m++) top[m] = -HUGE_VAL;
+    for (int64_t k = 0; k < p->n; k++) {
+        const int64_t m = (int64_t)((p->x[k] - low) / dp + 0.5);
+        if (p->body[k] == f) top[m] = max2(top[m], p->y[k]);
+    }
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t k = 0; k < s->points[kind].n; k++) {
+            const double over = s->points[kind].y[k];
+            const double at = (s->points[kind].x[k] - low) / dp + 0.5;
+            if (at < -1 || at > (double)n) continue;
+            for (int64_t m = (int64_t)floor(at - 0.25); m <= (int64_t)floor(at + 0.25); m++)
+                if (m >= 0 && m < n && over > top[m] && over < top[m] + 1.6 * dp)
+                    top[m] = HUGE_VAL; /* covered */
+        }
+    for (int64_t m = 0; m < n; m++)
+        if (top[m] > -HUGE_VAL && top[m] + 1.5 * dp < s->fluid[f].surface) *y = min2(*y, top[m]);
+    return ERR_OK;
+}
+
+static enum err warn_of_high_surface(struct sampler *g, int f)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_fluid *const fluid = &s->fluid[f];
+    double y;
+    if (!(s->top.gravity[1] < 0)) return ERR_OK;
+    TRY(lowest_free(g, f, &y));
+    if (!isfinite(y)) return ERR_OK;
+    const double top = y + 0.5 * s->top.dp;
+    char place[LOCATION_TEXT];
+    scene_location(s, fluid->common.line, place);
+    diag_warn(g->diag,
+              "%s: [fluid %s] has a free surface at y = %.4g m, below its `surface = %.4g m`: it "
+              "begins there with a pressure of %.3g Pa and will spout; `surface` is the height of "
+              "the free surface, and a [fluid] for each height has its own",
+              place, fluid->common.name, top, fluid->surface,
+              -fluid->density * s->top.gravity[1] * (fluid->surface - top));
+    return ERR_OK;
+}
+
+/* The hydrostatic start of `surface` assumes gravity along -y and water up to that height. */
+static enum err warn_of_surface(struct sampler *g)
+{
+    for (int f = 0; f < g->scene->n_fluid; f++) {
+        if (isnan(g->scene->fluid[f].surface)) continue;
+        warn_of_upward_gravity(g, &g->scene->fluid[f]);
+        warn_of_low_surface(g, f);
+        TRY(warn_of_high_surface(g, f));
+    }
+    return ERR_OK;
 }
 
 /* Probable errors of units: a density in g/cm^3, as of water with 1 instead of 1000 kg/m^3. */
@@ -161,58 +224,6 @@ static void warn_of_soft_fluid(struct sampler *g)
             "%s: [fluid %s] is compressed by %.2g %% under its own weight, because its speed "
             "of sound is only %.3g m/s; a `max_speed` of %.3g m/s or more keeps it below 1 %%",
             place, s->fluid[f].common.name, 100 * compression, s->c0, sqrt(high - low));
-    }
-}
-
-static void warn_of_full_clamps(struct sampler *g)
-{
-    const struct scene *const s = g->scene;
-    const struct scene_points *const p = &s->points[KIND_SOLID];
-    for (int body = 0; body < s->n_solid; body++) {
-        int64_t all = 0, clamped = 0;
-        for (int64_t k = 0; k < p->n; k++) {
-            all += p->body[k] == body;
-            clamped += p->body[k] == body && p->clamped[k];
-        }
-        if (all == 0 || clamped < all) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, s->solid[body].common.line, place);
-        diag_warn(g->diag,
-                  "%s: `clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
-                  "the clamp smaller, or use a [wall], which is faster",
-                  place, (long long)all, s->solid[body].common.name);
-    }
-}
-
-/* Whether a clamped particle of the body touches a particle of the wall. */
-static bool clamped_to(const struct scene *s, int body, int wall)
-{
-    const struct scene_points *const p = &s->points[KIND_SOLID], *const w = &s->points[KIND_WALL];
-    const double reach = square(1.5 * s->top.dp);
-    for (int64_t k = 0; k < p->n; k++) {
-        if (p->body[k] != body || !p->clamped[k]) continue;
-        for (int64_t m = 0; m < w->n; m++)
-            if (w->body[m] == wall && square(p->x[k] - w->x[m]) + square(p->y[k] - w->y[m]) < reach)
-                return true;
-    }
-    return false;
-}
-
-/* A tank that moves while the clamp of a body in it stays at rest. */
-static void warn_of_resting_clamps(struct sampler *g)
-{
-    const struct scene *const s = g->scene;
-    for (int body = 0; body < s->n_solid; body++) {
-        const struct scene_solid *const b = &s->solid[body];
-        for (int wall = 0; wall < s->n_wall && !b->clamp_motion[0]; wall++) {
-            if (!s->wall[wall].motion[0] || !clamped_to(s, body, wall)) continue;
-            char place[LOCATION_TEXT];
-            scene_location(s, b->common.line, place);
-            diag_warn(g->diag,
-                      "%s: the clamp of [solid %s] is at rest but touches [wall %s], which moves, "
-                      "so the wall will pass through the body; `clamp_motion = %s` moves both",
-                      place, b->common.name, s->wall[wall].common.name, s->wall[wall].motion);
-        }
     }
 }
 
@@ -321,11 +332,10 @@ static void warn_of_drift(struct sampler *g)
 
 enum err geometry_warn_of_doubts(struct sampler *g)
 {
-    warn_of_surface(g);
+    TRY(warn_of_surface(g));
     warn_of_density(g);
     warn_of_soft_fluid(g);
-    warn_of_full_clamps(g);
-    warn_of_resting_clamps(g);
+    geometry_warn_of_bodies(g);
     warn_of_pressure_probes(g);
     warn_of_drift(g);
     return warn_of_missing_floor(g);

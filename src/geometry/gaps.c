@@ -7,6 +7,7 @@
 #include "geometry/near.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Widest gap that counts as one particle wide, in dp. */
 static const double one_wide = 1 + 1e-6;
@@ -163,64 +164,153 @@ static bool is_covered(const struct faces *f, double x, double y, double reach)
     return false;
 }
 
-/* A particle of another section, after k, across an empty gap in which at most one particle fits; -1: none.
- * Centres on both sides of a gap of width w are w + dp apart. Where two lattices meet, they are up to 1.5 dp
- * apart, and a particle lies nearer to their middle than 0.75 dp. */
-static int64_t across_gap(const struct scene *s, const struct faces *f, int64_t k)
+/* A gap that warn_slits judges by its drawn width: between shapes that are all boxes, uncut. */
+static bool is_slit(const struct sampler *g, int a, int b)
 {
-    const double dp = s->top.dp, x = f->x[k], y = f->y[k];
-    const int64_t ci = near_cell(&f->near, x), cj = near_cell(&f->near, y);
-    for (int64_t j = cj - 1; j <= cj + 1; j++)
-        for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1]) {
-                const int64_t m = n - 1;
-                const double r = elementary_hypot(f->x[m] - x, f->y[m] - y);
-                if (m <= k || r < 1.5 * dp || r > (1 + one_wide) * dp) continue;
-                if (section_of(s, f, m) == section_of(s, f, k)) continue;
-                if (!is_covered(f, 0.5 * (f->x[m] + x), 0.5 * (f->y[m] + y), 0.75 * dp)) return m;
-            }
-    return -1;
-}
-
-static bool both_boxes(const struct sampler *g, int a, int b)
-{
-    int boxes = 0;
+    bool boxes = true;
     for (int k = 0; k < g->n_regions; k++) {
         const struct region *const region = &g->regions[k];
         const int section = region->kind == KIND_WALL    ? region->body
                             : region->kind == KIND_SOLID ? g->scene->n_wall + region->body
                                                          : -1;
         if (section != a && section != b) continue;
-        bool only = true;
-        for (int n = 0; n < region->list->n; n++) only &= region->list->item[n].kind == SHAPE_BOX;
-        boxes += only;
+        for (int n = 0; n < region->list->n; n++) boxes &= region->list->item[n].kind == SHAPE_BOX;
+        boxes &= region->minus.n == 0;
     }
-    return boxes == 2;
+    return boxes;
+}
+
+struct pair_visitor {
+    struct sampler *g;
+    const struct faces *f;
+    bool *settled; /* [sections^2] pairs of sections that need no further look */
+};
+typedef void pair_function(struct pair_visitor *v, int64_t k, int64_t m);
+
+/* Calls `visit` for each particle m > k within `reach`, at most a cell's side. */
+static void visit_pairs(struct pair_visitor *v, int64_t k, double reach, pair_function *visit)
+{
+    const struct faces *const f = v->f;
+    const int64_t ci = near_cell(&f->near, f->x[k]), cj = near_cell(&f->near, f->y[k]);
+    for (int64_t j = cj - 1; j <= cj + 1; j++)
+        for (int64_t i = ci - 1; i <= ci + 1; i++)
+            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1]) {
+                const int64_t m = n - 1;
+                const double r = square(f->x[m] - f->x[k]) + square(f->y[m] - f->y[k]);
+                if (m > k && r <= square(reach)) visit(v, k, m);
+            }
+}
+
+/* Whether fluid could pass between two faces in both directions along the unit vector: the gap ends where
+ * a face does, before another face closes it. */
+static bool is_passage(const struct sampler *g, const struct faces *f, const double at[2],
+                       const double along[2])
+{
+    const double dp = g->scene->top.dp, reach = 0.75 * dp;
+    for (int way = -1; way <= 1; way += 2)
+        for (double path = 0.5 * dp;; path += 0.5 * dp) {
+            const double x = at[0] + way * path * along[0], y = at[1] + way * path * along[1];
+            if (is_covered(f, x, y, reach)) return false;
+            if (!is_covered(f, x - dp * along[1], y + dp * along[0], reach) ||
+                !is_covered(f, x + dp * along[1], y - dp * along[0], reach))
+                break;
+        }
+    return true;
+}
+
+/* Whether the sections of two particles are settled. */
+static bool *mark_of(const struct pair_visitor *v, int64_t k, int64_t m)
+{
+    const struct scene *const s = v->g->scene;
+    const int a = section_of(s, v->f, k), b = section_of(s, v->f, m);
+    return &v->settled[(a < b ? a : b) * (s->n_wall + s->n_solid) + (a < b ? b : a)];
+}
+
+/* Warns if an empty gap lies between two particles in which at most one particle fits. Centres on both
+ * sides of a gap of width w are w + dp apart. Where two lattices meet, they are up to 1.5 dp apart, and a
+ * particle lies nearer to their middle than 0.75 dp. Where two faces meet at an angle, the gap is no
+ * passage. */
+static void warn_of_gap(struct pair_visitor *v, int64_t k, int64_t m)
+{
+    const struct scene *const s = v->g->scene;
+    const struct faces *const f = v->f;
+    const double dp = s->top.dp, dx = f->x[m] - f->x[k], dy = f->y[m] - f->y[k];
+    const double r = elementary_hypot(dx, dy), at[2] = {f->x[k] + 0.5 * dx, f->y[k] + 0.5 * dy};
+    const double along[2] = {-dy / r, dx / r};
+    if (r < 1.5 * dp || *mark_of(v, k, m) || is_covered(f, at[0], at[1], 0.75 * dp)) return;
+    const int a = section_of(s, f, k), b = section_of(s, f, m);
+    if (is_slit(v->g, a, b) || !is_passage(v->g, f, at, along)) return;
+    *mark_of(v, k, m) = true;
+    char place[LOCATION_TEXT], between[2 * SCENE_NAME + 32];
+    scene_location(s, line_of(s, b), place);
+    const char *const of = kind_names[is_wall(f, m) ? KIND_WALL : KIND_SOLID];
+    if (a == b)
+        snprintf(between, sizeof between, "in [%s %s]", of, name_of(s, b));
+    else
+        snprintf(between, sizeof between, "between [%s %s] and [%s %s]",
+                 kind_names[is_wall(f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a), of,
+                 name_of(s, b));
+    diag_warn(v->g->diag,
+              "%s: the gap %s at (%.4g, %.4g) m is no wider than dp = %g m, so hardly any fluid "
+              "passes; use a smaller dp or close the gap",
+              place, between, at[0], at[1], dp);
+}
+
+/* Whether the drawn shapes leave open more than a quarter of the way from one particle to the other. */
+static bool is_open(const struct sampler *g, const struct faces *f, int64_t k, int64_t m)
+{
+    enum { POINTS = 40 };
+    int open = 0;
+    for (int n = 0; n < POINTS; n++) {
+        const double t = (n + 0.5) / POINTS, x = f->x[k] + t * (f->x[m] - f->x[k]),
+                     y = f->y[k] + t * (f->y[m] - f->y[k]);
+        bool covered = false;
+        for (int r = 0; r < g->n_regions && !covered; r++)
+            covered = g->regions[r].kind != KIND_FLUID && geometry_covers(g, &g->regions[r], x, y);
+        open += !covered;
+    }
+    return open > POINTS / 4;
+}
+
+/* Settles the sections of two particles that touch as drawn. */
+static void mark_touching(struct pair_visitor *v, int64_t k, int64_t m)
+{
+    const int a = section_of(v->g->scene, v->f, k), b = section_of(v->g->scene, v->f, m);
+    if (a != b && !*mark_of(v, k, m)) *mark_of(v, k, m) = !is_open(v->g, v->f, k, m);
+}
+
+/* Warns of particles that touch and whose sections touch nowhere as drawn. */
+static void warn_of_closed(struct pair_visitor *v, int64_t k, int64_t m)
+{
+    const struct scene *const s = v->g->scene;
+    const struct faces *const f = v->f;
+    const int a = section_of(s, f, k), b = section_of(s, f, m);
+    if (a == b || *mark_of(v, k, m) || is_slit(v->g, a, b)) return;
+    *mark_of(v, k, m) = true;
+    char place[LOCATION_TEXT];
+    scene_location(s, line_of(s, b), place);
+    diag_warn(v->g->diag,
+              "%s: the gap between [%s %s] and [%s %s] at (%.4g, %.4g) m is narrower than dp = %g "
+              "m and closed by sampling, so no fluid passes; use a smaller dp or close the gap",
+              place, kind_names[is_wall(f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a),
+              kind_names[is_wall(f, m) ? KIND_WALL : KIND_SOLID], name_of(s, b),
+              0.5 * (f->x[k] + f->x[m]), 0.5 * (f->y[k] + f->y[m]), s->top.dp);
 }
 
 static enum err warn_of_gaps(struct sampler *g)
 {
     const struct scene *const s = g->scene;
-    const int n = s->n_wall + s->n_solid;
+    const size_t n = (size_t)s->n_wall + (size_t)s->n_solid;
+    const double dp = s->top.dp;
     struct faces f = {0};
+    struct pair_visitor narrow = {.g = g, .f = &f}, closed = {.g = g, .f = &f};
     TRY(list_faces(&f, g));
-    bool *const said = arena_alloc(&g->temp, (size_t)n * (size_t)n, sizeof *said, "gaps", g->diag);
-    if (!said) return ERR_MEMORY;
-    for (int64_t k = 0; k < f.n; k++) {
-        const int64_t m = across_gap(s, &f, k);
-        if (m < 0) continue;
-        const int a = section_of(s, &f, k), b = section_of(s, &f, m);
-        if (said[a * n + b] || both_boxes(g, a, b)) continue;
-        said[a * n + b] = said[b * n + a] = true;
-        char place[LOCATION_TEXT];
-        scene_location(s, line_of(s, b), place);
-        diag_warn(g->diag,
-                  "%s: the gap between [%s %s] and [%s %s] at (%.4g, %.4g) m is no wider than "
-                  "dp = %g m, so hardly any fluid passes; use a smaller dp or close the gap",
-                  place, kind_names[is_wall(&f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a),
-                  kind_names[is_wall(&f, m) ? KIND_WALL : KIND_SOLID], name_of(s, b),
-                  0.5 * (f.x[k] + f.x[m]), 0.5 * (f.y[k] + f.y[m]), s->top.dp);
-    }
+    narrow.settled = arena_alloc(&g->temp, n * n, sizeof *narrow.settled, "gaps", g->diag);
+    closed.settled = arena_alloc(&g->temp, n * n, sizeof *closed.settled, "gaps", g->diag);
+    if (!narrow.settled || !closed.settled) return ERR_MEMORY;
+    for (int64_t k = 0; k < f.n; k++) visit_pairs(&narrow, k, (1 + one_wide) * dp, warn_of_gap);
+    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.2 * dp, mark_touching);
+    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.2 * dp, warn_of_closed);
     return ERR_OK;
 }
 

@@ -308,18 +308,6 @@ static enum err lower_corner(struct sampler *g, const struct lattice_group *grou
     return ERR_OK;
 }
 
-static void tell_shift(struct sampler *g, const struct region *region, const double corner[2])
-{
-    char place[LOCATION_TEXT];
-    g->scene->off_lattice = true;
-    scene_location(g->scene, region->line, place);
-    diag_warn(g->diag,
-              "%s: [solid %s] begins at (%.6g, %.6g) m, off the lattice of dp = %.6g m, so it has "
-              "its own lattice, which begins there. This is harmless; a solid that begins on the "
-              "lattice of the fluid shares it",
-              place, region->name, corner[0], corner[1], region->lattice.dp);
-}
-
 /* A solid's lattice is the common one if that fits. Otherwise its origin is its lower left corner.
  * If edges are then between lattice lines, it is fitted to them. */
 static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
@@ -352,7 +340,7 @@ static enum err fit_solids(struct sampler *g, const struct lattice_group *group)
     const bool square_cells = l.spacing[0] == group->dp && l.spacing[1] == group->dp;
     l.dp = square_cells ? group->dp : sqrt(l.spacing[0] * l.spacing[1]);
     for (int k = 0; k < group->n; k++) group->region[k]->lattice = l;
-    if (shifted && group->angle == 0 && !l.fitted) tell_shift(g, group->region[0], corner);
+    g->scene->off_lattice |= shifted && group->angle == 0 && !l.fitted;
     return ERR_OK;
 }
 

@@ -75,6 +75,9 @@ enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 /* Effective domain; probes inside their bodies; initial values finite. */
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
+/* Warns of bodies that are probably a mistake (geometry/doubts_solid.c). */
+void geometry_warn_of_bodies(struct sampler *g);
+
 /* Warns of scenes that can be simulated but are probably a mistake (geometry/doubts.c). */
 enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
 

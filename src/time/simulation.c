@@ -278,7 +278,6 @@ void simulation_begin_account(struct simulation *s)
 
 static enum err build(struct simulation *s, struct diag *d)
 {
-    simulation_warn_of_scene(s, d);
     s->gravity_varies = scene_gravity_varies(s->scene);
     int64_t id = 0;
     for (int kind = 0; kind < KIND_COUNT; kind++) {

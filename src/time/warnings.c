@@ -6,43 +6,6 @@
 #include "case/case.h"
 #include "time/timestep.h"
 
-/* Contact that a scene may need and that is not simulated. */
-static void warn_of_contact(const struct simulation *s, struct diag *d)
-{
-    const struct scene *const c = s->scene;
-    if (s->effects & FX_CONTACT || c->domain.periodic == PERIODIC_NONE || c->n_solid == 0) return;
-    diag_warn(d, "contact is not computed in a domain with periodic sides, so solids may pass "
-                 "through each other and through walls; periodic = none enables contact");
-}
-
-/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load. */
-static void warn_of_loose_bodies(const struct simulation *s, struct diag *d)
-{
-    for (int k = 0; k < s->scene->n_solid; k++) {
-        const struct scene_solid *const b = &s->scene->solid[k];
-        if (b->clamp.n || b->joined[0]) continue;
-        bool loaded = false;
-        for (int m = 0; m < s->scene->n_load; m++)
-            loaded |= scene_find_solid(s->scene, s->scene->load[m].body) == k;
-        if (b->gravity && s->effects & FX_GRAVITY)
-            diag_warn(d,
-                      "[solid %s] has no clamp, and gravity acts on it, so it falls unless fluid "
-                      "carries it; give it a `clamp`, or gravity = off",
-                      b->common.name);
-        else if (loaded)
-            diag_warn(d,
-                      "[solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
-                      "give it a `clamp`",
-                      b->common.name);
-    }
-}
-
-void simulation_warn_of_scene(const struct simulation *s, struct diag *d)
-{
-    warn_of_contact(s, d);
-    warn_of_loose_bodies(s, d);
-}
-
 /* The step length as given by the case. */
 static void text_of_step(const struct simulation *s, char text[64])
 {

@@ -5,9 +5,6 @@
 
 #include "time/simulation.h"
 
-/* Effects that a scene may need and does not request. */
-void simulation_warn_of_scene(const struct simulation *s, struct diag *d);
-
 /* Steps longer than the stable one; to be called after the rate of the solid's steps has been
  * chosen. */
 void simulation_warn_of_steps(const struct simulation *s, struct diag *d);

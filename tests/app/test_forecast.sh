@@ -46,6 +46,13 @@ near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
 grep -q '^finest dp within the budget: --set dp=0\.0' "$work/budget" || fail "$(cat "$work/budget")"
 awk '/^  dp .* (fits|too long|bodies)/ { if (n++ && $8 < last) exit 1; last = $8 }' "$work/budget" ||
     fail "costs do not grow: $(cat "$work/budget")"
+# A probe with its own interval: each of its times ends a step.
+probe=(cases/templates/dam_break.cfg --until 0.05)
+want=$("$SPHFSI" --explain "${probe[@]}" 2>/dev/null | steps_of)
+"$SPHFSI" "${probe[@]}" --quiet --out "$work/probe" 2>/dev/null || fail "the dam break failed"
+got=$(sed -n "s/^  \"steps\": \([0-9]*\),/\1/p" "$work/probe/summary.json")
+near "$want" "$got" 0.02 || fail "probe with an interval: $want steps foreseen, $got taken"
+
 for bad in 10 -1s 5days ""; do
     "$SPHFSI" --budget "$bad" cases/still_water.cfg 2>"$work/error" && fail "--budget '$bad' was accepted"
     grep -q 'a time such as' "$work/error" || fail "$(cat "$work/error")"

@@ -85,10 +85,70 @@ static void test_surface_against_gravity_and_below_the_water(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "reaches up to y = 0.05 m"), warnings);
 }
 
+static void test_a_surface_above_the_water(void)
+{
+#define DEEP "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 40\nsurface = 0.2\n"
+    read(HEAD DEEP SIDES FLOOR);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "free surface at y = 0.05 m, below its `surface "
+                                                  "= 0.2 m`"),
+                                 warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "a pressure of 1.47e+03 Pa")); /* 1000*9.81*0.15 */
+    /* Under a lid the water may be under pressure; under water of another section, too. */
+    read(HEAD DEEP SIDES FLOOR "[wall lid]\nshape = box -0.02, 0.05, 0.12, 0.07\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free surface"), warnings);
+    read(HEAD "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 40\nsurface = 0.1\n"
+              "[fluid top]\nshape = box 0, 0.05, 0.1, 0.1\nsound_speed = 40\nsurface = 0.1\n" SIDES
+                  FLOOR);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* Two heights in one section. */
+    read(HEAD "[fluid water]\nshape = box 0, 0, 0.05, 0.05\nshape = box 0.05, 0, 0.1, 0.02\n"
+              "sound_speed = 10\nsurface = 0.05\n" SIDES FLOOR);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "free surface at y = 0.02 m"), warnings);
+}
+
 static void test_a_density_of_one(void)
 {
     read(HEAD WATER "density = 1\n" SIDES FLOOR);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has a density of 1 kg/m^3"), warnings);
+}
+
+static void test_a_body_without_its_units(void)
+{
+#define BODY                                                                           \
+    "[solid post]\nshape = box 0.05, 0, 0.07, 0.05\nclamp = box 0.05, 0, 0.07, 0.01\n" \
+    "poisson = 0.3\n"
+#define BESIDE "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n"
+    read(HEAD BESIDE SIDES FLOOR BODY "density = 1.1\nyoung = 1 MPa\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "[solid post] has a density of 1.1 kg/m^3"),
+                                 warnings);
+    TEST_ASSERT_NOT_NULL(strstr(warnings, "doubts.cfg:14: "));
+    /* 9.81*0.045*1000 = 441 Pa of water, 486 Pa of the body's weight, between the centres. */
+    read(HEAD BESIDE SIDES FLOOR BODY "density = 1100\nyoung = 5\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "too soft for its own weight of 486 Pa, which is "
+                                                  "97 times its `young` = 5 Pa"),
+                                 warnings);
+    read(HEAD BESIDE SIDES FLOOR BODY "density = 900\nyoung = 4000\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "too soft for the pressure of the water of 441 "
+                                                  "Pa"),
+                                 warnings);
+    read(HEAD BESIDE SIDES FLOOR BODY "density = 900\nyoung = 5000\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read("dp = 5 mm\nend_time = 1 s\n" BODY "density = 1100\nyoung = 5\n"); /* no weight */
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_a_body_that_nothing_holds(void)
+{
+    static const char post[] = "[solid post]\nshape = box 0, 0, 0.02, 0.1\n" POST;
+    char text[1024];
+    snprintf(text, sizeof text, "%s%s", HEAD, post);
+    read(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "doubts.cfg:4: [solid post] has no clamp, and "
+                                                  "gravity acts on it"),
+                                 warnings);
+    snprintf(text, sizeof text, "%s%sgravity = off\n", HEAD, post);
+    read(text);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
 static void test_a_speed_of_sound_that_is_too_low(void)
@@ -183,6 +243,43 @@ static void test_a_gap_of_one_particle(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+static void test_a_gap_within_one_wall(void)
+{
+#define SHORT "[fluid water]\nshape = box 0, 0, 0.04, 0.05\nsound_speed = 10\nsurface = 0.05\n"
+#define TANK "[wall tank]\nshape = polyline thickness -20 mm: 0, 0.1; 0, 0; 0.1, 0; 0.1, 0.1\n"
+    read(HEAD SHORT TANK "shape = box 0.05, 0.005, 0.07, 0.08\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "the gap in [wall tank] at ("), warnings);
+    TEST_ASSERT_NULL(strchr(strchr(warnings, '\n') + 1, '\n'));
+    read(HEAD SHORT TANK "shape = box 0.05, 0.01, 0.07, 0.08\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* A slot that leads nowhere is no opening. */
+    read(HEAD SHORT TANK "shape = box 0.05, 0, 0.07, 0.08\nminus = box 0.06, 0.06, 0.065, 0.08\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* One that is cut through a wall of boxes. */
+    read(HEAD SHORT SIDES FLOOR "[wall post]\nshape = box 0.05, 0, 0.07, 0.08\n"
+                                "minus = box 0.05, 0.01, 0.07, 0.015\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "the gap in [wall post] at ("), warnings);
+    /* The tip of a V. */
+    read(HEAD "[fluid water]\nshape = polygon 0, 0; 0.05, 0.1; -0.05, 0.1\nsound_speed = 10\n"
+              "surface = 0.1\n[wall v]\nshape = polygon -0.1, -0.03; 0.1, -0.03; 0.1, 0.15; "
+              "-0.1, 0.15\nminus = polygon 0, 0; 0.075, 0.15; -0.075, 0.15\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the gap"), warnings);
+}
+
+static void test_a_gap_that_sampling_closes(void)
+{
+    read(HEAD SHORT TANK "[wall post]\nshape = polygon 0.05, 0.002; 0.07, 0.002; 0.07, 0.08; "
+                         "0.05, 0.08\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "the gap between [wall tank] and [wall post] at "
+                                                  "(0.0525, 0) m is narrower than dp = 0.005 m and "
+                                                  "closed by sampling"),
+                                 warnings);
+    /* Two circles and the floor touch as drawn, at a point. */
+    read(HEAD SHORT TANK "[solid a]\nshape = circle 0.06, 0.01, 0.01\n" POST
+                         "[solid b]\nshape = circle 0.08, 0.01, 0.01\n" POST);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the gap"), warnings);
+}
+
 static void test_an_opening_that_sampling_closes(void)
 {
     read(HEAD WATER SIDES FLOOR "[wall lid]\nshape = box 0, 0.06, 0.1, 0.08\n"
@@ -215,12 +312,17 @@ int main(void)
     RUN_TEST(test_a_sound_tank_gets_no_warning);
     RUN_TEST(test_a_tank_without_a_floor);
     RUN_TEST(test_surface_against_gravity_and_below_the_water);
+    RUN_TEST(test_a_surface_above_the_water);
     RUN_TEST(test_a_density_of_one);
+    RUN_TEST(test_a_body_without_its_units);
+    RUN_TEST(test_a_body_that_nothing_holds);
     RUN_TEST(test_a_speed_of_sound_that_is_too_low);
     RUN_TEST(test_a_clamp_that_covers_the_body);
     RUN_TEST(test_a_clamp_that_stays_while_its_wall_moves);
     RUN_TEST(test_a_pressure_probe_in_a_wall_or_in_the_air);
     RUN_TEST(test_a_gap_of_one_particle);
+    RUN_TEST(test_a_gap_within_one_wall);
+    RUN_TEST(test_a_gap_that_sampling_closes);
     RUN_TEST(test_an_opening_that_sampling_closes);
     RUN_TEST(test_shifting_where_nothing_gives_way);
     return UNITY_END();

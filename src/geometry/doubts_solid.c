@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ * Bodies that can be simulated but are probably a mistake: clamped all over, without a clamp, far too
+ * soft or light. Each gets a warning with the consequence and the remedy. */
+#include "geometry/sampling.h"
+#include "base/elementary.h"
+
+#include "case/case.h"
+#include "case/effects.h"
+
+#include <math.h>
+
+/* Contact that a scene may need and that is not simulated. */
+static void warn_of_contact(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    if (effects_of_scene(s) & FX_CONTACT || s->domain.periodic == PERIODIC_NONE || s->n_solid == 0)
+        return;
+    diag_warn(g->diag,
+              "contact is not computed in a domain with periodic sides, so solids may pass through "
+              "each other and through walls; periodic = none enables contact");
+}
+
+/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load. */
+static void warn_of_loose_bodies(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *const b = &s->solid[k];
+        if (b->clamp.n || b->joined[0]) continue;
+        bool loaded = false;
+        for (int m = 0; m < s->n_load; m++) loaded |= scene_find_solid(s, s->load[m].body) == k;
+        const bool falls = b->gravity && effects_of_scene(s) & FX_GRAVITY;
+        if (!falls && !loaded) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, b->common.line, place);
+        if (falls)
+            diag_warn(g->diag,
+                      "%s: [solid %s] has no clamp, and gravity acts on it, so it falls unless "
+                      "fluid carries it; give it a `clamp`, or gravity = off",
+                      place, b->common.name);
+        else
+            diag_warn(g->diag,
+                      "%s: [solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
+                      "give it a `clamp`",
+                      place, b->common.name);
+    }
+}
+
+/* Extent along gravity of a section's particles, times the size of gravity: the pressure of its weight over
+ * its density. */
+static double weight_of(const struct scene *s, enum kind kind, int body)
+{
+    const struct scene_points *const p = &s->points[kind];
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (int64_t k = 0; k < p->n; k++) {
+        if (p->body[k] != body) continue;
+        const double at = s->top.gravity[0] * p->x[k] + s->top.gravity[1] * p->y[k];
+        low = min2(low, at);
+        high = max2(high, at);
+    }
+    return max2(0, high - low);
+}
+
+/* Probable errors of units: a density in g/cm^3, a modulus in MPa without its unit. */
+static void warn_of_light_bodies(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    enum { LIGHTEST_FOAM = 5 }; /* kg/m^3; polymer foams have 10 and more */
+    for (int k = 0; k < s->n_solid; k++)
+        if (s->solid[k].density < LIGHTEST_FOAM) {
+            char place[LOCATION_TEXT];
+            scene_location(s, s->solid[k].common.line, place);
+            diag_warn(g->diag,
+                      "%s: [solid %s] has a density of %.4g kg/m^3, less than any foam, so it has "
+                      "hardly any inertia; rubber has about 1100 kg/m^3",
+                      place, s->solid[k].common.name, s->solid[k].density);
+        }
+}
+
+/* A body that its own weight or the water beside it compresses by more than a tenth of its modulus. */
+static void warn_of_soft_bodies(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    double water = 0;
+    for (int f = 0; f < s->n_fluid; f++) water = max2(water, s->rho0 * weight_of(s, KIND_FLUID, f));
+    for (int c = 0; c < 2; c++)
+        if (scene_periodic(s, c) && s->top.gravity[c] != 0) water = 0;
+    for (int k = 0; k < s->n_solid; k++) {
+        const struct scene_solid *const b = &s->solid[k];
+        const double own = b->gravity ? b->density * weight_of(s, KIND_SOLID, k) : 0;
+        const double pressure = max2(own, water);
+        if (!(pressure > 0.1 * b->young)) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, b->common.line, place);
+        diag_warn(g->diag,
+                  "%s: [solid %s] is too soft for %s of %.3g Pa, which is %.2g times its `young` = "
+                  "%.3g Pa: it may collapse and a guard stop the run; check the unit, such as MPa",
+                  place, b->common.name,
+                  own > water ? "its own weight" : "the pressure of the water", pressure,
+                  pressure / b->young, b->young);
+    }
+}
+
+static void warn_of_full_clamps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_SOLID];
+    for (int body = 0; body < s->n_solid; body++) {
+        int64_t all = 0, clamped = 0;
+        for (int64_t k = 0; k < p->n; k++) {
+            all += p->body[k] == body;
+            clamped += p->body[k] == body && p->clamped[k];
+        }
+        if (all == 0 || clamped < all) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, s->solid[body].common.line, place);
+        diag_warn(g->diag,
+                  "%s: `clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
+                  "the clamp smaller, or use a [wall], which is faster",
+                  place, (long long)all, s->solid[body].common.name);
+    }
+}
+
+/* Whether a clamped particle of the body touches a particle of the wall. */
+static bool clamped_to(const struct scene *s, int body, int wall)
+{
+    const struct scene_points *const p = &s->points[KIND_SOLID], *const w = &s->points[KIND_WALL];
+    const double reach = square(1.5 * s->top.dp);
+    for (int64_t k = 0; k < p->n; k++) {
+        if (p->body[k] != body || !p->clamped[k]) continue;
+        for (int64_t m = 0; m < w->n; m++)
+            if (w->body[m] == wall && square(p->x[k] - w->x[m]) + square(p->y[k] - w->y[m]) < reach)
+                return true;
+    }
+    return false;
+}
+
+/* A tank that moves while the clamp of a body in it stays at rest. */
+static void warn_of_resting_clamps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    for (int body = 0; body < s->n_solid; body++) {
+        const struct scene_solid *const b = &s->solid[body];
+        for (int wall = 0; wall < s->n_wall && !b->clamp_motion[0]; wall++) {
+            if (!s->wall[wall].motion[0] || !clamped_to(s, body, wall)) continue;
+            char place[LOCATION_TEXT];
+            scene_location(s, b->common.line, place);
+            diag_warn(g->diag,
+                      "%s: the clamp of [solid %s] is at rest but touches [wall %s], which moves, "
+                      "so the wall will pass through the body; `clamp_motion = %s` moves both",
+                      place, b->common.name, s->wall[wall].common.name, s->wall[wall].motion);
+        }
+    }
+}
+
+void geometry_warn_of_bodies(struct sampler *g)
+{
+    warn_of_contact(g);
+    warn_of_loose_bodies(g);
+    warn_of_light_bodies(g);
+    warn_of_soft_bodies(g);
+    warn_of_full_clamps(g);
+    warn_of_resting_clamps(g);
+}
