@@ -14,12 +14,12 @@ struct embedded_file {
 };
 extern const struct embedded_file embedded_files[]; /* the last one has no name */
 
-/* The text of a file, or NULL. */
+/* The text of a file that is one of them. */
 SPHFSI_INLINE const char *embedded_text(const char *name)
 {
-    for (const struct embedded_file *file = embedded_files; file->name; file++)
-        if (strcmp(file->name, name) == 0) return file->text;
-    return NULL;
+    const struct embedded_file *file = embedded_files;
+    while (strcmp(file->name, name) != 0) file++;
+    return file->text;
 }
 
 #endif

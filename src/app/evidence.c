@@ -23,16 +23,15 @@ static void read_field(const char **at, char field[EVIDENCE_TEXT])
 const char *evidence_first(void)
 {
     const char *text = embedded_text("data/evidence.csv");
-    while (text && *text == '#') text += strcspn(text, "\n") + 1;
-    if (text) text += strcspn(text, "\n") + 1; /* the names of the columns */
-    return text;
+    while (*text == '#') text += strcspn(text, "\n") + 1;
+    return text + strcspn(text, "\n") + 1; /* behind the names of the columns */
 }
 
 bool evidence_next(const char **rest, struct evidence *row)
 {
     char kind[EVIDENCE_TEXT], number[EVIDENCE_TEXT];
     const char *at = *rest;
-    if (!at || !*at) return false;
+    if (!*at) return false;
     read_field(&at, kind);
     row->kind = kind[0] == 's' ? SCENE_SOLID : kind[0] == 'f' ? SCENE_FLUID : SCENE_COUPLED;
     read_field(&at, row->accuracy);

@@ -180,13 +180,8 @@ static enum err write_checkpoint(struct run *r)
 
 static enum err write_output(struct run *r, enum output what)
 {
-    switch (what) {
-    case OUT_LEDGER: return write_ledger(r);
-    case OUT_SNAPSHOT: return write_snapshot(r);
-    case OUT_CHECKPOINT: return write_checkpoint(r);
-    case OUT_COUNT: break;
-    }
-    return ERR_OK;
+    if (what == OUT_LEDGER) return write_ledger(r);
+    return what == OUT_SNAPSHOT ? write_snapshot(r) : write_checkpoint(r);
 }
 
 static double phases_so_far(const struct simulation *s)

@@ -236,7 +236,7 @@ bool param_is_default(const struct param *p, const void *section)
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR: return !((const struct scene_expr *)(const void *)value)->e[0];
     case PARAM_SHAPES: return ((const struct shape_list *)(const void *)value)->n == 0;
-    case PARAM_NUMBERS: return ((const struct number_list *)(const void *)value)->n == 0;
+    case PARAM_NUMBERS: break;
     }
-    return true;
+    return ((const struct number_list *)(const void *)value)->n == 0;
 }

@@ -115,7 +115,7 @@ static enum err read_numbers(struct reader *r, const struct entry *e, const stru
         return bad_value(r, e, "more than %d numbers are given", CASE_MAX_POINTS);
     list->value = arena_alloc(&r->scene->arena, (size_t)n, sizeof *list->value, "numbers", r->diag);
     if (!list->value) return ERR_MEMORY;
-    for (list->n = 0; list->n < n && slice_next(&rest, ',', &piece); list->n++)
+    for (list->n = 0; slice_next(&rest, ',', &piece); list->n++)
         TRY(case_number(r, e, piece, p->unit, &list->value[list->n]));
     return ERR_OK;
 }
@@ -181,7 +181,7 @@ enum err case_value(struct reader *r, const struct entry *e, const struct param 
     case PARAM_TIME_EXPR:
     case PARAM_FLOW_EXPR: return read_field(r, e, p, place);
     case PARAM_SHAPES: return case_shape(r, e, place);
-    case PARAM_NUMBERS: return read_numbers(r, e, p, place);
+    case PARAM_NUMBERS: break;
     }
-    return ERR_OK;
+    return read_numbers(r, e, p, place);
 }
