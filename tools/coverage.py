@@ -6,9 +6,12 @@
     tools/coverage.py --filter fluid   those whose path contains this
     tools/coverage.py --missing        lists the lines and branches that no test took
 
-A test is run again only if it has changed, or if a source has. Branches of a line are merged over the
-functions that the compiler made of it (a law is compiled for float and for double), and over the copies of
-an inlined function (a law is inlined for each set of effects, and each copy has one outcome only).
+A test is run again only if it has changed, or if a source has; one that takes more than --longest seconds
+is left out then. Branches of a line are merged over the functions that the compiler made of it (a law is
+compiled for float and for double), and over the copies of an inlined function (a law is inlined for each set
+of effects, and each copy has one outcome only). Three kinds of branches do not count. On a line without a
+decision of its own they belong to functions that were put into it, and count where these are written. A
+failed ASSERT is what no input reaches. And TRY hands on an error, which counts where it arises.
 """
 import argparse
 import gzip
@@ -132,16 +135,18 @@ def cover(test, key):
         status, _ = run_test(test, BUILD, BUILD / "sphfsi", 600, GCOV_PREFIX=folder)
         seconds = time.time() - start
         files = gcov(Path(folder))
-    kept(test).write_text(json.dumps({"key": key, "status": status, "files": files}))
+    kept(test).write_text(json.dumps({"key": key, "status": status, "seconds": seconds, "files": files}))
     print(f"{test}: {seconds:.0f} s, exit status {status}", flush=True)
 
 
-def collect(names, jobs=2):
+def collect(names, jobs=2, longest=600):
     """{test: its exit status and what it took}; tests whose outcome is kept are not run again."""
     base = digest_of(sources())
     keys = {name: base + digest_of([ROOT / name]) for name in names}
-    stale = [name for name in names
-             if not kept(name).exists() or json.loads(kept(name).read_text())["key"] != keys[name]]
+    old = {name: json.loads(kept(name).read_text()) for name in names if kept(name).exists()}
+    stale = [name for name in names if name not in old or old[name]["key"] != keys[name]]
+    late = {name for name in stale if name in old and old[name].get("seconds", 0) > longest}
+    names, stale = ([name for name in some if name not in late] for some in (names, stale))
     if stale:
         goals = [f"build/coverage/{name.removesuffix('.c')}" for name in stale if name.endswith(".c")]
         subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=coverage", "all", *goals], cwd=ROOT,
@@ -157,8 +162,11 @@ DECISION = re.compile(r"\?|&&|\|\||\b(?:if|for|while)\b")
 
 def one_copy(text, taken):
     """The branches of a line with those of its inlined copies merged: two for each decision in its text."""
-    n = 2 * max(1, len(DECISION.findall(text)))
-    if len(taken) <= n or len(taken) % n:
+    decisions = len(DECISION.findall(text))
+    if text.strip().startswith(("ASSERT(", "TRY(")) or not decisions and "switch" not in text:
+        return []
+    n = 2 * decisions
+    if n == 0 or len(taken) <= n or len(taken) % n:
         return taken
     return [any(taken[k::n]) for k in range(n)]
 
@@ -211,9 +219,11 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--filter", default="", help="part of the paths of the tests to run")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--longest", type=float, default=600, help="leave out tests that took longer than so "
+                        "many seconds")
     parser.add_argument("--missing", action="store_true", help="list what no test took")
     args = parser.parse_args()
-    tests = collect(all_tests(args.filter), args.jobs)
+    tests = collect(all_tests(args.filter), args.jobs, args.longest)
     total = total_of(tests)
     if not args.filter:
         keep_summary(tests)
