@@ -260,6 +260,66 @@ static void errors_belong_to_their_thread(void)
     TEST_ASSERT_NOT_NULL(strstr(sphfsi_error(), "/elsewhere.cfg"));
 }
 
+/* --- what is refused --- */
+
+/* After a guard the state can be read, not stepped. */
+static void a_stopped_simulation_stays_as_it_is(void)
+{
+    a = create(tiny_case, "numerics.fixed_step=5e-3");
+    enum sphfsi_status e = SPHFSI_OK;
+    while (e == SPHFSI_OK) e = sphfsi_step(a, 1);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_GUARD, e, sphfsi_error());
+    const double time = sphfsi_time(a);
+    const int64_t steps = sphfsi_steps(a);
+    const uint64_t hash = sphfsi_hash(a);
+    TEST_ASSERT_EQUAL_INT(SPHFSI_GUARD, sphfsi_step(a, 1));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(),
+                                        "step: this simulation was stopped because its "
+                                        "state is not valid"),
+                                 sphfsi_error());
+    TEST_ASSERT_EQUAL_INT(SPHFSI_GUARD, sphfsi_advance(a, 1));
+    TEST_ASSERT_TRUE(sphfsi_time(a) == time && sphfsi_steps(a) == steps && sphfsi_hash(a) == hash);
+    TEST_ASSERT_NOT_NULL(field(a, SPHFSI_FLUID, "x"));
+}
+
+static void refused(enum sphfsi_status status, const char *why)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_INPUT, status, why);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), why), sphfsi_error());
+}
+
+static void options_out_of_range_are_refused(void)
+{
+    static char long_path[6000];
+    const double until[] = {-1, 1.1e9, (double)NAN};
+    struct sphfsi_options o = {.case_text = tiny_case, .threads = 1};
+    for (int k = 0; k < 3; k++) {
+        o.until = until[k];
+        refused(sphfsi_create(&a, &o), "must be above 0 and at most 1e9 seconds");
+        o.until = 0;
+        refused(sphfsi_budget(&o, until[k]), "s must be above 0 and at most 1e9");
+    }
+    o.threads = 4097;
+    refused(sphfsi_create(&a, &o), "threads = 4097: use 1 to 4096");
+    o.threads = 1;
+    memset(long_path, 'a', sizeof long_path - 1);
+    o.out = long_path;
+    refused(sphfsi_run(&o), "out: the path has 5999 characters");
+    o.out = "";
+    refused(sphfsi_run(&o), "out: the path has 0 characters");
+    o.out = NULL;
+    o.case_path = "/tmp/..cfg";
+    refused(sphfsi_run(&o), "/tmp/..cfg: '.' cannot be the name of the folder of results");
+    refused(sphfsi_refine(&o, 2, 2), "'.' cannot be the name of the folder");
+    o.out = tiny_path("none");
+    refused(sphfsi_refine(&o, 2, 2), "refine: 2 resolutions are given, but 3 to 6 are allowed");
+    refused(sphfsi_refine(&o, 7, 2), "refine: 7 resolutions are given");
+    refused(sphfsi_refine(&o, 3, 1.05), "refine: the ratio of resolutions is 1.05, but 1.1 to 4");
+    refused(sphfsi_refine(&o, 3, 4.5), "refine: the ratio of resolutions is 4.5");
+    o.restart = 1;
+    refused(sphfsi_refine(&o, 3, 2), "leave out --restart and --fork");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -271,5 +331,7 @@ int main(void)
     RUN_TEST(an_unknown_probe_names_the_nearest);
     RUN_TEST(simulations_in_two_threads);
     RUN_TEST(errors_belong_to_their_thread);
+    RUN_TEST(a_stopped_simulation_stays_as_it_is);
+    RUN_TEST(options_out_of_range_are_refused);
     return UNITY_END();
 }

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
 SPHFSI = os.environ.get("SPHFSI", "./sphfsi")
@@ -19,17 +18,17 @@ LINE = re.compile(r"([ \d.]{5}) %  t (\S+) s  dt (\S+) s \((\w+)\)  (\S+) M part
 ENV = {**os.environ, "OMP_NUM_THREADS": "1"}
 
 
-def on_a_terminal(out, until, seconds):
-    """What a terminal gets of a run that is interrupted after so long."""
+def on_a_terminal(out, until, lines):
+    """What a terminal gets of a run that is interrupted after so many lines."""
     ours, theirs = pty.openpty()
     process = subprocess.Popen([SPHFSI, STILL, "--out", out, "--until", until], stderr=theirs, env=ENV,
                                stdout=subprocess.DEVNULL)
     os.close(theirs)
-    time.sleep(seconds)
-    process.send_signal(signal.SIGINT)
     said = b""
     try:
         while piece := os.read(ours, 4096):
+            if said.count(b"\r") < lines <= (said + piece).count(b"\r"):
+                process.send_signal(signal.SIGINT)
             said += piece
     except OSError:  # the other end is closed
         pass
@@ -39,7 +38,7 @@ def on_a_terminal(out, until, seconds):
 
 def check_terminal(folder):
     end = 1e6
-    said = on_a_terminal(str(folder / "long"), f"{end:g}", 2.5)
+    said = on_a_terminal(str(folder / "long"), f"{end:g}", 6)
     parts = said.split("\r")
     # The last of these clears the line for what the program says at the end.
     assert parts[-1].startswith("\033[K") and "stopped by signal 2" in parts[-1], parts[-1]

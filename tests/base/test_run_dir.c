@@ -124,6 +124,50 @@ static void a_file_is_replaced_whole_or_kept(void)
     TEST_ASSERT_NOT_EQUAL(0, access(tiny_path("whole.part"), F_OK));
 }
 
+static void a_path_that_is_too_long_is_counted(void)
+{
+    static char path[PATH_BYTES + 10];
+    struct run_dir f;
+    memset(path, 'a', sizeof path - 1);
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, run_dir_open(&f, path, RUN_DIR_FRESH, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text,
+                                        "folder of the run: the path has 4105 characters"),
+                                 diag.text);
+    diag.code = ERR_OK;
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, run_dir_open(&f, "", RUN_DIR_FRESH, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "the path has 0 characters"), diag.text);
+}
+
+/* Another that has not written its number yet. */
+static void an_unnamed_owner_is_unknown(void)
+{
+    struct run_dir first, second;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run_dir_open(&first, tiny_path("unnamed"), RUN_DIR_FRESH, &diag));
+    TEST_ASSERT_EQUAL_INT(0, truncate(tiny_path("unnamed/.lock"), 0));
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
+                          run_dir_open(&second, tiny_path("unnamed"), RUN_DIR_FRESH, &diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text,
+                                        "another run (process unknown) is writing there"),
+                                 diag.text);
+    run_dir_close(&first);
+}
+
+/* Only what was made goes, from the inside out, and nothing that holds something. */
+static void what_was_made_is_withdrawn(void)
+{
+    struct run_dir f;
+    mkdir(tiny_path("own"), 0777);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run_dir_open(&f, tiny_path("own/x//y"), RUN_DIR_FRESH, &diag));
+    run_dir_withdraw(&f);
+    TEST_ASSERT_NOT_EQUAL(0, access(tiny_path("own/x"), F_OK));
+    TEST_ASSERT_EQUAL_INT(0, access(tiny_path("own"), F_OK));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run_dir_open(&f, tiny_path("own/x/y"), RUN_DIR_FRESH, &diag));
+    touch(tiny_path("own/x/note"));
+    run_dir_withdraw(&f);
+    TEST_ASSERT_NOT_EQUAL(0, access(tiny_path("own/x/y"), F_OK));
+    TEST_ASSERT_EQUAL_INT(0, access(tiny_path("own/x/note"), F_OK));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -135,5 +179,8 @@ int main(void)
     RUN_TEST(a_killed_run_leaves_no_lock);
     RUN_TEST(what_cannot_be_made_is_named);
     RUN_TEST(a_file_is_replaced_whole_or_kept);
+    RUN_TEST(a_path_that_is_too_long_is_counted);
+    RUN_TEST(an_unnamed_owner_is_unknown);
+    RUN_TEST(what_was_made_is_withdrawn);
     return UNITY_END();
 }

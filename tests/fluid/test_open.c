@@ -244,6 +244,33 @@ static void test_refused(void)
                 "enables the effect INFLOW, which needs FLUID");
 }
 
+/* Numbers of boundaries in a checkpoint that was made wrong, and buffers that fill up. */
+static void test_members_are_checked(void)
+{
+    rig_open(&rig, TOP WATER PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n", NULL);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const int32_t kept = p->open[0];
+    const int32_t wrong[] = {3, -1};
+    for (int k = 0; k < 2; k++) {
+        char why[100];
+        rig.diag.code = ERR_OK;
+        p->open[0] = wrong[k];
+        snprintf(why, sizeof why, "belongs to open boundary %d, but the case has only 2", wrong[k]);
+        TEST_ASSERT_EQUAL_INT(ERR_INPUT, open_list(&rig.sim.open, p, &rig.diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, why), rig.diag.text);
+    }
+    p->open[0] = kept;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, p, &rig.diag));
+    rig.sim.open.capacity = rig.sim.open.n_members;
+    rig.diag.code = ERR_OK;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, open_list(&rig.sim.open, p, &rig.diag));
+    rig.sim.open.capacity--;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, open_list(&rig.sim.open, p, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text,
+                                        "four times as many particles as at the start"),
+                                 rig.diag.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -255,6 +282,7 @@ int main(void)
     RUN_TEST(test_a_level);
     RUN_TEST(test_a_channel_with_a_level);
     RUN_TEST(test_no_place_left);
+    RUN_TEST(test_members_are_checked);
     RUN_TEST(test_refused);
     return UNITY_END();
 }

@@ -170,6 +170,30 @@ static void test_unknown_column(void)
             "nearest is P_dy_m");
 }
 
+static void said(const char *lines, const char *rows, const char *want)
+{
+    char text[300];
+    const struct score score = score_of(lines, rows);
+    reference_line(&references.item[0], &score, text, sizeof text);
+    TEST_ASSERT_EQUAL_STRING(want, text);
+    tearDown();
+    setUp();
+}
+
+/* A constant has a mean to be off, a curve a peak. Comments, blanks and line ends of any kind. */
+static void test_what_is_said(void)
+{
+    static const char rows[] = "time_s,P_dx_m,P_dy_m\n0,1,0\n0.5,3,0\n1,2,0\n";
+    put("r.csv", "# one row\r\n  \t\r\nt, value\r\n0.5 ,\t2\r\n");
+    said("file = r.csv\nlabel = others\n", rows,
+         "P_dx_m: mean 2, +0 (+0 %) off others; RMS 0.82 (41 %)");
+    put("r.csv", "0 1\n0.5 2\n 1 1");
+    said("file = r.csv\n", rows,
+         "P_dx_m: RMS 0.816 (41 % of the peak) from r; peak 3 at 0.5 s instead of 2 at 0.5 s");
+    put("r.csv", "5 1\n6 2\n");
+    said("file = r.csv\n", rows, "P_dx_m: its times do not overlap with those of r");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -184,5 +208,6 @@ int main(void)
     RUN_TEST(test_third_column);
     RUN_TEST(test_empty_file);
     RUN_TEST(test_unknown_column);
+    RUN_TEST(test_what_is_said);
     return UNITY_END();
 }

@@ -7,6 +7,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define HEAD "dp = 1 cm\nend_time = 1\nprecision = double\n"
@@ -147,6 +148,35 @@ static void test_no_rest_is_said(void)
                 "has no effect without RELAX");
 }
 
+/* What is said of a search, and that the first velocities of the two-step scheme are those of rest: the bar
+ * stays where it was found. */
+static void test_verlet_and_what_is_said(void)
+{
+    char text[RELAX_TEXT];
+    RIG_OPEN_SOLID(hanging, "integrator=verlet", "relax.tolerance=0.001");
+    relax_text(&rig.sim, text);
+    TEST_ASSERT_EQUAL_STRING("nothing moves: the state at the start is one of rest", text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, relax_to_rest(&rig.sim, &rig.diag), rig.diag.text);
+    const double found = end_of_bar();
+    const double exact = -1000 * 9.81 * (0.38 * 0.38 - 0.005 * 0.005) / (2 * 1e6);
+    assert_near(0.02 * -exact, exact, found, "elongation");
+    rig_run(&rig, 0.05);
+    assert_near(0.002 * -exact, found, end_of_bar(), "a period later");
+    relax_text(&rig.sim, text);
+    double time, span, share;
+    long long stops;
+    TEST_ASSERT_EQUAL_INT_MESSAGE(
+        4,
+        sscanf(text,
+               "at rest after %lg s and %lld stops: over the last %lg s, twice the longest time "
+               "between two stops, the speed stayed below %lg of its largest value",
+               &time, &stops, &span, &share),
+        text);
+    TEST_ASSERT_EQUAL_INT64(rig.sim.state.relax_swings, stops);
+    assert_near(0.01 * time, rig.sim.state.relax_time, time, "time of the search");
+    TEST_ASSERT_TRUE(span > 0 && span < time && share == 0.001);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -157,5 +187,6 @@ int main(void)
     RUN_TEST(test_forces_are_those_at_the_start);
     RUN_TEST(test_a_search_can_be_continued);
     RUN_TEST(test_no_rest_is_said);
+    RUN_TEST(test_verlet_and_what_is_said);
     return UNITY_END();
 }

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT
+ * Values of the fluid at points and lines: by hand in water at rest, and the same in a scene that is moved
+ * anywhere, mirrored, or periodic. */
+#include "rig.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* Water 0.4 m wide and 0.2 m deep, and a splash of one particle beside it, with its lower left corner at a
+ * place. */
+static const char tank[] =
+    "dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[constants]\nX = %g\nY = %g\n"
+    "[fluid w]\nshape = box X, Y, X + 0.4, Y + 0.2\nshape = box X + 0.6, Y, X + 0.61, Y + 0.01\n"
+    "sound_speed = 30\nsurface = Y + 0.2\nvelocity = 2, 3\n"
+    "[wall tank]\nshape = polyline thickness -0.04: X, Y + 0.3; X, Y; X + 0.7, Y; X + 0.7, Y + "
+    "0.3\n";
+
+static const double places[][2] = {{0, 0}, {-5, -7}, {3, -0.31}, {-0.2, 0.11}, {100, 200}};
+static struct rig rig;
+
+void setUp(void) { rig_one_thread(); }
+void tearDown(void) { rig_close(&rig); }
+
+static void open_at(double x, double y)
+{
+    char text[1000];
+    snprintf(text, sizeof text, tank, x, y);
+    rig_open(&rig, text, NULL);
+    rig_evaluate(&rig);
+}
+
+static void test_anywhere(void)
+{
+    for (size_t k = 0; k < COUNT_OF(places); k++) {
+        const double x = places[k][0], y = places[k][1];
+        open_at(x, y);
+        const struct simulation *const s = &rig.sim;
+        const struct sample in = simulation_sample(s, x + 0.2, y + 0.1);
+        assert_near(0.01, 1, in.fill, "fill");
+        assert_near(1e-12, 0, in.occupied, "occupied");
+        assert_near(0.02 * 1000, 1000, in.pressure, "pressure at half depth");
+        assert_near(1e-12, 2, in.vx, "vx");
+        assert_near(1e-12, 3, in.vy, "vy");
+        assert_near(0, in.pressure, simulation_pressure_at(s, x + 0.2, y + 0.1), "pressure alone");
+        const struct sample air = simulation_sample(s, x + 0.2, y + 0.25);
+        assert_near(0, 0, air.fill + air.pressure + air.vx + air.vy, "air");
+        assert_near(0.05, 1, simulation_sample(s, x + 0.2, y - 0.02).occupied, "wall");
+        /* Above water, from any point in it, below it within reach, and where there is none. */
+        assert_near(0.002, y + 0.2, simulation_level(s, x + 0.2, y + 0.05), "level");
+        assert_near(0.002, y + 0.2, simulation_level(s, x + 0.2, y + 0.195),
+                    "level from the surface");
+        assert_near(0, y + 0.21, simulation_level(s, x + 0.2, y + 0.21), "level of air");
+        assert_near(1e-9, x + 0.4, simulation_front(s, DIRECTION_RIGHT), "front to the right");
+        assert_near(1e-9, x, simulation_front(s, DIRECTION_LEFT), "front to the left");
+        assert_near(1e-9, y + 0.2, simulation_front(s, DIRECTION_UP), "front up");
+        assert_near(1e-9, y, simulation_front(s, DIRECTION_DOWN), "front down");
+        /* Through a line across half the depth, to the right of its direction; and through none. */
+        const double low[2] = {x + 0.2, y + 0.05}, high[2] = {x + 0.2, y + 0.15};
+        const double left[2] = {x + 0.1, y + 0.1}, right[2] = {x + 0.3, y + 0.1};
+        assert_near(0.01 * 0.2, 2 * 0.1, simulation_flux(s, low, high), "flux across");
+        assert_near(0.01 * 0.2, -2 * 0.1, simulation_flux(s, high, low), "flux, line turned round");
+        assert_near(0.01 * 0.6, -3 * 0.2, simulation_flux(s, left, right), "flux up");
+        double of[3];
+        simulation_pressure_on(s, left, right, of);
+        assert_near(20, 1000, of[0], "mean pressure on a line");
+        assert_near(1e-9, 0, of[1], "force along the line");
+        assert_near(0.02 * 200, -1000 * 0.2, of[2], "force of the fluid above the line");
+    }
+}
+
+/* Water without a surface in both directions: nothing differs at the sides. */
+static void test_across_periodic_sides(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, -0.3, 0.3, 0\nsound_speed = 30\n"
+             "velocity = 1, 0\n[domain]\nlower = 0, -0.3\nupper = 0.3, 0\nperiodic = xy\n",
+             NULL);
+    rig_evaluate(&rig);
+    const struct sample middle = simulation_sample(&rig.sim, 0.15, -0.15);
+    const double ends[][2] = {{0, -0.15}, {0.3, -0.15}, {0.15, 0}, {0.15, -0.3}, {0.3, 0}};
+    for (size_t k = 0; k < COUNT_OF(ends); k++) {
+        const struct sample at = simulation_sample(&rig.sim, ends[k][0], ends[k][1]);
+        assert_near(1e-9, middle.fill, at.fill, "fill");
+        assert_near(1e-9, middle.vx, at.vx, "vx");
+    }
+    assert_near(1e-9, 0, simulation_level(&rig.sim, 0.15, -0.2), "water up to the top");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_anywhere);
+    RUN_TEST(test_across_periodic_sides);
+    return UNITY_END();
+}
