@@ -22,6 +22,15 @@ SPHFSI_INLINE double filter_lead(const struct simulation *s)
     return s->scene->top.integrator == INTEGRATOR_SYMPLECTIC ? 1.75 : 1.25;
 }
 
+/* Time over which the interface velocity is extrapolated, in half steps (T-35): from the middle of a step
+ * to its end, and to the corrector half a step later. At a single rate `symplectic` extrapolates
+ * nothing. */
+SPHFSI_INLINE double extrapolated_halves(const struct simulation *s)
+{
+    const bool corrector = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
+    return corrector && s->effects & FX_MULTIRATE ? 2 : 1;
+}
+
 /* The time of the mean after a step of dt with sub-steps, s: reduced by that age, to a quarter at
  * least. */
 SPHFSI_INLINE double fluid_eval_lag(const struct simulation *s, double dt)

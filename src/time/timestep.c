@@ -90,7 +90,7 @@ double timestep_added_mass(const struct simulation *s, int *lightest)
     for (int k = 1; k < s->solid.n_bodies; k++)
         if (body[k].density < body[*lightest].density) *lightest = k;
     const double b = 2 / (1 + ADDED_MASS * s->scene->rho0 / body[*lightest].density);
-    return smoothing_lag(s) * b / (1 + (filter_lead(s) - 1) * b);
+    return smoothing_lag(s) * b / ((1 + (filter_lead(s) - 1) * b) * extrapolated_halves(s));
 }
 
 static double bound_added_mass(const struct simulation *s, const struct fluid_extremes *now)
