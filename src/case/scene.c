@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Queries on a scene: sections by name, places for messages, files relative to the case. */
 #include "case/scene.h"
+#include "case/params.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -76,6 +77,14 @@ const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b
             if ((s->contact[k].between[0] != '\0') == named && is_between(s, &s->contact[k], a, b))
                 found = &s->contact[k];
     return found->enabled ? found : NULL;
+}
+
+double scene_contact_gap(const struct scene *s, const struct scene_contact *c)
+{
+    const bool given =
+        c != &s->contact_default && scene_given(s, SECTION_contact, (int)(c - s->contact), "gap");
+    const bool layer = s->n_fluid > 0 && s->top.scheme == SCHEME_STANDARD;
+    return given || c->gap > 0 || !layer ? c->gap : s->top.dp;
 }
 
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT])

@@ -430,6 +430,10 @@ enum probe_target scene_probe_target(const struct scene_probe *probe);
  * not touch. */
 const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b);
 
+/* The gap that it keeps, m: unless given, one layer of fluid in a scene with fluid and the standard
+ * scheme. */
+double scene_contact_gap(const struct scene *s, const struct scene_contact *c);
+
 /* The k-th name of a list with commas between them, without blanks around it; false: there are fewer. */
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 

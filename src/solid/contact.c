@@ -388,16 +388,19 @@ static void set_law(struct contact *c, const struct scene_contact *from, int a, 
     const struct solid_body *const one = &c->solid->body[a];
     const double young = wall ? one->young : min2(one->young, c->solid->body[b].young);
     const double spacing = 0.5 * (one->dp + dp_of(c, b));
+    /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
+    const bool own = !wall && one->bond == c->solid->body[b].bond;
+    const double reach = spacing + (own ? from->gap : scene_contact_gap(c->scene, from));
     const int n = c->n_solids + c->n_walls;
     c->law[a * n + b] = c->law[b * n + a] = (struct contact_law){
         .on = true,
         .spacing = spacing,
-        .reach = spacing + from->gap,
+        .reach = reach,
         .stiffness = from->stiffness * young,
         .damping = from->damping,
         .friction = from->friction,
     };
-    c->reach = max2(c->reach, spacing + from->gap);
+    c->reach = max2(c->reach, reach);
     c->spacing = max2(c->spacing, spacing);
 }
 
@@ -410,14 +413,34 @@ static void set_laws(struct contact *c)
         }
 }
 
-/* Stores initial distances from other groups that are below the reach. Bodies on lattices that do
- * not fit, and particles clamped within a wall, start without repulsion and keep that distance. */
-static void note_beginnings(struct contact *c)
+/* Lists the pairs that begin within their reach of another group. */
+static void list_beginnings(struct contact *c)
 {
     c->margin[CONTACT_SELF] = -c->reach;
     c->margin[CONTACT_OTHER] = 0;
     for (int64_t k = 0; k < c->n_points; k++) c->began_group[k] = -1;
     contact_list(c);
+}
+
+/* Bodies that begin with less than a layer of fluid between them anywhere need not keep one. */
+static void drop_layers(struct contact *c)
+{
+    const int n = c->n_solids + c->n_walls;
+    list_beginnings(c);
+    for (int64_t k = 0; k < c->n_pairs; k++) {
+        const int a = c->body[c->pair_point[k]], b = c->body[c->edge[c->pair_edge[k]].a];
+        const struct scene_contact *const from =
+            scene_contact_of(c->scene, a < b ? a : b, a < b ? b : a);
+        struct contact_law *const law = &c->law[a * n + b];
+        law->reach = c->law[b * n + a].reach = law->spacing + from->gap;
+    }
+}
+
+/* Stores initial distances from other groups that are below the reach. Bodies on lattices that do
+ * not fit, and particles clamped within a wall, start without repulsion and keep that distance. */
+static void note_beginnings(struct contact *c)
+{
+    list_beginnings(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int32_t point = c->pair_point[k], group = c->group[c->edge[c->pair_edge[k]].a];
         const double r = contact_foot(c, point, c->pair_edge[k]).distance;
@@ -475,6 +498,7 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
     set_laws(c);
     TRY(contact_find_surface(c, a, solid, d));
     TRY(create_list(c, a, d));
+    drop_layers(c);
     note_beginnings(c);
     return solid->stick_edge ? contact_stick_create(c, a, d) : ERR_OK;
 }

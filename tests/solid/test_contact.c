@@ -127,6 +127,30 @@ static void test_a_gap_spares_what_began_within(void)
     TEST_ASSERT_TRUE(f[1] > 0);
 }
 
+/* With fluid and the standard scheme one layer of it fits between surfaces, unless a gap is given. */
+static void test_fluid_keeps_a_layer(void)
+{
+    static const char scene[] =
+        "dp = 1 cm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.03, 0.14, 0\n"
+        "[solid a]\nshape = box 0, 0.05, 0.04, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+        "dp = 5 mm\n";
+    static const char fluid[] = "[fluid w]\nshape = box 0.06, 0, 0.1, 0.04\nsound_speed = 10\n";
+    static const struct {
+        const char *text, *set;
+        double gap;
+    } row[] = {{scene, "scheme=standard", 0},        {fluid, "scheme=standard", 0.01},
+               {fluid, "scheme=paper", 0},           {"[contact all]\n", "scheme=standard", 0},
+               {"[contact c]\ngap = 0\n", fluid, 0}, {"[contact c]\ngap = 0.002\n", fluid, 0.002}};
+    char text[1024];
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        const bool two = row[k].set == fluid;
+        snprintf(text, sizeof text, "%s%s%s", scene, k ? row[k].text : "", two ? fluid : "");
+        rig_open(&rig, text, two ? "scheme=standard" : row[k].set, NULL);
+        const int pair = rig.sim.contact.n_solids + rig.sim.contact.n_walls - 1;
+        assert_near(1e-12, 0.0075 + row[k].gap, rig.sim.contact.law[pair].reach, row[k].set);
+    }
+}
+
 /* A post clamped in a floor does not touch the floor that holds it, however it bends there, until a
  * part of it
  * comes down that began further away than the kernel. */
@@ -414,6 +438,7 @@ int main(void)
     RUN_TEST(test_a_pair_by_hand);
     RUN_TEST(test_a_gap_by_hand);
     RUN_TEST(test_a_gap_spares_what_began_within);
+    RUN_TEST(test_fluid_keeps_a_layer);
     RUN_TEST(test_what_a_clamp_holds_does_not_touch);
     RUN_TEST(test_a_body_touches_itself);
     RUN_TEST(test_collision);
