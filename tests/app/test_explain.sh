@@ -31,11 +31,11 @@ for row in "1e-6 s 1" "2e-4 min 60" "0.2 h 3600"; do
         / = / { value[$1] = $3 }
         END { print value["end_time"] / value["ledger_interval"] }')
     want=$(awk "BEGIN { print ($steps + $rows) * $particles * $cost / $of }")
-    for factor in 1 0.9 2.1; do
+    for factor in 1 0.9 1.4; do
         got=$(awk -v f=$factor '
             f == 1 && / on this machine when idle/ { print $1, $2 }
             f == 0.9 && /nine of ten runs take/ { print $6, $7 }
-            f == 2.1 && /nine of ten runs take/ { print $9, $10 }' "$dir/said" | tr -d ';')
+            f == 1.4 && /nine of ten runs take/ { print $9, $10 }' "$dir/said" | tr -d ';')
         awk -v got="${got% *}" -v want="$want" -v f=$factor 'BEGIN {
             off = got / want / f - 1; exit off * off > 1e-4 }' && [ "${got#* }" = "$unit" ] ||
             fail "$factor of $want $unit at $cost, not $got"

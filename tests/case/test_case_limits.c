@@ -118,6 +118,15 @@ static void test_shifting_that_goes_wrong_is_warned_of(void)
 }
 
 /* A constant that needs 32 others, each the next one, is read; one that needs 33 is not. */
+static void test_area_of_a_polygon(void)
+{
+    refuses(TOP SOLID "shape = polygon 0, 0; 1, 0; 0, 1.9e-12\n",
+            "the polygon has no area; check its points");
+    /* A sliver that has one holds no particle. */
+    refuses(TOP SOLID "shape = polygon 0, 0; 1, 0; 0, 2.1e-12\n",
+            "shape 2 of [solid a] contains no particle");
+}
+
 static void test_depth_of_constants(void)
 {
     for (int n = 32; n <= 33; n++) {
@@ -277,6 +286,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_values_that_do_not_fit_together);
     RUN_TEST(test_shifting_that_goes_wrong_is_warned_of);
+    RUN_TEST(test_area_of_a_polygon);
     RUN_TEST(test_depth_of_constants);
     RUN_TEST(test_number_of_constants);
     RUN_TEST(test_number_of_points);

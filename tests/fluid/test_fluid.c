@@ -485,9 +485,28 @@ static void test_forces_between_particles_cancel(void)
     assert_near(1e-13 * size, 0, sum_y, "sum of forces, y");
 }
 
+/* As few chunks as hold the cells, in whole rounds of 24, and each cell in one of them. */
+static void test_chunks_of_cells(void)
+{
+    const int32_t cells[] = {0, 1, 1535, 1536, 1537, 3072, 3073, 100000};
+    const int32_t chunks[] = {0, 24, 24, 24, 48, 48, 72, 1584};
+    for (size_t k = 0; k < COUNT_OF(cells); k++) {
+        TEST_ASSERT_EQUAL_INT32(chunks[k], fluid_chunk_count(cells[k]));
+        if (cells[k] == 0) continue;
+        TEST_ASSERT_EQUAL_INT32(0, fluid_chunk_start(cells[k], 0));
+        TEST_ASSERT_EQUAL_INT32(cells[k], fluid_chunk_start(cells[k], chunks[k]));
+        for (int32_t m = 0; m < chunks[k]; m++) {
+            const int32_t size =
+                fluid_chunk_start(cells[k], m + 1) - fluid_chunk_start(cells[k], m);
+            TEST_ASSERT_TRUE(size >= 0 && size <= 64);
+        }
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
+    RUN_TEST(test_chunks_of_cells);
     RUN_TEST(test_pressure);
     RUN_TEST(test_particles_of_unlike_mass);
     RUN_TEST(test_masses_carry_the_density);

@@ -190,6 +190,20 @@ static void test_off_lattice_edges_are_told(void)
                              "at 0 and 0.0055 m would fit\n",
                              warnings);
     TEST_ASSERT_EQUAL_INT64(11 * 10, total());
+    /* Far from the origin of a lattice that is not at zero either. */
+    must_read("dp = 0.5 mm\nend_time = 1 s\n[numerics]\nlattice_origin = 0.1 mm, 0\n"
+              "[fluid w]\nsound_speed = 20\nshape = box -4 mm, 5.3 mm, 5.2 mm, 10 mm\n",
+              NULL);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings,
+               "box from x = -0.004 to 0.0052 m is 18.4 dp wide and off the lattice: sampled as 18 "
+               "columns from -0.0039 to 0.0051 m; edges at -0.0039 and 0.0051 m would fit\n"),
+        warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings,
+               "box from y = 0.0053 to 0.01 m is 9.4 dp high and off the lattice: sampled as 9 "
+               "rows from 0.0055 to 0.01 m; edges at 0.0055 and 0.01 m would fit\n"),
+        warnings);
     must_read("dp = 0.5 mm\nend_time = 1 s\n[fluid w]\nsound_speed = 20\n"
               "shape = box 0, 0, 0.6 mm, 5 mm\n",
               NULL);

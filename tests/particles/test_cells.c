@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { N = 1500 };
 static const double lower[2] = {-0.3, 0.1}, upper[2] = {1.15, 0.92};
@@ -375,6 +376,38 @@ static void test_a_domain_of_too_many_cells_is_refused(void)
     TEST_ASSERT_TRUE(diag.text[0]);
 }
 
+/* Any number of threads, up to the most there can be, and more threads than particles. */
+static void test_threads_share_whole_cells(void)
+{
+    enum { POINTS = 600 };
+    static uint64_t key[POINTS], alone[POINTS], pair[POINTS];
+    scatter(false);
+    uint64_t seed = 3;
+    for (int k = 0; k < POINTS; k++) key[k] = (uint64_t)(4 * (noise(&seed) + 1));
+    int n = 0;
+    for (uint64_t cell = 0; cell < 8; cell++)
+        for (int k = 0; k < POINTS; k++)
+            if (key[k] == cell)
+                pair[n++] = (cell ? cell : UINT32_MAX) << 32 | (uint32_t)(POINTS - 1 - k);
+    memcpy(alone, pair, sizeof pair);
+    static uint64_t given[POINTS];
+    memcpy(given, pair, sizeof pair);
+    cells_order(alone, POINTS, &kinds[KIND_FLUID], 1);
+    TEST_ASSERT_TRUE(memcmp(alone, given, sizeof alone) != 0);
+    for (int threads = 2; threads <= CELLS_SORT_THREADS; threads += threads < 8 ? 1 : 31) {
+        memcpy(pair, given, sizeof pair);
+        cells_order(pair, POINTS, &kinds[KIND_FLUID], threads);
+        TEST_ASSERT_EQUAL_MEMORY(alone, pair, sizeof pair);
+    }
+    for (int size = 1; size < 4; size++) {
+        memcpy(pair, given, sizeof pair);
+        memcpy(alone, given, sizeof pair);
+        cells_order(alone, size, &kinds[KIND_FLUID], 1);
+        cells_order(pair, size, &kinds[KIND_FLUID], CELLS_SORT_THREADS);
+        TEST_ASSERT_EQUAL_MEMORY(alone, pair, sizeof pair);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -389,5 +422,6 @@ int main(void)
     RUN_TEST(test_order_does_not_depend_on_threads_or_history);
     RUN_TEST(test_resume_rebuilds_the_same_list);
     RUN_TEST(test_a_domain_of_too_many_cells_is_refused);
+    RUN_TEST(test_threads_share_whole_cells);
     return UNITY_END();
 }

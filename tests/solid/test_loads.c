@@ -252,6 +252,23 @@ static void test_normals_of_driven_particles(void)
     TEST_ASSERT_EQUAL_INT(9, cleared);
 }
 
+/* A centre belongs to a region by its place, to a millionth of dp. */
+static void test_edges_of_a_region(void)
+{
+    static const struct {
+        double from;
+        int columns;
+    } row[] = {{0.1751, 2}, {0.17501, 2}, {0.1749, 3}, {0.175, 3}};
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        char text[1000];
+        snprintf(text, sizeof text,
+                 BAR "[load end]\nbody = bar\nshape = box %.9g, 0, 0.2, 0.04\nforce = 3, 0\n",
+                 row[k].from);
+        RIG_OPEN_SOLID(text, NULL);
+        TEST_ASSERT_EQUAL_INT64(4 * row[k].columns, rig.sim.loads.n_loaded);
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -266,5 +283,6 @@ int main(void)
     RUN_TEST(test_restart_and_threads);
     RUN_TEST(test_bad_input);
     RUN_TEST(test_normals_of_driven_particles);
+    RUN_TEST(test_edges_of_a_region);
     return UNITY_END();
 }
