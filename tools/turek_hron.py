@@ -251,11 +251,12 @@ def report():
             "against the finest reference.", "", *headline(kept), "",
             (ROOT / "docs" / "turek_hron_notes.md").read_text().strip(), "",
             "## Every run", "",
-            "| case | across | simulated s | end | particles (fluid, solid) | CPU s | CPU s a second | "
-            "quantity | found | reference |", "|---|---|---|---|---|---|---|---|---|---|"]
+            "| case | across | version | simulated s | end | particles (fluid, solid) | CPU s | "
+            "CPU s a second | quantity | found | reference |",
+            "|---|---|---|---|---|---|---|---|---|---|---|"]
     for run in kept:
-        head = (f"| {run['case'].upper()} | {run['across']}{changed(run)} | {run['time']:.4g} | "
-                f"{run['exit']} | "
+        head = (f"| {run['case'].upper()} | {run['across']}{changed(run)} | {run['version']} | "
+                f"{run['time']:.4g} | {run['exit']} | "
                 f"{run['particles']['fluid']}, {run['particles']['solid']} | "
                 f"{cost_of(run)} |")
         for quantity, wanted in REFERENCE[run["case"]].items():
