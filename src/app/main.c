@@ -73,7 +73,7 @@ static const struct option {
     {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
     {"--refine", OPERAND, REFINE},   {"--ratio", OPERAND, RUN},
     {"--budget", OPERAND, BUDGET},   {"--version", NOTHING, VERSION},
-    {"--help", NOTHING, HELP},
+    {"--help", NOTHING, HELP},       {"-h", NOTHING, HELP},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 

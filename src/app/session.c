@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <strings.h>
 
 static void forward_warning(void *context, const char *text)
 {
@@ -140,6 +141,20 @@ static int threads_by_default(int64_t n, int offered, const struct sphfsi_option
     return idle;
 }
 
+/* Threads wait for each other several times a step, and one without a core delays all. */
+static void say_busy(int asked, const struct sphfsi_options *o)
+{
+    const char *const policy = getenv("OMP_WAIT_POLICY");
+    if (asked == 1 || (policy && strcasecmp(policy, "passive") == 0)) return;
+    const int idle = thread_idle_cores();
+    if (idle < asked)
+        session_say(o,
+                    "the machine is busy: %d of %d cores idle for the %d threads that are asked "
+                    "for, so they may wait most of the time; --threads %d or "
+                    "OMP_WAIT_POLICY=passive before the command is faster",
+                    idle, thread_cores(), asked, idle);
+}
+
 int session_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                     struct diag *d)
 {
@@ -147,7 +162,10 @@ int session_threads(const struct scene *scene, const struct sphfsi_options *o, i
     const int64_t n = scene->points[KIND_FLUID].n + scene->points[KIND_SOLID].n;
     const int asked = threads_asked(o, offered, &name), limit = thread_limit(n);
     if (asked == 0) return threads_by_default(n, offered < limit ? offered : limit, o);
-    if (asked <= limit) return asked;
+    if (asked <= limit) {
+        say_busy(asked, o);
+        return asked;
+    }
     diag_warn(d,
               "%s = %d is too many: %lld particles on %d cores can use at most %d thread%s, so the "
               "run uses %d; give that number or fewer",

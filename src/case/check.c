@@ -474,7 +474,7 @@ static enum err check_relax(struct reader *r)
     struct scene *const s = r->scene;
     struct scene_relax *const x = &s->relax;
     if (x->common.line > 0 && !scene_given(s, SECTION_relax, 0, "tolerance"))
-        x->tolerance = s->n_fluid > 0 ? 0.05 : 0.001; /* water keeps slow currents */
+        x->tolerance = s->n_fluid > 0 ? 0.02 : 0.001; /* water keeps slow currents */
     for (int k = 0; x->tolerance > 0 && k < s->n_motion; k++)
         if (s->motion[k].start < 0)
             return bad_line(r, s->motion[k].common.line,

@@ -66,9 +66,33 @@ static const char *section_word(int id)
     return id == SECTION_constants ? "constants" : section_table[id].word;
 }
 
+/* The section that is meant by another usual word for it, or NULL. */
+static const char *meant_section(const char *word)
+{
+    static const char *const names[][2] = {
+        {"water", "fluid"},          {"liquid", "fluid"},        {"body", "solid"},
+        {"structure", "solid"},      {"beam", "solid"},          {"plate", "solid"},
+        {"boundary", "wall"},        {"tank", "wall"},           {"rigid", "wall"},
+        {"force", "load"},           {"gauge", "probe"},         {"sensor", "probe"},
+        {"parameters", "constants"}, {"variables", "constants"}, {"solver", "numerics"},
+        {"inlet", "inflow"},         {"outlet", "outflow"},
+    };
+    for (size_t k = 0; k < COUNT_OF(names); k++)
+        if (strcasecmp(names[k][0], word) == 0) return names[k][1];
+    return NULL;
+}
+
 static enum err unknown_section(struct reader *r, int line, const char *word)
 {
     struct nearest near = {0};
+    const char *const meant = meant_section(word);
+    if (meant) {
+        int id = 0;
+        while (strcmp(section_word(id), meant) != 0) id++;
+        const bool named = id != SECTION_constants && section_table[id].named;
+        return bad_line(r, line, "unknown section [%.60s]; did you mean [%s%s]?", word, meant,
+                        named ? " NAME" : "");
+    }
     nearest_offer(&near, word, "constants");
     for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)
         nearest_offer(&near, word, section_table[id].word);
@@ -127,9 +151,15 @@ static enum err read_entry(struct reader *r, int line, char *text)
 {
     char *equals = strchr(text, '=');
     const char *const comment = strchr(text, '#');
-    if (!equals || (comment && comment < equals))
+    if (!equals || (comment && comment < equals)) {
+        char first[SCENE_NAME];
+        snprintf(first, sizeof first, "%.*s", (int)strcspn(text, " \t:"), text);
         return bad_line(r, line, "`%.40s` is neither `key = value` nor `[section]`%s", text,
-                        strncmp(text, "//", 2) == 0 ? "; a comment begins with #" : "");
+                        strncmp(text, "//", 2) == 0  ? "; a comment begins with #"
+                        : find_section_id(first) > 0 ? "; write the section in brackets"
+                        : text[strlen(first)] == ':' ? "; write = for :"
+                                                     : "");
+    }
     *equals = '\0';
     const char *const key = trim(text);
     if (!is_identifier(key) || strlen(key) >= SCENE_NAME) {
@@ -231,6 +261,26 @@ static enum err add_missing(struct reader *r, const char *prefix)
     return add_section(r, 0, id, "");
 }
 
+/* A key of --set that no section meant by the prefix has: what it may be, or where it belongs. */
+static enum err unknown_in_set(struct reader *r, const struct entry *e, const char *prefix)
+{
+    char meant[PARAM_MEANT];
+    for (int k = 0; k < r->n_sections; k++) {
+        const struct case_section *const s = &r->sections[k];
+        if (means_section(s, prefix) && s->id != SECTION_constants &&
+            param_meant((enum section_id)s->id, e->key, meant))
+            return bad_entry(r, e, "unknown key `%.60s`; did you mean %s?", e->key, meant);
+    }
+    struct nearest none = {0};
+    for (int k = 0; k < r->n_sections && !*prefix; k++) {
+        const struct case_section *const s = &r->sections[k];
+        if (s->id != SECTION_top && s->id != SECTION_constants && takes_key(r, k, e->key, &none))
+            return bad_entry(r, e, "unknown key or constant `%.60s`; write `%s.%s`", e->key,
+                             *s->name ? s->name : section_word(s->id), e->key);
+    }
+    return bad_entry(r, e, "unknown %s `%.60s`", *prefix ? "key" : "key or constant", e->key);
+}
+
 static enum err find_target(struct reader *r, const struct entry *e, const char *prefix,
                             int *target)
 {
@@ -263,7 +313,7 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
     if (!meant) return bad_entry(r, e, "the case has no section `%.60s`", prefix);
     if (near.name)
         return bad_entry(r, e, "unknown key `%.60s`; did you mean `%s`?", e->key, near.name);
-    return bad_entry(r, e, "unknown %s `%.60s`", *prefix ? "key" : "key or constant", e->key);
+    return unknown_in_set(r, e, prefix);
 }
 
 /* Replaces the file's entry for the key (all entries of a list of shapes). */

@@ -110,9 +110,12 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     if (near.name)
         return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
     for (int k = 0; k < PARAM_COUNT; k++)
-        if (strcmp(param_table[k].key, e->key) == 0)
-            return bad_entry(r, e, "unknown key `%s` %s; it belongs in [%s]", e->key, place,
-                             section_table[param_table[k].section].word);
+        if (strcmp(param_table[k].key, e->key) == 0) {
+            const bool top = param_table[k].section == SECTION_top;
+            return bad_entry(r, e, "unknown key `%s` %s; it belongs %s%s%s", e->key, place,
+                             top ? "at the top of the file" : "in [",
+                             top ? "" : section_table[param_table[k].section].word, top ? "" : "]");
+        }
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 

@@ -18,8 +18,8 @@ static enum err read_point(struct reader *r, const struct entry *e, struct slice
     struct slice piece;
     const int given = slice_count(text, ',');
     if (given != n)
-        return bad_value(r, e, "%d numbers are expected and %d given in `%.*s`%s", n, given,
-                         (int)(text.length < 40 ? text.length : 40), text.at,
+        return bad_value(r, e, "%d numbers with commas between them are expected; `%.*s` has %d%s",
+                         n, (int)(text.length < 40 ? text.length : 40), text.at, given,
                          given > n ? case_comma_hint(e->value) : "");
     for (int k = 0; k < n && slice_next(&text, ',', &piece); k++) {
         TRY(case_number(r, e, piece, "m", &value[k]));
@@ -151,7 +151,9 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
     for (int k = 0; k < (int)COUNT_OF(words); k++)
         if (strlen(words[k]) == length && memcmp(words[k], e->value, length) == 0) kind = k;
     if (kind < 0)
-        return bad_value(r, e, "`%.*s` is not a shape; known: box, polygon, polyline, circle",
+        return bad_value(r, e,
+                         "`%.*s` is not a shape; known: box X0, Y0, X1, Y1; circle X, Y, R; "
+                         "polygon X, Y; ...; polyline thickness T: X, Y; ...",
                          (int)(length < 40 ? length : 40), e->value);
     struct shape shape = {.kind = (enum shape_kind)kind};
     const char *start = e->value + length + strspn(e->value + length, " \t");

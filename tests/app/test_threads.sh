@@ -35,9 +35,13 @@ if [ "$cores" -gt 1 ]; then
         busy+=($!)
     done
     "$sphfsi" "${large[@]}" --out "$dir/busy" >"$dir/output" 2>&1 || fail "a busy machine"
-    "$sphfsi" "${large[@]}" --threads 2 --out "$dir/asked" >"$dir/asked.txt" 2>&1 || fail "--threads 2"
-    OMP_NUM_THREADS=2 "$sphfsi" "${large[@]}" --out "$dir/set" >"$dir/set.txt" 2>&1 ||
+    env -u OMP_WAIT_POLICY "$sphfsi" "${large[@]}" --threads 2 --out "$dir/asked" \
+        >"$dir/asked.txt" 2>&1 || fail "--threads 2"
+    env -u OMP_WAIT_POLICY OMP_NUM_THREADS=2 "$sphfsi" "${large[@]}" --out "$dir/set" >"$dir/set.txt" 2>&1 ||
         fail "OMP_NUM_THREADS=2"
+    OMP_WAIT_POLICY=passive "$sphfsi" "${large[@]}" --threads 2 --out "$dir/passive" \
+        >"$dir/passive.txt" 2>&1 ||
+        fail "OMP_WAIT_POLICY=passive"
     kill "${busy[@]}"
     wait "${busy[@]}" 2>/dev/null
     grep -q 'busy: 1 of .* cores idle, so the run uses 1 thread; .* give --threads [2-9]' "$dir/output" ||
@@ -45,7 +49,11 @@ if [ "$cores" -gt 1 ]; then
     [ "$(threads "$dir/busy")" = 1 ] || fail "a busy machine: $(threads "$dir/busy") threads"
     [ "$(threads "$dir/asked")" = 2 ] || fail "--threads 2: $(threads "$dir/asked") threads"
     [ "$(threads "$dir/set")" = 2 ] || fail "OMP_NUM_THREADS=2: $(threads "$dir/set") threads"
-    grep -q 'busy' "$dir/asked.txt" "$dir/set.txt" && fail "a number that was asked for is doubted"
+    for file in asked set; do
+        grep -q 'busy: 1 of .* for the 2 threads .*; --threads 1 or OMP_WAIT_POLICY' "$dir/$file.txt" ||
+            fail "no word of the cost of 2 threads on a busy machine: $(cat "$dir/$file.txt")"
+    done
+    grep -q 'busy' "$dir/passive.txt" && fail "a run that waits passively is told to"
     [ "$(hash "$dir/busy")" = "$(hash "$dir/one")" ] || fail "a busy machine: other bits"
 fi
 

@@ -28,6 +28,14 @@ static const struct {
      "bad.cfg:1: `title` has text after the closing quote; a comment begins with #"},
     {"2dp = 1\n", NULL,
      "bad.cfg:1: `2dp` is not a valid key: a key has up to 63 letters, digits and _"},
+    {TOP "[water]\n", NULL, "bad.cfg:3: unknown section [water]; did you mean [fluid NAME]?"},
+    {"fluid w\n", NULL,
+     "bad.cfg:1: `fluid w` is neither `key = value` nor `[section]`; write the section in "
+     "brackets"},
+    {"dp: 1\n", NULL, "bad.cfg:1: `dp: 1` is neither `key = value` nor `[section]`; write = for :"},
+    {TOP "[numerics]\nintegrator = verlet\n" SOLID, NULL,
+     "bad.cfg:4: unknown key `integrator` in [numerics]; it belongs at the top of the file"},
+    {TOP SOLID, "young=1", "--set young=1: unknown key or constant `young`; write `a.young`"},
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,
      "bad.cfg:3: unknown section [zebra]; known: constants, numerics, domain, output, relax, "
@@ -62,7 +70,8 @@ static const struct {
      "bad.cfg:3: gravity = 0, -9,81: two components are expected, `gravity = X, Y`; there are 3; a "
      "comma separates numbers, and a decimal number is written with a point: 0.005"},
     {TOP SOLID "clamp = box 0, 0, 0,1, 1\n", NULL,
-     "bad.cfg:8: clamp = box 0, 0, 0,1, 1: 4 numbers are expected and 5 given in `0, 0, 0,1, 1`; a "
+     "bad.cfg:8: clamp = box 0, 0, 0,1, 1: 4 numbers with commas between them are expected; `0, 0, "
+     "0,1, 1` has 5; a "
      "comma separates numbers, and a decimal number is written with a point: 0.005"},
     {"dp = 1 mm // spacing\n", NULL,
      "bad.cfg:1: dp = 1 mm // spacing: `//` where a value is expected; a comment begins with #"},
@@ -200,10 +209,11 @@ static const struct {
      "bad.cfg:3: [solid a] velocity is not finite at (0.0005, 0.0005) m; change the expression"},
     {TOP SOLID "like = a\n", NULL, "bad.cfg:8: like = a: there is no earlier [solid] of that name"},
     {TOP SOLID "clamp = bix 0, 0, 1, 1\n", NULL,
-     "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is not a shape; known: box, polygon, polyline, "
-     "circle"},
+     "bad.cfg:8: clamp = bix 0, 0, 1, 1: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
+     "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ..."},
     {TOP SOLID "clamp = box 0, 0, 1\n", NULL,
-     "bad.cfg:8: clamp = box 0, 0, 1: 4 numbers are expected and 3 given in `0, 0, 1`"},
+     "bad.cfg:8: clamp = box 0, 0, 1: 4 numbers with commas between them are expected; `0, 0, 1` "
+     "has 3"},
     {TOP SOLID "clamp = box 1, 0, 0, 1\n", NULL,
      "bad.cfg:8: clamp = box 1, 0, 0, 1: box X0, Y0, X1, Y1 needs X0 < X1 and Y0 < Y1; here X 1 to "
      "0, Y 0 to 1 m"},
@@ -493,8 +503,8 @@ static void test_all_problems_of_a_case_are_reported(void)
                 "bad.cfg:1: dp = 1 MPa: a pressure (Pa) where a length (m) is expected\n"
                 "bad.cfg:2: `end_time 1 s` is neither `key = value` nor `[section]`\n"
                 "bad.cfg:3: unknown section [constant]; did you mean [constants]?\n"
-                "bad.cfg:6: shape = bix 0: `bix` is not a shape; known: box, polygon, polyline, "
-                "circle\n"
+                "bad.cfg:6: shape = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
+                "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...\n"
                 "bad.cfg:7: young = 1/0: division by zero\n"
                 "bad.cfg:9: unknown key `poison` in [solid]; did you mean `poisson`?\n"
                 "bad.cfg:10: unknown section [solids]; did you mean [solid]?\n");
