@@ -115,9 +115,47 @@ static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KI
         pack_cell(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
 }
 
+/* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the neighbours
+ * span no plane (a determinant below a thousandth of the trace squared) its inverse is taken as 0. */
+struct moments {
+    double xx, xy, yy, det;
+};
+
+SPHFSI_INLINE struct moments moments_of(double xx, double xy, double yy)
+{
+    const double det = xx * yy - square(xy);
+    return (struct moments){xx, xy, yy, det > 1e-3 * square(xx + yy) ? det : 0};
+}
+
+SPHFSI_INLINE void moments_solve(const struct moments *m, double x, double y, double out[2])
+{
+    out[0] = m->det > 0 ? (m->yy * x - m->xy * y) / m->det : 0;
+    out[1] = m->det > 0 ? (m->xx * y - m->xy * x) / m->det : 0;
+}
+
+/* The trace of the inverse times a symmetric matrix, given by xx, xy + yx, yy. */
+SPHFSI_INLINE double moments_trace(const struct moments *m, double xx, double xy, double yy)
+{
+    return m->det > 0 ? (m->yy * xx - m->xy * xy + m->xx * yy) / m->det : 0;
+}
+
+/* V t^3 of the candidates. */
+SPHFSI_INLINE vreal gradient_weight(const struct separation *r, const real *b)
+{
+    const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r->length, vset(1)));
+    return lane(b, PACKED_VOLUME) * (t * t * t);
+}
+
+SPHFSI_INLINE struct velocity_gradient gradient_at(const real *own)
+{
+    return (struct velocity_gradient){vspread(own + PACKED_DU_DX * CLUSTER),
+                                      vspread(own + PACKED_DU_DY * CLUSTER),
+                                      vspread(own + PACKED_DV_DX * CLUSTER),
+                                      vspread(own + PACKED_DV_DY * CLUSTER)};
+}
+
 /* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,
- * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. If the
- * neighbours span no plane (a determinant below a thousandth of the trace squared) it is zero. */
+ * times h: (sum of V x_ab (x) grad W)^-1 applied to sum of V (dens_a - dens_b) grad W. */
 static void slopes_of(const struct neighbours *neighbours, const struct receiver *a,
                       double slope[GROUPS][2])
 {
@@ -128,8 +166,7 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
             const uint32_t code = neighbours->code[k];
             const real *const b = candidates(neighbours, code, part);
             const struct separation r = separation_from(a, code, b);
-            const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r.length, vset(1)));
-            const vreal w = lane(b, PACKED_VOLUME) * (t * t * t);
+            const vreal w = gradient_weight(&r, b);
             const vreal step = w * (a->dens - lane(b, PACKED_DENS));
             xx[part] = vfma(w * r.x, r.x, xx[part]);
             xy[part] = vfma(w * r.x, r.y, xy[part]);
@@ -144,10 +181,8 @@ static void slopes_of(const struct neighbours *neighbours, const struct receiver
     total(dx, U);
     total(dy, V);
     for (int g = 0; g < GROUPS; g++) {
-        const double det = (double)A[g] * (double)C[g] - square((double)B[g]);
-        const bool good = det > 1e-3 * square((double)A[g] + (double)C[g]);
-        slope[g][0] = good ? ((double)C[g] * (double)U[g] - (double)B[g] * (double)V[g]) / det : 0;
-        slope[g][1] = good ? ((double)A[g] * (double)V[g] - (double)B[g] * (double)U[g]) / det : 0;
+        const struct moments m = moments_of((double)A[g], (double)B[g], (double)C[g]);
+        moments_solve(&m, (double)U[g], (double)V[g], slope[g]);
     }
 }
 
