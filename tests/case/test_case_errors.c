@@ -345,16 +345,6 @@ static const struct {
      "0): fluid sticks to surfaces by its laminar viscosity"},
     {TOP SOLID "slip = none\n", NULL,
      "bad.cfg:8: [solid a] slip enables the effect NO_SLIP, which needs LAMINAR"},
-    {TOP FLUID "gradients = corrected\n", NULL,
-     "bad.cfg:6: [fluid w] gradients enables the effect CORRECTED, which needs SHIFTING "
-     "(fluid.shifting > 0): with corrected gradients nothing else keeps particles apart"},
-    {TOP FLUID "shifting = 2\ngradients = corrected\nsurface = 0.1\n", NULL,
-     "bad.cfg:3: [fluid w] has gradients = corrected, which is for fluid without a free "
-     "surface: use gradients = plain, or leave out `surface`"},
-    {TOP FLUID "shifting = 2\ngradients = corrected\n[wall bed]\nshape = box 0, -0.1, 0.1, 0\n",
-     NULL,
-     "bad.cfg:8: [wall bed] has slip = free; gradients = corrected of [fluid w] need the velocity "
-     "behind a wall: use slip = none or gradients = plain"},
     {TOP "integrator = verlet\n" FLUID "laminar_viscosity = 1e-3\n", NULL,
      "bad.cfg:7: [fluid w] laminar_viscosity enables the effect LAMINAR, which excludes VERLET "
      "(enabled by "

@@ -90,10 +90,35 @@ static void test_shift_keeps_linear_fields(void)
     }
 }
 
+/* What corrected gradients cannot be used with. */
+static void test_refusals(void)
+{
+#define CORRECTED                                                                   \
+    "dp = 0.1\nend_time = 1\n[fluid w]\nshape = box 0, 0, 1, 1\nsound_speed = 10\n" \
+    "laminar_viscosity = 0.1\ngradients = corrected\n"
+#define SHIFTED CORRECTED "shifting = 2\n"
+#define WALL "[wall bed]\nshape = box 0, -0.3, 1, 0\n"
+    rig_refuses(CORRECTED, "needs SHIFTING (fluid.shifting > 0): with corrected gradients nothing "
+                           "else keeps particles apart");
+    rig_refuses(SHIFTED "surface = 1\n", "[fluid w] has gradients = corrected, which is for fluid "
+                                         "without a free surface: use gradients = plain");
+    rig_refuses(SHIFTED WALL, "[wall bed] has slip = free; gradients = corrected of [fluid w] need "
+                              "the velocity behind a wall: use slip = none or gradients = plain");
+    rig_refuses(SHIFTED WALL "slip = none\n[probe f]\nquantity = force\nbody = bed\n",
+                "the force on a wall is not known");
+    rig_refuses(SHIFTED WALL "slip = none\nmotion = m\n[motion m]\nvelocity = 1, 0\n",
+                "the work of a wall is not known");
+    rig_refuses(SHIFTED "[numerics]\nsides = one\n" WALL "slip = none\n", "use sides = both");
+    rig_refuses(SHIFTED "[solid s]\nshape = box 1, 0, 1.3, 1\ndensity = 1000\nyoung = 1e6\n"
+                        "poisson = 0.3\n",
+                "the force on a structure is not known");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_corrected_gradients_by_hand);
     RUN_TEST(test_shift_keeps_linear_fields);
+    RUN_TEST(test_refusals);
     return UNITY_END();
 }
