@@ -39,7 +39,7 @@ WORK = ROOT / "build" / "mutants"
 KEPT = ROOT / "tests" / "mutants" / "results.json"
 EXPLAINED = ROOT / "tests" / "mutants" / "equivalent.txt"
 SKIPPED = 77
-LONGEST = 8  # seconds of the processor: tests that take longer are not run with faults
+LONGEST = 3  # seconds of the processor: tests that take longer are not run with faults
 LOCK = threading.Lock()
 # kind: (pattern, replacement); each match on a line of code is a candidate.
 RULES = [
@@ -132,7 +132,7 @@ class Tests:
                      for file, objects in program.uses.items()}
 
     def baseline(self, program, jobs):
-        """{test: seconds of the processor}, of those that pass on the build without faults."""
+        """{test: seconds of the processor}, of those that pass on the build without faults in time."""
         kept, seconds = WORK / "baseline.json", {}
         key = coverage.digest_of(coverage.sources())
         if kept.exists() and (old := json.loads(kept.read_text()))["key"] == key:
@@ -141,7 +141,7 @@ class Tests:
         def measure(test):
             name = f"{test} {coverage.digest_of([ROOT / test])}"
             if name not in seconds:
-                status, used = run_test(test, program.build, program.build / "sphfsi", 120)
+                status, used = run_test(test, program.build, program.build / "sphfsi", 2 * LONGEST)
                 with LOCK:
                     seconds[name] = used if status == 0 else None
                     kept.write_text(json.dumps({"key": key, "seconds": seconds}))
@@ -394,7 +394,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--files", default="src", help="folder or file of src/")
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long, and write the report")
-    parser.add_argument("--seconds", type=float, default=40, help="of the processor, for one fault's tests")
+    parser.add_argument("--seconds", type=float, default=8, help="of the processor, for one fault's tests")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
     parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")

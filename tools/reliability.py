@@ -119,20 +119,32 @@ def check(command, version):
     return result.returncode != 0
 
 
+def failed(status):
+    """A run of a fuzzer that found what no commit has mended."""
+    return status != "0" and "/" not in status
+
+
+def mended(status):
+    return status.split("/")[1:]
+
+
 def fuzz_rows():
     total, rows = 0, {}
     for line in COUNTS.read_text().splitlines() if COUNTS.exists() else []:
         if line.startswith("#"):
             continue
         target, count, seconds, status, version, compiler, _ = line.split()
-        row = rows.setdefault(target, [0, 0, 0, set(), compiler])
+        row = rows.setdefault(target, [0, 0, 0, set(), []])
         row[0] += int(count)
         row[1] += int(seconds)
-        row[2] += status != "0"
+        row[2] += failed(status)
+        row[4] += mended(status)
         row[3].add(version)
         total += int(count)
-    for target, (count, seconds, bad, versions, compiler) in sorted(rows.items()):
+    for target, (count, seconds, bad, versions, found) in sorted(rows.items()):
         outcome = "no crash, hang, leak or report" if not bad else f"{bad} RUNS FAILED"
+        if found:
+            outcome = f"{len(found)} finding, mended by {', '.join(found)}; else {outcome}"
         yield (f"| {FUZZED.get(target, target)} | {count:,} | {seconds} | {outcome} | "
                f"{', '.join(sorted(versions))} |")
     yield f"| all | {total:,} | | | |"
@@ -158,14 +170,16 @@ def summary(records):
                                       state([command for _, command in CHECKED]))
     lines = [line.split() for line in COUNTS.read_text().splitlines() if not line.startswith("#")] \
         if COUNTS.exists() else []
-    bad = sum(line[3] != "0" for line in lines)
+    bad = sum(failed(line[3]) for line in lines)
+    found = [commit for line in lines for commit in mended(line[3])]
     scenes = random_cases()
     wrong = len(scenes.get("failures", ()))
     lost = bad + wrong + (tests - good)
     said = (f"**What was lost: {'nothing' if not lost else f'something in {lost} of these trials'}.** "
             f"Tried were kills, full disks, failing calls, damaged files and bad input: {good} of {tests} "
             f"fault tests passed. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
-            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}. ")
+            f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}"
+            f"{f' but {len(found)}, which {chr(44).join(found)} mended' if found else ''}. ")
     if scenes:
         said += (f"{scenes['cases']:,} random scenes ran in {len(scenes['builds'])} builds, were killed "
                  f"{scenes['kills']:,} times, restarted and forked: "
