@@ -13,6 +13,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from stability_map import statics
+
 ROOT = Path(__file__).resolve().parents[1]
 TERMS = ("fluid", "dissipation", "interface", "solid", "boundaries")
 THIN = "tests/stability/thin.cfg"
@@ -96,10 +98,13 @@ def default_cfl(case):
 
 
 def grid_lines(program):
-    stopped, above, where, worst = 0, 0, [], {}
+    stopped, above, where, worst, left_out = 0, 0, [], {}, 0
     cases = list(itertools.product((20, 50, 100, 300, 1000, 2000, 5000, 10000), (2, 3, 5, 8),
                                    (0.05, 1, 50), ("leapfrog", "verlet")))
     for density, across, stiffness, integrator in cases:
+        if statics(density / 1000, across, 2, stiffness * 0.02 * 2e9 / across**3):
+            left_out += 1
+            continue
         status, summary = run(program, THIN, (
             f"plate.density={density}", f"across={across}", f"E={stiffness}*0.02*2e9/across^3",
             f"integrator={integrator}", "right=0.05", "end_time=0.1"))
@@ -117,8 +122,13 @@ def grid_lines(program):
     middle = {name: sorted(worst[name])[len(worst[name]) // 2] for name in TERMS}
     typical = ", ".join(f"{name} {percent(middle[name])} %, at most {percent(max(worst[name]))} %"
                         for name in TERMS)
-    return [f"Of {len(cases)} plates {stopped} were stopped, and {above} gained more than 1 % of the",
-            "available energy by a term of the account.", "",
+    return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they bend by more than a tenth of",
+            "their length, buckle or are crushed (`statics` in `tools/stability_map.py`). Under such strains the law",
+            "`paper` gains energy, because it has no potential; `svk` and `neo_hookean` have one.", "",
+            f"Of the other {len(cases) - left_out} plates {stopped} were stopped, and {above} gained more than 1 % of "
+            "the energy available",
+            "until then by a term of the account. The largest gain over the largest available energy of the run:",
+            "",
             f"Median and largest gain by term: {typical}.", "",
             "Those above 1 %:", "", *(f"- {text}" for text in where)]
 

@@ -272,14 +272,23 @@ enum err guards_check(struct simulation *s, struct diag *d)
  * fraction. */
 #define GAIN_LIMIT 0.9
 
+/* Whether a solid has the paper's law, which gains energy under large strains at any step. */
+static bool lacks_potential(const struct simulation *s)
+{
+    bool paper = false;
+    for (int k = 0; k < s->scene->n_solid; k++) paper |= s->scene->solid[k].law == LAW_PAPER;
+    return paper;
+}
+
 /* What makes the steps of a run smaller, and what else may help if the run gains energy. */
 static const char *step_key(const struct simulation *s)
 {
     if (s->scene->numerics.fixed_step > 0) return "fixed_step";
     return s->effects & FX_FLUID ? "cfl" : "solid_safety";
 }
-static const char *step_remedy(const struct simulation *s)
+static const char *remedy_of(const struct simulation *s, const struct gain *g)
 {
+    if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
     return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
@@ -295,7 +304,7 @@ static const char *most_of(const struct gain *g)
 }
 
 /* Where it comes from. */
-static const char *source_of(const struct gain *g)
+static const char *source_of(const struct simulation *s, const struct gain *g)
 {
     static const char *const names[ACCOUNT_TERMS] = {
         [TERM_FLUID] = "the fluid's time integration",
@@ -304,6 +313,8 @@ static const char *source_of(const struct gain *g)
         [TERM_SOLID] = "the solid's stress or time integration",
         [TERM_ALL] = "the boundaries of the fluid",
     };
+    if (g->term == TERM_SOLID && lacks_potential(s))
+        return "the solid's time integration or its stress, whose law paper has no potential";
     return names[g->term];
 }
 
@@ -316,7 +327,7 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
         snprintf(text, 400,
                  "t = %.6g s: %s has gained %.3g J/m of energy that nothing supplied (available: "
                  "%.3g J/m), in %s. Most of its energy is in %s",
-                 s->state.time, name, g->energy, g->available, source_of(g), most_of(g));
+                 s->state.time, name, g->energy, g->available, source_of(s, g), most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
@@ -341,11 +352,11 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
         return diag_fail(d, ERR_GUARD, "%s. The run is unstable; a smaller %s%s may help", text,
-                         step_key(s), step_remedy(s));
+                         step_key(s), remedy_of(s, &g));
     if (s->guard.warned_energy) return ERR_OK;
     s->guard.warned_energy = true;
     diag_warn(d, "%s. The results may be invalid; a smaller %s%s may help", text, step_key(s),
-              step_remedy(s));
+              remedy_of(s, &g));
     return ERR_OK;
 }
 
