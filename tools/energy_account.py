@@ -122,12 +122,13 @@ def grid_lines(program):
     middle = {name: sorted(worst[name])[len(worst[name]) // 2] for name in TERMS}
     typical = ", ".join(f"{name} {percent(middle[name])} %, at most {percent(max(worst[name]))} %"
                         for name in TERMS)
-    return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they bend by more than a tenth of",
-            "their length, buckle or are crushed (`statics` in `tools/stability_map.py`). Under such strains the law",
-            "`paper` gains energy, because it has no potential; `svk` and `neo_hookean` have one.", "",
-            f"Of the other {len(cases) - left_out} plates {stopped} were stopped, and {above} gained more than 1 % of "
-            "the energy available",
-            "until then by a term of the account. The largest gain over the largest available energy of the run:",
+    return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they bend by more",
+            "than a tenth of their length, buckle or are crushed (`statics` in `tools/stability_map.py`).",
+            "Under such strains the law `paper` gains energy, because it has no potential; `svk` and",
+            "`neo_hookean` have one.", "",
+            f"Of the other {len(cases) - left_out} plates {stopped} were stopped, and {above} gained more",
+            "than 1 % of the energy available until then by a term of the account. The largest gain over the",
+            "largest available energy of the run:",
             "",
             f"Median and largest gain by term: {typical}.", "",
             "Those above 1 %:", "", *(f"- {text}" for text in where)]

@@ -184,11 +184,12 @@ def report(rows):
     reasons = {name: sum(row["result"] == name for row in rows)
                for name in ("bends", "buckles", "is crushed")}
     text = (f"![Stability map](img/stability_map.png)\n\n{drawn}"
-            f"Of {ran} plates **{verdicts.count('stopped')} were stopped, and {len(gains)} gained more "
-            f"than {100 * LIMIT:g} %** of the largest\nenergy in play by the account (theory.md, T-46): kinetic, "
-            "elastic, compression, and potential\nenergy above its minimum. "
-            f"{early} more gained {100 * LIMIT:g} % of what was in play until then, at the start of the\nrun, "
-            "where a sudden load moves a light plate and little energy is in play.\n")
+            f"Of {ran} plates **{verdicts.count('stopped')} were stopped, and {len(gains)} gained "
+            f"more than {100 * LIMIT:g} %** of the largest\nenergy in play by the account (theory.md, T-46): "
+            "kinetic, elastic, compression, and potential\nenergy above its minimum. "
+            f"{early} more gained {100 * LIMIT:g} % of what was in play until then, "
+            "at the start of the\nrun, where a sudden load moves a light plate "
+            "and little energy is in play.\n")
     if gains:
         text += ("\n| density | across | wet sides | integrator | scheme | sub-steps | gain | term |\n"
                  "|---|---|---|---|---|---|---|---|\n")
@@ -204,7 +205,8 @@ def report(rows):
         f"Each plate is `tests/stability/thin.cfg` over {END:g} s with {HEIGHT:g} m of water on one side,\n"
         f"and none or {RIGHT[2]:g} m on the other. "
         "A cell has the three integrators from left to right,\nscheme `paper` below and `standard` above.\n"
-        f"Programs: {', '.join(versions)}; a result is of the first one, unless its step has changed since.\n")
+        f"Programs: {', '.join(versions)}; "
+        "a result is of the first one, unless its step has changed since.\n")
 
 
 def draw(rows):
