@@ -151,6 +151,36 @@ static void test_fluid_keeps_a_layer(void)
     }
 }
 
+/* Bodies that begin nearer than a layer keep none, and a body has none to itself; a gap that is given
+ * stays. */
+static void test_no_layer_where_bodies_begin_near(void)
+{
+    static const char near[] =
+        "dp = 1 cm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.03, 0.14, 0\n"
+        "[wall lid]\nshape = box -0.1, 0.2, 0.14, 0.23\n"
+        "[solid a]\nshape = box 0, 0.005, 0.04, 0.1\ndensity = 1000\nyoung = 1e6\npoisson = 0.3\n"
+        "dp = 5 mm\n[fluid w]\nshape = box 0.06, 0, 0.1, 0.04\nsound_speed = 10\n";
+    static const struct {
+        const char *contact;
+        double itself, floor, lid;
+    } row[] = {
+        {"", 0, 0, 0.01},
+        {"[contact c]\ngap = 0.002\n", 0.002, 0.002, 0.002},
+        {"[contact c]\nbetween = a, floor\ngap = 0.003\n[contact d]\nbetween = a, lid\n", -1, 0.003,
+         0.01},
+    };
+    char text[1024];
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        snprintf(text, sizeof text, "%s%s", near, row[k].contact);
+        rig_open(&rig, text, "scheme=standard", NULL);
+        const struct contact_law *const law = rig.sim.contact.law;
+        if (row[k].itself >= 0)
+            assert_near(1e-12, 0.005 + row[k].itself, law[0].reach, row[k].contact);
+        assert_near(1e-12, 0.0075 + row[k].floor, law[1].reach, row[k].contact);
+        assert_near(1e-12, 0.0075 + row[k].lid, law[2].reach, row[k].contact);
+    }
+}
+
 /* A post clamped in a floor does not touch the floor that holds it, however it bends there, until a
  * part of it
  * comes down that began further away than the kernel. */
@@ -439,6 +469,7 @@ int main(void)
     RUN_TEST(test_a_gap_by_hand);
     RUN_TEST(test_a_gap_spares_what_began_within);
     RUN_TEST(test_fluid_keeps_a_layer);
+    RUN_TEST(test_no_layer_where_bodies_begin_near);
     RUN_TEST(test_what_a_clamp_holds_does_not_touch);
     RUN_TEST(test_a_body_touches_itself);
     RUN_TEST(test_collision);

@@ -322,8 +322,9 @@ static void test_what_may_help_is_said(void)
     static const char fixed[] = "numerics.fixed_step=1e-4", small[] = "numerics.fixed_step=1e-5";
     advises(water, "; a smaller cfl may help", NULL, NULL);
     advises(water, "; a smaller fixed_step may help", fixed, NULL);
-    advises(bar, "; a smaller solid_safety may help", NULL, NULL);
-    advises(bar, "; a smaller fixed_step may help", small, NULL);
+    advises(bar, "; a smaller solid_safety, or law = neo_hookean or svk, may help", NULL, NULL);
+    advises(bar, "; a smaller fixed_step, or law = neo_hookean or svk, may help", small, NULL);
+    advises(bar, "; a smaller solid_safety may help", "bar.law=svk", NULL);
     advises(scene, "; a smaller cfl or numerics.multirate = off may help", "gate.young=1e8", NULL);
     advises(scene, "; a smaller cfl or solid_safety may help", "numerics.multirate=off", NULL);
     advises(scene, "; a smaller fixed_step may help", "gate.young=1e8", fixed);
