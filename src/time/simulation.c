@@ -312,7 +312,8 @@ static enum err build(struct simulation *s, struct diag *d)
     find_speed(s);
     if (s->effects & FX_FLUID) TRY(sort_particles(s, d));
     simulation_begin_account(s);
-    open_forget(&s->open); /* particles created in the buffers belong to the start */
+    open_forget(&s->open); /* particles and velocities of the buffers belong to the start */
+    book_open(s);
     s->state.det_low = 1;
     s->evaluated = false; /* the caller may add to the scene before the first step */
     return ERR_OK;

@@ -58,6 +58,18 @@ static void test_mass_and_momentum_are_booked(void)
     assert_near(size, brought(OPEN_MOMENTUM_Y), end.momentum_y - start.momentum_y, "momentum y");
 }
 
+/* Buffers have the given velocity at the start, before the first step. What they then have is no gain,
+ * although the fluid beside them rests. */
+static void test_a_sudden_inflow_is_no_gain(void)
+{
+    rig_open(&rig, TOP WATER PLATES LEFT "speed = 1\n" RIGHT "pressure = 0\n", NULL);
+    const double start = simulation_ledger(&rig.sim).kinetic;
+    TEST_ASSERT_TRUE(start > 50);
+    rig_run(&rig, 0.05);
+    const struct account *const a = &rig.sim.state.account;
+    for (int t = 0; t < ACCOUNT_TERMS; t++) TEST_ASSERT_TRUE(a->most[t] < 0.05 * start);
+}
+
 /* Between plates that do not hold it an inviscid stream goes on as it is, and needs no work. */
 static void test_a_uniform_stream_passes(void)
 {
@@ -275,6 +287,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_mass_and_momentum_are_booked);
+    RUN_TEST(test_a_sudden_inflow_is_no_gain);
     RUN_TEST(test_a_uniform_stream_passes);
     RUN_TEST(test_any_angle);
     RUN_TEST(test_a_flow_that_reverses);
