@@ -418,11 +418,12 @@ struct gain account_gain(struct simulation *s)
 
 /* --- names in messages --- */
 
-void account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT])
+int account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT])
 {
     static const char *const words[KIND_COUNT] = {"fluid", "wall", "solid"};
     static const enum kind order[] = {KIND_SOLID, KIND_FLUID, KIND_WALL};
     size_t used = 0;
+    int names = 0;
     text[0] = '\0';
     for (int o = 0; o < KIND_COUNT; o++)
         for (int k = 0; k < sections(s, order[o]); k++) {
@@ -434,7 +435,9 @@ void account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT]
                 continue;
             used += (size_t)snprintf(text + used, ACCOUNT_TEXT - used, "%s[%s %s]",
                                      used ? ", " : "", words[order[o]], name);
+            names++;
         }
+    return names;
 }
 
 bool account_fastest(const struct simulation *s, int entry, double at[2])

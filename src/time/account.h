@@ -32,9 +32,9 @@ void account_touch(struct simulation *s);
  * none. */
 struct gain account_gain(struct simulation *s);
 
-/* Writes the names of a region's sections, "[solid plate], [fluid left]". */
+/* Writes the names of a region's sections, "[solid plate], [fluid left]"; returns their number. */
 enum { ACCOUNT_TEXT = 160 };
-void account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT]);
+int account_name(const struct simulation *s, int entry, char text[ACCOUNT_TEXT]);
 
 /* The fastest particle of a region; false if none moves. */
 bool account_fastest(const struct simulation *s, int entry, double at[2]);

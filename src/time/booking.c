@@ -17,14 +17,20 @@ struct power {
  * any number of threads. */
 enum { ABREAST = 8, SLICES = 16 };
 
+/* P/rho^2 rho0: the rate at which the energy of compression changes with the density. `stiff`: c0^2/7. */
+SPHFSI_INLINE double compression_rate(double d, double stiff)
+{
+    const double s = 1 + d;
+    return stiff * eos_power(d) / (s * s);
+}
+
 /* The rate at which T-6 and T-7 change kinetic, potential and compression energy of a particle,
- * over its mass. `stiff`: c0^2/7. */
+ * over its mass. */
 SPHFSI_INLINE double rate_of(const struct particles *p, int64_t i, double stiff, double gx,
                              double gy)
 {
-    const double d = p->dens[i], s = 1 + d;
     return p->vx[i] * (p->ax[i] - gx) + p->vy[i] * (p->ay[i] - gy) +
-           stiff * eos_power(d) / (s * s) * p->ddens[i];
+           compression_rate(p->dens[i], stiff) * p->ddens[i];
 }
 
 /* Acceleration from outside: of a program, and gravity beyond its value at t = 0. */
@@ -251,4 +257,19 @@ void book_change(struct simulation *s, const struct fluid_energy *before)
         s->state.account.put[entry] += change;
         s->state.account.spent[entry] += change;
     }
+}
+
+/* The rates of the last step have changed the density over the whole step, and half of this is still to be
+ * counted. That half will have no pressure: its work is counted here. */
+void book_reset(struct simulation *s, int64_t i)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    struct account *const a = &s->state.account;
+    const double c0 = s->fluid.k.c0, d = p->dens[i];
+    const double rate = p->ddens_old ? p->ddens_old[i] : p->ddens[i];
+    const double half = a->pending * rate * compression_rate(d, square(c0) / EOS_GAMMA);
+    const double loss = (p->m ? p->m[i] : 1) * s->fluid.k.mass * (eos_energy(d, c0) - half);
+    const int entry = account_entry(KIND_FLUID, p->body[i]);
+    a->put[entry] -= loss;
+    a->spent[entry] -= loss;
 }

@@ -31,6 +31,9 @@ struct fluid_energy {
 struct fluid_energy book_before(const struct simulation *s);
 void book_change(struct simulation *s, const struct fluid_energy *before);
 
+/* The density of a fluid particle is about to be set to zero: its energy of compression is spent. */
+void book_reset(struct simulation *s, int64_t i);
+
 /* Open boundaries: after open_book. */
 void book_open(struct simulation *s);
 

@@ -322,12 +322,13 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
 {
     char name[ACCOUNT_TEXT];
     double at[2];
-    account_name(s, g->entry, name);
+    const bool one = account_name(s, g->entry, name) == 1;
     const int used =
         snprintf(text, 400,
-                 "t = %.6g s: %s has gained %.3g J/m of energy that nothing supplied (available: "
-                 "%.3g J/m), in %s. Most of its energy is in %s",
-                 s->state.time, name, g->energy, g->available, source_of(s, g), most_of(g));
+                 "t = %.6g s: %s %s gained %.3g J/m of energy that nothing supplied (available: "
+                 "%.3g J/m), in %s. Most of %s energy is in %s",
+                 s->state.time, name, one ? "has" : "have", g->energy, g->available,
+                 source_of(s, g), one ? "its" : "their", most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }

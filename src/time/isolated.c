@@ -17,17 +17,13 @@ void limit_isolated_tension(struct simulation *s)
     /* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */
     const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;
     const int most = (int)(PI / 3 * reach * reach);
-    const struct fluid_energy before = book_before(s);
-    int64_t found = 0;
-#pragma omp parallel for schedule(static) reduction(+ : found)
     for (int64_t i = 0; i < p->n; i++) {
         if (!(p->dens[i] < lowest) || simulation_near(s, p->x[i], p->y[i]) > most) continue;
+        book_reset(s, i);
         p->dens[i] = 0;
         if (p->dens_slow) p->dens_slow[i] = 0;
         if (p->dens_old) p->dens_old[i] = 0;
         if (p->ddens_old) p->ddens_old[i] = p->ddens_older[i] = 0;
-        found++;
+        s->state.tension_limited++;
     }
-    s->state.tension_limited += found;
-    if (found) book_change(s, &before);
 }
