@@ -94,12 +94,35 @@ double simulation_pressure_at(const struct simulation *s, double x, double y)
     return simulation_sample(s, x, y).pressure;
 }
 
-/* The water's volume fraction of the space outside walls and structures, minus one half: positive
- * in the water, negative outside, zero on the surface. */
+/* The water's volume fraction of the space outside walls and structures. */
 static double wetness(const struct simulation *s, double x, double y)
 {
     const struct sample at = simulation_sample(s, x, y);
-    return at.fill - 0.5 * max2(1 - at.occupied, 0.05);
+    return at.fill / max2(1 - at.occupied, 0.05);
+}
+
+/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above has the
+ * volume of that within reach. Unlike the height of half wetness it does not move when rows near the
+ * surface do, while their mean height stays. `y` is the last wet height below the surface. */
+static double dividing_surface(const struct simulation *s, double x, double y, double step)
+{
+    const int reach = (int)(KERNEL_REACH * s->fluid.k.h / step);
+    const double at_y = wetness(s, x, y);
+    double level = y, before = at_y;
+    for (int k = 1; k <= reach; k++) {
+        const double now = wetness(s, x, y + k * step);
+        if (now > 0.5) break; /* other water above */
+        level += 0.5 * (before + now) * step;
+        before = now;
+    }
+    before = at_y;
+    for (int k = 1; k <= reach; k++) {
+        const double now = wetness(s, x, y - k * step);
+        if (now <= 0.5) break; /* below a thin layer */
+        level -= (1 - 0.5 * (before + now)) * step;
+        before = now;
+    }
+    return level;
 }
 
 double simulation_level(const struct simulation *s, double x, double y)
@@ -107,13 +130,11 @@ double simulation_level(const struct simulation *s, double x, double y)
     const double step = 0.25 * s->scene->top.dp,
                  top = s->cells.lower[1] + s->cells.ny * s->cells.side[1];
     const int reach = (int)(KERNEL_REACH * s->fluid.k.h / step), most = (int)((top - y) / step) + 1;
-    double before = wetness(s, x, y);
-    bool wet = before > 0;
+    bool wet = wetness(s, x, y) > 0.5;
     for (int k = 1; k <= most && (wet || k <= reach); k++) {
-        const double now = wetness(s, x, y + k * step);
-        if (wet && now <= 0) return y + (k - 1 + before / (before - now)) * step;
-        wet = now > 0;
-        before = now;
+        const bool now = wetness(s, x, y + k * step) > 0.5;
+        if (wet && !now) return dividing_surface(s, x, y + (k - 1) * step, step);
+        wet = now;
     }
     return wet ? top : y;
 }

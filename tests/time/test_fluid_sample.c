@@ -69,6 +69,29 @@ static void test_anywhere(void)
     }
 }
 
+/* The volume of the water decides its level, not the heights of single rows; also where it is shallow, and
+ * beside a wall. */
+static void test_level_of_volume(void)
+{
+    open_at(0, 0);
+    const struct simulation *const s = &rig.sim;
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const double dp = s->scene->top.dp;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->y[i] > 0.2 - dp)
+            p->y[i] -= 0.15 * dp;
+        else if (p->y[i] > 0.2 - 2 * dp)
+            p->y[i] += 0.15 * dp;
+    }
+    const double along[] = {0.2, 0.2031, 0.25, 0.0, 0.012};
+    for (size_t k = 0; k < COUNT_OF(along); k++)
+        assert_near(0.03 * dp, 0.2, simulation_level(s, along[k], 0.05), "level over two rows");
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->y[i] > 3 * dp) p->y[i] = 9;
+    for (size_t k = 0; k < COUNT_OF(along); k++)
+        assert_near(0.03 * dp, 3 * dp, simulation_level(s, along[k], dp), "level of a layer");
+}
+
 /* Water without a surface in both directions: nothing differs at the sides. */
 static void test_across_periodic_sides(void)
 {
@@ -91,6 +114,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_anywhere);
+    RUN_TEST(test_level_of_volume);
     RUN_TEST(test_across_periodic_sides);
     return UNITY_END();
 }
