@@ -155,8 +155,8 @@ def report(scenes):
              "Written by `make verify-fluid`; do not edit. " + ", ".join(versions) + ". One thread. The "
              "scenes are those of `cases/verify`, shipped cases and templates, with `scheme = paper` and "
              "`standard`. `tools/verify_fluid_measures.py` says how each figure is taken. One in brackets "
-             "misses its limit; *stopped* is a run that a guard stopped. No curve of the later peaks of a "
-             "measured impact is at hand, so these are not judged.", "",
+             "misses its limit; *stopped* is a run that a guard stopped, or a wave without a period. No "
+             "curve of the later peaks of a measured impact is at hand, so these are not judged.", "",
              "| scene | figure | limit | paper | standard |", "|---|---|---|---|---|"]
     for r in rows:
         cells = ["" if s not in r else number(r[s]) if r[s + "_kept"] else f"({number(r[s])})"

@@ -122,27 +122,33 @@ REST = [("L2 error of the pressure, % of rho g H", 1), ("its change from 50 to 1
 # --- waves ---
 def wave_of(judged):
     """Limits apply where the measured wave is resolved as the aim says."""
+    def waves(frequency, loss):
+        return [("frequency, % too high", frequency, 1 if "frequency" in judged else None),
+                ("loss of amplitude a period, %", loss, 2 if "loss" in judged else None)]
+
     def measure(run):
-        """The kinetic energy is greatest twice a period: parabolas through its maxima give both."""
+        """The kinetic energy is greatest twice a period: parabolas through its maxima give both. Each is
+        sought half a period after the one before it; where one is missing there is no period."""
         H, k = 0.3, 2 * math.pi / 0.9
         period = 2 * math.pi / math.sqrt(G * k * math.tanh(k * H))
+        within = 0.17 * period
         ledger = run.table("ledger.csv")
         t, kinetic = ledger["time_s"], ledger["kinetic_J_per_m"]
         at, top = [0.0], [kinetic[0]]
-        while True:
-            guess = at[-1] + (at[-1] - at[-2] if len(at) > 1 else period / 2)
-            if guess + 0.17 * period > t[-1]:
-                break
-            near = abs(t - guess) < 0.17 * period
+        while (guess := at[-1] + period / 2) + within <= t[-1]:
+            near = abs(t - guess) < within
             c = np.polyfit(t[near] - guess, kinetic[near], 2)
-            at.append(guess - c[1] / (2 * c[0]))
-            top.append(np.polyval(c, -c[1] / (2 * c[0])))
+            later = -c[1] / (2 * c[0])
+            if not (c[0] < 0 and abs(later) < within):
+                return waves(math.nan, math.nan)
+            at.append(guess + later)
+            top.append(np.polyval(c, later))
+        if len(at) < 4:
+            return waves(math.nan, math.nan)
         n = np.arange(2, len(at))
         found = 2 * np.polyfit(n, at[2:], 1)[0]
         decay = np.polyfit(n / 2, np.log(top[2:]), 1)[0] / 2
-        return [("frequency, % too high", 100 * (period / found - 1), 1 if "frequency" in judged else None),
-                ("loss of amplitude a period, %", 100 * (1 - math.exp(decay)),
-                 2 if "loss" in judged else None)]
+        return waves(100 * (period / found - 1), 100 * (1 - math.exp(decay)))
     return measure
 
 
