@@ -429,8 +429,7 @@ static void drop_layers(struct contact *c)
     list_beginnings(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int a = c->body[c->pair_point[k]], b = c->body[c->edge[c->pair_edge[k]].a];
-        const struct scene_contact *const from =
-            scene_contact_of(c->scene, a < b ? a : b, a < b ? b : a);
+        const struct scene_contact *const from = scene_contact_of(c->scene, a, b);
         struct contact_law *const law = &c->law[a * n + b];
         law->reach = c->law[b * n + a].reach = law->spacing + from->gap;
     }

@@ -181,8 +181,8 @@ static void test_no_layer_where_bodies_begin_near(void)
     }
 }
 
-/* Two bodies that begin near each other keep the gap of their own section. */
-static void test_the_gap_of_two_bodies_that_begin_near(void)
+/* Bodies that begin near each other keep the gap of the section of the two. */
+static void test_the_gap_of_bodies_that_begin_near(void)
 {
     static const char text[] =
         "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.04, 0.1\ndensity = 1000\n"
@@ -190,13 +190,17 @@ static void test_the_gap_of_two_bodies_that_begin_near(void)
         "[fluid w]\nshape = box 0.2, 0, 0.3, 0.04\nsound_speed = 10\n"
         "[contact of_a]\nbetween = a, a\ngap = 0.002\n"
         "[contact of_b]\nbetween = b, b\ngap = 0.004\n"
-        "[contact of_both]\nbetween = a, b\ngap = 0.003\n";
+        "[contact of_both]\nbetween = a, b\ngap = 0.003\n"
+        "[solid c]\nlike = a\nshape = box 0.1, 0, 0.14, 0.1\n"
+        "[contact of_last]\nbetween = c, b\ngap = 0.02\n";
     rig_open(&rig, text, "scheme=standard", NULL);
     const struct contact_law *const law = rig.sim.contact.law;
     assert_near(1e-12, 0.012, law[0].reach, "a with itself");
     assert_near(1e-12, 0.013, law[1].reach, "a with b");
-    assert_near(1e-12, 0.013, law[2].reach, "b with a");
-    assert_near(1e-12, 0.014, law[3].reach, "b with itself");
+    assert_near(1e-12, 0.013, law[3].reach, "b with a");
+    assert_near(1e-12, 0.014, law[4].reach, "b with itself");
+    assert_near(1e-12, 0.03, law[5].reach, "b with c");
+    assert_near(1e-12, 0.03, law[7].reach, "c with b");
 }
 
 /* A post clamped in a floor does not touch the floor that holds it, however it bends there, until a
@@ -488,7 +492,7 @@ int main(void)
     RUN_TEST(test_a_gap_spares_what_began_within);
     RUN_TEST(test_fluid_keeps_a_layer);
     RUN_TEST(test_no_layer_where_bodies_begin_near);
-    RUN_TEST(test_the_gap_of_two_bodies_that_begin_near);
+    RUN_TEST(test_the_gap_of_bodies_that_begin_near);
     RUN_TEST(test_what_a_clamp_holds_does_not_touch);
     RUN_TEST(test_a_body_touches_itself);
     RUN_TEST(test_collision);

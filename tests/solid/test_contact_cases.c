@@ -211,6 +211,28 @@ static void test_nothing_passes_three_particles(void)
     }
 }
 
+/* A plate of one particle has no inside: a block comes to it from either side, bounces, and no point counts
+ * as having passed the surface. */
+static void test_a_plate_of_one_particle(void)
+{
+    static const char *const starts[] = {"y0=0.01", "y0=-0.035"};
+    for (int k = 0; k < 2; k++) {
+        RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[constants]\ny0 = 0\n[wall plate]\n"
+                       "shape = box -0.1, -0.005, 0.1, 0\n[solid block]\n"
+                       "shape = box 0.0025, y0, 0.0225, y0 + 0.02\ndensity = 1000\nyoung = 1 MPa\n"
+                       "poisson = 0.3\n",
+                       starts[k], k == 0 ? "block.velocity=0, -1" : "block.velocity=0, 1");
+        double deepest = 0;
+        for (int row = 1; row <= 200; row++) {
+            rig_run(&rig, row * 1e-4);
+            deepest = fmax(deepest, rig.sim.contact.deepest.overlap);
+        }
+        assert_at_most(-0.01, -deepest, "touched");
+        assert_at_most(0.5, deepest, "depth");
+        TEST_ASSERT_TRUE(mean(0, p->vy) * (k == 0 ? 1 : -1) > 0.5);
+    }
+}
+
 /* Strips of three particles meet corner on corner. */
 static void test_corner_on_corner(void)
 {
@@ -333,6 +355,7 @@ int main(void)
     RUN_TEST(test_stack_at_rest);
     RUN_TEST(test_nothing_passes);
     RUN_TEST(test_nothing_passes_three_particles);
+    RUN_TEST(test_a_plate_of_one_particle);
     RUN_TEST(test_corner_on_corner);
     RUN_TEST(test_wall_on_a_beam);
     RUN_TEST(test_wall_into_a_clamp);

@@ -164,10 +164,15 @@ static void test_number_is_held(void)
     rig.sim.solid.damping_max = 0;
     st->time += 1e6;
     TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
-    /* From 6 to 3 at 0.9: root^2 = (1.9 * 0.55)/(0.1 * 1.45), root - 1/root = 2.312. */
+    /* As long as six are needed, the time of the viscosity has not begun. */
     rig.sim.solid.damping_max = 2 / limit;
-    st->time = st->substeps_needed + 2.31 * limit;
+    rig.sim.dt_solid = limit / 6;
+    st->time += 1e6;
     TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
+    rig.sim.dt_solid = limit / 2.5;
+    st->time += 2.31 * limit;
+    TEST_ASSERT_EQUAL_INT(6, timestep_substeps(&rig.sim, limit));
+    /* From 6 to 3 at 0.9: root^2 = (1.9 * 0.55)/(0.1 * 1.45), root - 1/root = 2.312. */
     st->time = st->substeps_needed + 2.32 * limit;
     TEST_ASSERT_EQUAL_INT(3, timestep_substeps(&rig.sim, limit));
     rig.sim.dt_solid = limit;
