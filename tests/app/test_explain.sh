@@ -16,6 +16,12 @@ give() {
         print "" }' "$dir/cache/sphfsi/costs" >"$dir/new" && cp "$dir/new" "$dir/cache/sphfsi/costs"
 }
 
+# The file of snapshots is as large as its points.
+size="\([0-9]*\) snapshots of \([0-9]*\) points of \([0-9]*\) bytes: \([^ ]*\) MB"
+sed -n "s/^  fields.vtkhdf: $size.*/\1 \2 \3 \4/p" "$dir/said" |
+    awk '{ found = 1; off = 1e-6 * $1 * $2 * $3 / $4 - 1 }
+         END { exit !(found && off * off < 3e-5) }' || fail "size of the snapshots"
+
 # Steps, and an evaluation for each row of the ledger, of all particles.
 for row in "1e-6 s 1" "2e-4 min 60" "0.2 h 3600"; do
     read -r cost unit of <<<"$row"

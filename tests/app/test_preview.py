@@ -163,8 +163,8 @@ def check(picture):
     place = {t.text: picture.metres(t.get("x"), t.get("y"))
              for t in picture.texts() if t.get("class") == "label"}
     assert 0 < place["water"][0] < 0.2 and 0 < place["water"][1] < 0.1
-    assert 0.2 < place["post"][0] < 0.27 and -0.04 < place["post"][1] < 0.15
-    assert 0.1 < place["lid"][0] < 0.2 and 0.29 < place["lid"][1] < 0.35
+    assert 0.2 < place["post"][0] < 0.27 and abs(place["post"][1] - 0.055) < 0.015, place
+    assert 0.14 < place["lid"][0] < 0.2 and abs(place["lid"][1] - 0.32) < 0.015, place
     height, width = float(picture.root.get("height")), float(picture.root.get("width"))
     assert all(0 <= float(t.get("x")) <= width and 0 <= float(t.get("y")) <= height for t in picture.texts())
 

@@ -99,6 +99,14 @@ static void test_values_that_do_not_fit_together(void)
     for (size_t k = 0; k < COUNT_OF(row); k++) refuses(row[k].text, row[k].message);
 }
 
+/* Up to the end and no longer. */
+static void test_gravity_at_the_end(void)
+{
+    refuses("dp = 1 mm\nend_time = 1\ngravity = 0, 1/(1 - t)\n" WATER,
+            "component 2 is not finite at t = 1 s");
+    takes("dp = 1 mm\nend_time = 1\ngravity = 0, 1/(1.001 - t)\n" WATER);
+}
+
 static void test_shifting_that_goes_wrong_is_warned_of(void)
 {
     takes(TOP "gravity = 0, -9.81\nscheme = paper\n" WATER
@@ -285,6 +293,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_values_that_do_not_fit_together);
+    RUN_TEST(test_gravity_at_the_end);
     RUN_TEST(test_shifting_that_goes_wrong_is_warned_of);
     RUN_TEST(test_area_of_a_polygon);
     RUN_TEST(test_depth_of_constants);

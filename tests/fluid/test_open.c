@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Open boundaries: what comes in and goes is counted, streams pass at any angle and in either
  * direction, sound leaves, and what makes no sense is refused. */
+#include "geometry/load.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -36,26 +37,34 @@ static int64_t made_less_ended(void)
     return n;
 }
 
-/* A jet without walls: whatever momentum it has got came through its ends, to round-off, and so did its
- * particles; the predictor-corrector keeps the momentum of all forces within the fluid. */
+/* A jet without walls, to the right or up: whatever momentum it has got came through its ends, to round-off,
+ * and so did its particles; the predictor-corrector keeps the momentum of all forces within the fluid. */
 static void test_mass_and_momentum_are_booked(void)
 {
-    rig_open(&rig,
-             TOP WATER "velocity = 1, 0\n" LEFT "speed = 1 + 0.2*sin(9*t)\n" RIGHT
-                       "pressure = 300*sin(7*t)\n",
-             "integrator=symplectic", "precision=double", NULL);
-    const struct ledger start = simulation_ledger(&rig.sim);
-    const int64_t n = rig.sim.kind[KIND_FLUID].n;
-    rig_run(&rig, 0.6);
-    const struct ledger end = simulation_ledger(&rig.sim);
-    TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 60);
-    TEST_ASSERT_TRUE(rig.sim.open.count[1][OPEN_LEFT] > 60);
-    TEST_ASSERT_EQUAL_INT64(made_less_ended(), rig.sim.kind[KIND_FLUID].n - n);
-    assert_near(1e-9, rig.sim.fluid.k.mass * (double)made_less_ended(), end.mass - start.mass,
-                "mass");
-    const double size = 1e-12 * end.mass;
-    assert_near(size, brought(OPEN_MOMENTUM_X), end.momentum_x - start.momentum_x, "momentum x");
-    assert_near(size, brought(OPEN_MOMENTUM_Y), end.momentum_y - start.momentum_y, "momentum y");
+#define IN "speed = 1 + 0.2*sin(9*t)\n"
+#define OUT "pressure = 300*sin(7*t)\n"
+    static const char *const jets[] = {
+        TOP WATER "velocity = 1, 0\n" LEFT IN RIGHT OUT,
+        TOP "[fluid w]\nshape = box 0, 0, 0.5, 1\nsound_speed = 10\ndensity_diffusion = 0.1\n"
+            "velocity = 0, 1\n[inflow i]\nfrom = 0, 0\nto = 0.5, 0\n" IN
+            "[outflow o]\nfrom = 0.5, 1\nto = 0, 1\n" OUT};
+    for (int up = 0; up < 2; up++) {
+        rig_open(&rig, jets[up], "integrator=symplectic", "precision=double", NULL);
+        const struct ledger start = simulation_ledger(&rig.sim);
+        const int64_t n = rig.sim.kind[KIND_FLUID].n;
+        rig_run(&rig, 0.6);
+        const struct ledger end = simulation_ledger(&rig.sim);
+        TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 60);
+        TEST_ASSERT_TRUE(rig.sim.open.count[1][OPEN_LEFT] > 60);
+        TEST_ASSERT_EQUAL_INT64(made_less_ended(), rig.sim.kind[KIND_FLUID].n - n);
+        assert_near(1e-9, rig.sim.fluid.k.mass * (double)made_less_ended(), end.mass - start.mass,
+                    "mass");
+        const double size = 1e-12 * end.mass, x = end.momentum_x - start.momentum_x,
+                     y = end.momentum_y - start.momentum_y;
+        TEST_ASSERT_TRUE(fabs(up ? y : x) > 1);
+        assert_near(size, brought(OPEN_MOMENTUM_X), x, "momentum x");
+        assert_near(size, brought(OPEN_MOMENTUM_Y), y, "momentum y");
+    }
 }
 
 /* Buffers have the given velocity at the start, before the first step. What they then have is no gain,
@@ -109,6 +118,23 @@ static void test_any_angle(void)
     assert_near(0.02, 0, across / (double)p->n, "mean velocity across");
     TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] > 500);
     assert_near(0.04 * (double)p->n, 0, (double)made_less_ended(), "particles gained");
+}
+
+/* An expression need have values on the line only. */
+static void test_a_profile_on_a_slanting_line(void)
+{
+    static const char text[] =
+        "dp = 0.05\nend_time = 1\n[fluid w]\nshape = polygon 0, 0; 0.8, 0.6; 0.2, 1.4; -0.6, 0.8\n"
+        "sound_speed = 10\n[constants]\ntop = 0.81\n"
+        "[inflow i]\nfrom = 0, 0\nto = -0.6, 0.8\nside = right\nvelocity = sqrt(top - y), 0.5\n"
+        "[outflow o]\nfrom = 0.8, 0.6\nto = 0.2, 1.4\npressure = 0\n";
+    rig_open(&rig, text, NULL);
+    struct scene scene = {0};
+    const char *const less = "constants.top=0.78";
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT,
+                          scene_load_text(&scene, text, "slant.cfg", 1, &less, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "velocity is not finite at (-0."),
+                                 rig.diag.text);
 }
 
 static int by_value(const void *a, const void *b)
@@ -290,6 +316,7 @@ int main(void)
     RUN_TEST(test_a_sudden_inflow_is_no_gain);
     RUN_TEST(test_a_uniform_stream_passes);
     RUN_TEST(test_any_angle);
+    RUN_TEST(test_a_profile_on_a_slanting_line);
     RUN_TEST(test_a_flow_that_reverses);
     RUN_TEST(test_sound_leaves);
     RUN_TEST(test_a_level);

@@ -187,6 +187,11 @@ static void test_a_clamp_that_stays_while_its_wall_moves(void)
     snprintf(text, sizeof text, "%sclamp_motion = shake\n", scene_text);
     read(text);
     TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* A wall that does not touch the clamp may move alone. */
+    read(HEAD "[wall lid]\nshape = box -0.05, 0.2, 0.07, 0.22\nmotion = shake\n"
+              "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+              "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n" POST);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
 #define PROBE "[probe P]\nquantity = pressure\npoint = "

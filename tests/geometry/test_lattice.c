@@ -141,6 +141,32 @@ static void test_cells_ignore_a_joint(void)
     TEST_ASSERT_FALSE(scene.solid_lattice[0].fitted);
 }
 
+/* A shape within another of the body adds nothing, and its edges are none. */
+static void test_a_shape_within_another(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[solid b]\n" RUBBER
+              "shape = box 0, 0, 50 mm, 10 mm\nshape = box 20.3 mm, 2.4 mm, 30.6 mm, 7.7 mm\n",
+              NULL);
+    TEST_ASSERT_EQUAL_INT64(500, scene.points[KIND_SOLID].n);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 500e-6, scene.solid_lattice[0].area);
+    TEST_ASSERT_FALSE(scene.solid_lattice[0].fitted);
+}
+
+/* A bar with a round end has the area of a bar and half a circle, at any angle. */
+static void test_area_of_a_round_end(void)
+{
+    static const char bar[] =
+        "dp = 1 mm\nend_time = 1\n[constants]\na = 0\nc = cos(a)\nq = sin(a)\n[solid b]\n" RUBBER
+        "shape = polygon 0, 0; 50 mm*c, 50 mm*q; 50 mm*c - 10 mm*q, 50 mm*q + 10 mm*c; "
+        "-10 mm*q, 10 mm*c\nshape = circle 50 mm*c - 5 mm*q, 50 mm*q + 5 mm*c, 5 mm\n";
+    static const char *const angles[] = {"a=0", "a=33 deg", "a=-80 deg"};
+    for (size_t k = 0; k < COUNT_OF(angles); k++) {
+        must_read(bar, angles[k]);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(0.2e-6, 500e-6 + 12.5e-6 * pi,
+                                          scene.solid_lattice[0].area, angles[k]);
+    }
+}
+
 /* Bodies that nothing joins have each a lattice of their own. */
 static void test_each_body_has_its_lattice(void)
 {
@@ -266,6 +292,24 @@ static void test_layers_follow_faces(void)
     }
 }
 
+/* A valley with two equal sides: for each particle one on the other side, also round the corner. */
+static void test_layers_are_even(void)
+{
+    must_read("dp = 1 mm\nend_time = 1\n[wall bed]\n"
+              "shape = polyline thickness -4 mm: -20.3 mm, 11.1 mm; 0, 0; 20.3 mm, 11.1 mm\n"
+              "[fluid w]\nsound_speed = 20\n"
+              "shape = polygon -20.3 mm, 11.1 mm; 0, 0; 20.3 mm, 11.1 mm\n",
+              NULL);
+    const struct scene_points *const p = &scene.points[KIND_WALL];
+    TEST_ASSERT_TRUE(p->n > 150);
+    for (int64_t i = 0; i < p->n; i++) {
+        double nearest = HUGE_VAL;
+        for (int64_t j = 0; j < p->n; j++)
+            nearest = min2(nearest, hypot(p->x[i] + p->x[j], p->y[i] - p->y[j]));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 0, nearest);
+    }
+}
+
 /* Wendland's kernel summed over the cells of all particles: 1 where space is filled. */
 static double filled(double x, double y)
 {
@@ -330,12 +374,15 @@ int main(void)
     RUN_TEST(test_cells_fit_a_bar);
     RUN_TEST(test_cells_fit_one_side);
     RUN_TEST(test_cells_ignore_a_joint);
+    RUN_TEST(test_a_shape_within_another);
+    RUN_TEST(test_area_of_a_round_end);
     RUN_TEST(test_each_body_has_its_lattice);
     RUN_TEST(test_area_of_an_arch);
     RUN_TEST(test_cells_begin_at_a_clamp);
     RUN_TEST(test_cells_begin_at_a_curved_clamp);
     RUN_TEST(test_area_is_told);
     RUN_TEST(test_layers_follow_faces);
+    RUN_TEST(test_layers_are_even);
     RUN_TEST(test_space_is_filled);
     RUN_TEST(test_a_periodic_domain_is_not_turned);
     return UNITY_END();

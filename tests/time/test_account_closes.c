@@ -124,14 +124,15 @@ static void test_the_terms_add_up(void)
     }
 }
 
+static const char drop[] = "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n"
+                           "[fluid drop]\nshape = circle 0.2, 0.06, 0.05\nmax_speed = 3\n"
+                           "velocity = 0, -2\nartificial_viscosity = 0.02\n"
+                           "acoustic_damper = 4\n[wall bed]\nshape = box 0, -0.02, 0.4, 0\n";
+
 /* A drop that meets a wall: its damper takes work of the wall as of the fluid, so its dissipation gains
  * nothing. */
 static void test_the_damper_dissipates(void)
 {
-    static const char drop[] = "dp = 5 mm\nend_time = 1\ngravity = 0, -9.81\n"
-                               "[fluid drop]\nshape = circle 0.2, 0.06, 0.05\nmax_speed = 3\n"
-                               "velocity = 0, -2\nartificial_viscosity = 0.02\n"
-                               "acoustic_damper = 4\n[wall bed]\nshape = box 0, -0.02, 0.4, 0\n";
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         begin(drop, integrators[k], NULL, NULL);
         go_on(0.02);
@@ -139,6 +140,39 @@ static void test_the_damper_dissipates(void)
         assert_at_most(1e-4 * a->top, a->most[TERM_DISSIPATION], integrators[k]);
         rig_close(&rig);
     }
+}
+
+/* What the damper holds is not dissipated yet: 1/2 m c0^2 (rho - rho_slow)^2/rho0^2 of each particle. */
+static void test_what_the_damper_holds(void)
+{
+    begin(drop, NULL, NULL, NULL);
+    go_on(0.012);
+    const struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    const struct fluid_constants *const k = &rig.sim.fluid.k;
+    double held = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        held += 0.5 * k->mass * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
+    account_gain(&rig.sim);
+    const struct account *const a = &rig.sim.state.account;
+    TEST_ASSERT_TRUE(held > 1e-4);
+    assert_near(1e-9 * held, a->spent[account_entry(KIND_FLUID, 0)] + held,
+                a->now[TERM_DISSIPATION], "dissipation");
+}
+
+/* The energies beside a gain are those of the ledger. */
+static void test_energies_beside_a_gain(void)
+{
+    begin(beam, "beam.hourglass=50", NULL, NULL);
+    go_on(0.03);
+    rig.sim.state.account.low[TERM_SOLID][account_entry(KIND_SOLID, 0)] -= 1;
+    const struct ledger now = simulation_ledger(&rig.sim);
+    const struct gain g = account_gain(&rig.sim);
+    TEST_ASSERT_EQUAL_INT(account_entry(KIND_SOLID, 0), g.entry);
+    TEST_ASSERT_TRUE(now.hourglass > 1e-6 * now.elastic);
+    assert_near(1e-9 * now.kinetic, now.kinetic, g.kinetic, "kinetic");
+    assert_near(1e-9 * now.elastic, now.elastic, g.elastic, "elastic");
+    assert_near(1e-9 * now.hourglass, now.hourglass, g.hourglass, "hourglass");
+    assert_near(0, 0, g.internal, "internal");
 }
 
 /* A solid whose bound is forgotten: named within 5 ms and before a tenth of the available energy is
@@ -194,6 +228,8 @@ int main(void)
     RUN_TEST(test_the_solid_closes_with_the_step);
     RUN_TEST(test_the_terms_add_up);
     RUN_TEST(test_the_damper_dissipates);
+    RUN_TEST(test_what_the_damper_holds);
+    RUN_TEST(test_energies_beside_a_gain);
     RUN_TEST(test_an_unstable_solid_is_named);
     RUN_TEST(test_a_gain_at_the_interface_is_named);
     return UNITY_END();

@@ -73,6 +73,26 @@ static void disorder(void)
     rig_sort(&rig);
 }
 
+static void carry_off(void *context, double time, const struct particles *p, double *ax, double *ay)
+{
+    (void)context, (void)time, (void)p, (void)ax, (void)ay;
+    for (int64_t i = 0; i < fluid->n; i++) fluid->x[i] += 1;
+}
+
+/* Nothing of the fluid is left on a structure that it has gone from by the time of sorting. */
+static void test_what_is_dry_is_forgotten(void)
+{
+    open(touching, "integrator=leapfrog", "domain.upper=3, 3");
+    TEST_ASSERT_EQUAL_INT(ERR_OK,
+                          simulation_external(&rig.sim, KIND_FLUID, carry_off, NULL, &rig.diag));
+    rig.sim.skin_left = 0;
+    rig_steps(&rig, 1, 1);
+    for (int64_t i = 0; i < solid->n; i++) {
+        TEST_ASSERT_TRUE(solid->p[i] == 0 && solid->dens[i] == 0);
+        TEST_ASSERT_TRUE(solid->fx[i] == 0 && solid->fy[i] == 0);
+    }
+}
+
 /* Total force on the fluid (less gravity) and on the solid, over the sum of sizes. Each pair is
  * computed twice from the same lanes, so that only the rounding of the sums is left. */
 static void check_balance(double tolerance)
@@ -221,6 +241,7 @@ int main(void)
     RUN_TEST(test_pair_by_hand);
     RUN_TEST(test_forces_balance_in_double);
     RUN_TEST(test_forces_balance_in_mixed);
+    RUN_TEST(test_what_is_dry_is_forgotten);
     RUN_TEST(test_force_enters_the_solid_once);
     RUN_TEST(test_momentum_of_an_isolated_system_in_double);
     RUN_TEST(test_momentum_of_an_isolated_system_in_mixed);

@@ -287,6 +287,39 @@ static void look(void *context, double time, const struct particles *p, double *
     memcpy(seen.ay, p->ay, bytes);
 }
 
+static void look_at_places(void *context, double time, const struct particles *p, double *ax,
+                           double *ay)
+{
+    (void)context, (void)time, (void)ax, (void)ay;
+    memcpy(seen.x, p->x, (size_t)p->n * sizeof(double));
+    memcpy(seen.y, p->y, (size_t)p->n * sizeof(double));
+}
+
+/* A lone solid is shown to a program where it is in the middle of its step, for Verlet at its start. */
+static void test_a_lone_solid_as_a_program_sees_it(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.06, 0.04\n"
+                 "density = 1100\nyoung = 1e6\npoisson = 0.4\nvelocity = 3, -2\n",
+                 integrators[k], NULL);
+        solid = &rig.sim.kind[KIND_SOLID];
+        TEST_ASSERT_EQUAL(ERR_OK, simulation_external(&rig.sim, KIND_SOLID, look_at_places, NULL,
+                                                      &rig.diag));
+        for (int step = 0; step < 3; step++) {
+            const double start = rig.sim.state.time;
+            rig_steps(&rig, 1, 1);
+            const double half = strstr(integrators[k], "verlet") ? 0 : 0.5 * rig.sim.state.dt;
+            for (int64_t i = 0; i < solid->n; i++) {
+                assert_near(1e-12, solid->X[i] + 3 * (start + half), seen.x[i], integrators[k]);
+                assert_near(1e-12, solid->Y[i] - 2 * (start + half), seen.y[i], integrators[k]);
+            }
+        }
+    }
+}
+
 /* T-35 for one component: u, v, w of the particle when a step starts, u1, v1 after it; a and j are the mean
  * acceleration and its rate of change, of the instant `old` before the step's start; its lag is shorter by
  * `less` steps, and of the rate a share is carried on. Advances a, j and w. */
@@ -496,6 +529,7 @@ int main(void)
     RUN_TEST(test_symplectic_step);
     RUN_TEST(test_verlet_steps);
     RUN_TEST(test_leapfrog_steps);
+    RUN_TEST(test_a_lone_solid_as_a_program_sees_it);
     RUN_TEST(test_fluid_sees_the_mean_of_substeps_carried_on);
     RUN_TEST(test_substeps_are_steps_with_the_force_held);
     RUN_TEST(test_the_force_on_a_dry_particle_fades);
