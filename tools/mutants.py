@@ -5,6 +5,8 @@
     tools/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md (hours)
     tools/mutants.py --files src/solid  faults of one folder or file only
     tools/mutants.py --again            judges anew what was not found, for instance by new tests
+    tools/mutants.py --again --tests fluid/test_open,test_wall --files src/fluid
+                                        the same of some files by some tests only, however long they take
     tools/mutants.py --report           writes docs/mutants.md from what is kept
 
 A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or inverts a
@@ -163,6 +165,17 @@ class Tests:
             names = [test for test, files in self.taken.items() if test in self.seconds and any(
                 any(files.get(file, {"lines": {}})["lines"].values()) for file in self.uses[fault["file"]])]
         return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
+
+
+class Named:
+    """Tests named by parts of their paths, whatever lines they run."""
+
+    def __init__(self, parts):
+        names = [test for test in all_tests() if any(part in test for part in parts.split(","))]
+        self.seconds = dict.fromkeys(names, LONGEST)
+
+    def covering(self, fault):
+        return list(self.seconds)
 
 
 def build(program, fault, folder):
@@ -348,7 +361,8 @@ def report(results, seconds):
         f"{count['line deleted']} stood on lines that have since been changed or deleted. "
         f"{sanitized} are found with the build of `make test-sanitize` only. A fault counts as "
         "not found if the tests that run its line, the shortest first, have not found it within "
-        f"{seconds:.0f} s of the processor; tests of more than {LONGEST} s were not run with faults. So the "
+        f"{seconds:.0f} s of the processor; tests of more than {LONGEST} s were run with faults only if "
+        "named by hand. So the "
         "share is a lower bound, and faults that are equivalent for a reason nobody has written down count "
         "as not found.", "",
         "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "
@@ -397,6 +411,8 @@ def main():
     parser.add_argument("--seconds", type=float, default=8, help="of the processor, for one fault's tests")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
+    parser.add_argument("--tests", help="judge by these only, parts of their paths with commas; what they do "
+                        "not find keeps its verdict")
     parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
     args = parser.parse_args()
     results = json.loads(KEPT.read_text()) if KEPT.exists() else []
@@ -406,13 +422,14 @@ def main():
     WORK.mkdir(parents=True, exist_ok=True)
     KEPT.parent.mkdir(exist_ok=True)
     program = Program("mutant")
-    tests = Tests(program, args.jobs)
+    tests = Named(args.tests) if args.tests else Tests(program, args.jobs)
+    seconds = float("inf") if args.tests else args.seconds
+    under = ROOT / args.files
     if args.again:
         reasons = explained()
         faults = [now for r in results if r["verdict"].startswith("not ") and key(r) not in reasons
-                  and (now := standing(r))]
+                  and (ROOT / r["file"]).is_relative_to(under) and (now := standing(r))]
     else:
-        under = ROOT / args.files
         paths = [under] if under.is_file() else \
             sorted(p for p in under.rglob("*") if p.suffix in (".c", ".h"))
         done = {key(r) for r in results}
@@ -422,10 +439,10 @@ def main():
     def one(fault, program, slower):
         if time.time() - start > 60 * args.minutes:
             return
-        verdict, by = judge(program, tests, fault, slower * args.seconds, slower)
+        verdict, by = judge(program, tests, fault, slower * seconds, slower)
+        if args.tests and verdict.startswith("not ") or slower > 1 and verdict != "found":
+            return
         if slower > 1:
-            if verdict != "found":
-                return
             by = f"{SANITIZER}, {by}"
         with LOCK:
             known = [r for r in results if key(r) == key(fault)]

@@ -109,6 +109,19 @@ static enum sphfsi_status fresh(void)
     return sphfsi_run(&o);
 }
 
+/* A body that touches another, held by a clamp that moves, under a load. */
+static enum sphfsi_status driven(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 1 s\n[motion m]\nvelocity = 0.1, 0\n[contact all]\n"
+        "[solid a]\nshape = box 0, 0, 0.05, 0.03\nclamp = box 0, 0, 0.02, 0.03\n"
+        "clamp_motion = m\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+        "[solid b]\nlike = a\nshape = box 0.06, 0, 0.09, 0.03\nclamp = box 0.08, 0, 0.09, 0.03\n"
+        "[load end]\nbody = b\nshape = box 0.06, 0, 0.07, 0.03\nforce = 1, 0\n";
+    const struct sphfsi_options o = {.case_text = text, .until = 1e-5, .threads = 1, .out = folder};
+    return sphfsi_run(&o);
+}
+
 static enum sphfsi_status restart(void)
 {
     struct sphfsi_options o = options(folder, 0.0008);
@@ -223,6 +236,8 @@ static void every_one(enum sphfsi_status (*work)(void), const char *what, long l
 
 static void of_a_run(void) { every_one(fresh, "run", 100); }
 
+static void of_a_driven_body(void) { every_one(driven, "driven", 100); }
+
 static void of_a_restart(void) { every_one(restart, "restart", 100); }
 
 static void of_a_fork(void) { every_one(fork_it, "fork", 100); }
@@ -237,6 +252,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(begin);
     RUN_TEST(of_a_run);
+    RUN_TEST(of_a_driven_body);
     RUN_TEST(of_a_restart);
     RUN_TEST(of_a_fork);
     RUN_TEST(of_inspect);
