@@ -145,6 +145,7 @@ struct energies {
     double kinetic, potential, internal, elastic, hourglass, contact;
     double dummies; /* compression energy of dummies by their pressure */
     double damper;  /* that the acoustic damper holds and has yet to dissipate (T-9a) */
+    double scale;   /* of a strain of 1, or of a fluid at the speed of sound */
 };
 
 static double energy_without_potential(const struct energies *e)
@@ -162,6 +163,7 @@ static void add_energies(struct energies *sum, const struct energies *e)
     sum->contact += e->contact;
     sum->dummies += e->dummies;
     sum->damper += e->damper;
+    sum->scale += e->scale;
 }
 
 static void add_fluid(const struct simulation *s, struct energies *of)
@@ -175,6 +177,7 @@ static void add_fluid(const struct simulation *s, struct energies *of)
         e->kinetic += 0.5 * m * (square(p->vx[i]) + square(p->vy[i]));
         e->potential -= m * (g[0] * p->x[i] + g[1] * p->y[i]);
         e->internal += m * eos_energy(p->dens[i], k->c0);
+        e->scale += m * square(k->c0);
         if (p->dens_slow) e->damper += 0.5 * m * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
     }
 }
@@ -187,6 +190,7 @@ static void add_solids(const struct simulation *s, struct energies *of)
         const struct solid_body *const b = &s->solid.body[p->body[i]];
         e->kinetic += 0.5 * b->mass * (square(p->vx[i]) + square(p->vy[i]));
         e->potential -= b->mass * (b->gravity[0] * p->x[i] + b->gravity[1] * p->y[i]);
+        e->scale += b->young * square(b->dp);
     }
     for (int k = 0; k < s->scene->n_solid; k++) {
         struct energies *const e = &of[account_entry(KIND_SOLID, k)];
@@ -309,7 +313,7 @@ void account_step(struct account *a, enum account_source source, int entry, doub
 
 /* --- the check --- */
 
-/* Round-off of the sums (T-46). */
+/* Round-off of sums, and of strains and speeds, whose squares are energies (T-46). */
 #define ROUND_OFF 1e-9
 
 /* Sums over the sections of a region. */
@@ -327,7 +331,8 @@ static struct region_sums sum_region(const struct account *a, int region, const 
         if (region_of(a, k) != region) continue;
         add_energies(&sum.energies, &of[k]);
         for (int t = 0; t < ACCOUNT_TERMS; t++) sum.term[t] += terms[t][k];
-        sum.off += a->step_work[k] + ROUND_OFF * (fabs(a->put[k]) + fabs(of[k].potential));
+        sum.off += a->step_work[k] + ROUND_OFF * (fabs(a->put[k]) + fabs(of[k].potential)) +
+                   square(ROUND_OFF) * of[k].scale;
     }
     return sum;
 }

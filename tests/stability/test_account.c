@@ -190,6 +190,27 @@ static void test_work_on_what_rests(void)
     }
 }
 
+/* A body at rest in which particles have moved at random, by a fraction of their spacing. */
+static struct gain gain_of_noise(double fraction)
+{
+    static const char rest[] =
+        "dp = 5 mm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
+        "density = 1000\nyoung = 1e5\npoisson = 0.3\n";
+    TEST_ASSERT_EQUAL_INT(ERR_OK, run(rest, NULL, 0.01));
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    uint64_t seed = 1;
+    for (int64_t i = 0; i < p->n; i++) p->ux[i] += 5e-3 * fraction * noise(&seed);
+    solid_stress(&rig.sim.solid, p);
+    return account_gain(&rig.sim);
+}
+
+/* Round-off of positions, as of two bodies in contact that begin at rest without gravity, is no gain. */
+static void test_round_off_is_no_gain(void)
+{
+    TEST_ASSERT_EQUAL_INT(-1, gain_of_noise(1e-14).entry);
+    TEST_ASSERT_EQUAL_INT(account_entry(KIND_SOLID, 0), gain_of_noise(1e-6).entry);
+}
+
 /* Work, losses and energies of the regions add up to the ledger's. */
 static void test_regions_add_up(void)
 {
@@ -266,6 +287,7 @@ int main(void)
     RUN_TEST(test_bodies_in_contact_are_one_region);
     RUN_TEST(test_gain_after_a_loss);
     RUN_TEST(test_work_on_what_rests);
+    RUN_TEST(test_round_off_is_no_gain);
     RUN_TEST(test_regions_add_up);
     RUN_TEST(test_a_gain_is_named_in_time);
     return UNITY_END();
