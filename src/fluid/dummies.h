@@ -154,10 +154,10 @@ SPHFSI_INLINE void gather(const struct dummies *d, const double *field, double o
 }
 
 /* The velocity of a structure that the fluid uses. Walls have none unless a motion moves them. */
-SPHFSI_INLINE void gather_velocity(const struct fluid *f, const struct dummies *d,
-                                   const struct particles *p, double u[CLUSTER], double v[CLUSTER])
+SPHFSI_INLINE void gather_velocity(const struct dummies *d, const struct particles *p,
+                                   effect_set fx, double u[CLUSTER], double v[CLUSTER])
 {
-    const bool moves = f->effects & FX_MOTION;
+    const bool moves = fx & FX_MOTION;
     gather(d, d->kind == KIND_SOLID ? p->wx : moves ? p->vx : NULL, u);
     gather(d, d->kind == KIND_SOLID ? p->wy : moves ? p->vy : NULL, v);
 }
@@ -248,7 +248,7 @@ static void no_slip(const struct fluid *f, const struct particles *p, const stru
 {
     const bool own_image = f->effects & FX_ONE_SIDED;
     double sticks[CLUSTER] = {0}, u[CLUSTER], v[CLUSTER], mirror_u[CLUSTER], mirror_v[CLUSTER];
-    gather_velocity(f, d, p, u, v);
+    gather_velocity(d, p, f->effects, u, v);
     memcpy(mirror_u, u, sizeof mirror_u);
     memcpy(mirror_v, v, sizeof mirror_v);
     for (int r = 0; r < CLUSTER && neighbours->n && !own_image; r += GROUPS) {
@@ -296,11 +296,11 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particle
  * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
                                  const struct dummies *d, const double pressure[CLUSTER],
-                                 const double dens[CLUSTER])
+                                 const double dens[CLUSTER], effect_set fx)
 {
     const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
     double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0};
-    gather_velocity(f, d, p, u, v);
+    gather_velocity(d, p, fx, u, v);
     for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
     for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
     scatter(d, pressure, p->p);
@@ -336,7 +336,7 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
         eos_dens_of_block(&pressure[m], f->k.rho0, f->k.c0, &dens[m]);
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(f, c, kind, cell, m);
-        dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER]);
+        dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
         if (!p->fx && !(fx & SURFACE_EFFECTS)) continue;
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
@@ -346,18 +346,36 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
     }
 }
 
+/* A cell, for the sets of effects that are frequent; `any` has those of the case. */
+typedef void SWEEP(dummies_cell)(const struct fluid *f, struct particles *p, enum kind kind,
+                                 const struct cells *c, int32_t cell);
+#define DUMMIES(name, of_kind, set)                                                               \
+    static void SWEEP(dummies_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
+                                      const struct cells *c, int32_t cell)                        \
+    {                                                                                             \
+        (void)kind;                                                                               \
+        dummies_of_cell(f, p, (of_kind), c, cell, (set));                                         \
+    }
+DUMMIES(wall, KIND_WALL, 0u)
+DUMMIES(moving_wall, KIND_WALL, FX_MOTION)
+DUMMIES(solid, KIND_SOLID, 0u)
+DUMMIES(impedance, KIND_SOLID, FX_IMPEDANCE)
+DUMMIES(any, kind, f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+#undef DUMMIES
+
+static SWEEP(dummies_cell) * SWEEP(dummies_choice)(effect_set effects, enum kind kind)
+{
+    if (effects & SURFACE_EFFECTS) return SWEEP(dummies_any);
+    if (kind == KIND_SOLID)
+        return effects & FX_IMPEDANCE ? SWEEP(dummies_impedance) : SWEEP(dummies_solid);
+    return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
+}
+
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
-    const effect_set unfelt = kind == KIND_SOLID ? 0 : FX_IMPEDANCE;
+    SWEEP(dummies_cell) *const of_cell = SWEEP(dummies_choice)(f->effects, kind);
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
-        const int32_t cell = f->near_fluid[kind][k];
-        if (f->effects & SURFACE_EFFECTS)
-            dummies_of_cell(f, &kinds[kind], kind, c, cell, f->effects & ~unfelt);
-        else if (f->effects & FX_IMPEDANCE & ~unfelt)
-            dummies_of_cell(f, &kinds[kind], kind, c, cell, FX_IMPEDANCE);
-        else
-            dummies_of_cell(f, &kinds[kind], kind, c, cell, 0);
-    }
+    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++)
+        of_cell(f, &kinds[kind], kind, c, f->near_fluid[kind][k]);
 }

@@ -64,17 +64,17 @@ SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid
 
 /* Pressure that acts on the neighbours of the four particles from i on: T-3, and T-9a. */
 SPHFSI_INLINE four_double acting_pressure(const struct fluid *f, const struct particles *p,
-                                          int32_t i)
+                                          int32_t i, effect_set fx)
 {
     const four_double dens = FOUR(p->dens, i), pressure = pressure_of(dens, &f->k);
-    if (!(f->effects & FX_DAMPER)) return pressure;
+    if (!(fx & FX_DAMPER)) return pressure;
     return pressure + damper_pressure(dens - FOUR(p->dens_slow, i), &f->k);
 }
 
 /* Packed fields of the particles from i on; if there are fewer than four, the rest belong to the
  * next cell. */
 SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p, int32_t i,
-                                const double centre[2], real *out)
+                                const double centre[2], effect_set fx, real *out)
 {
     const double inv_h = 1 / f->k.h, volume = f->k.mass / f->k.rho0 * square(inv_h);
     const four_double dens = FOUR(p->dens, i);
@@ -83,14 +83,14 @@ SPHFSI_INLINE void pack_cluster(const struct fluid *f, const struct particles *p
     put_four(out, PACKED_U, FOUR(p->vx, i));
     put_four(out, PACKED_V, FOUR(p->vy, i));
     four_double own = volume / (1 + dens);
-    if (f->effects & FX_MASSES) own = FOUR(p->m, i) * own;
+    if (fx & FX_MASSES) own = FOUR(p->m, i) * own;
     put_four(out, PACKED_VOLUME, own);
-    put_four(out, PACKED_P, acting_pressure(f, p, i));
+    put_four(out, PACKED_P, acting_pressure(f, p, i, fx));
     put_four(out, PACKED_DENS, dens);
 }
 
-static void pack_cell(const struct fluid *f, const struct particles *p, const struct cells *c,
-                      int32_t cell)
+SPHFSI_INLINE void pack_cell(const struct fluid *f, const struct particles *p,
+                             const struct cells *c, int32_t cell, effect_set fx)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const struct packed_fields *const packed = &f->packed[KIND_FLUID];
@@ -100,19 +100,37 @@ static void pack_cell(const struct fluid *f, const struct particles *p, const st
         const size_t cluster = (size_t)list->cluster[cell] + (size_t)(first / CLUSTER);
         const int32_t own = count - first < CLUSTER ? count - first : CLUSTER;
         real *const out = cluster_packed(packed, cluster);
-        pack_cluster(f, p, list->start[cell] + first, centre, out);
+        pack_cluster(f, p, list->start[cell] + first, centre, fx, out);
         if (own < CLUSTER) cluster_close(out, packed->n, own);
         cluster_box(&packed->boxes, cluster, out, own);
     }
 }
 
+/* pack_cell for each set of the effects that it depends on. */
+typedef void SWEEP(pack)(const struct fluid *f, const struct particles *p, const struct cells *c,
+                         int32_t cell);
+#define PACK(name, set)                                                              \
+    static void SWEEP(pack_##name)(const struct fluid *f, const struct particles *p, \
+                                   const struct cells *c, int32_t cell)              \
+    {                                                                                \
+        pack_cell(f, p, c, cell, (set));                                             \
+    }
+PACK(plain, 0u)
+PACK(masses, FX_MASSES)
+PACK(damper, FX_DAMPER)
+PACK(masses_damper, FX_MASSES | FX_DAMPER)
+#undef PACK
+
 static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
                           const struct cells *c)
 {
+    const bool masses = f->effects & FX_MASSES, damper = f->effects & FX_DAMPER;
+    SWEEP(pack) *const pack = damper   ? masses ? SWEEP(pack_masses_damper) : SWEEP(pack_damper)
+                                : masses ? SWEEP(pack_masses)
+                                       : SWEEP(pack_plain);
     const int32_t n = c->kind[KIND_FLUID].n_active;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < n; k++)
-        pack_cell(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
+    for (int32_t k = 0; k < n; k++) pack(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
 }
 
 /* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the neighbours

@@ -86,7 +86,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     const double mix = 2 * k->delta * k->c0;
     four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
-    if (f->effects & FX_MASSES) { /* all sums contain the volume of the particle itself */
+    if (fx & FX_MASSES) { /* all sums contain the volume of the particle itself */
         factor = factor / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
@@ -129,7 +129,7 @@ SPHFSI_INLINE void touch_store(const struct fluid *f, struct particles *p, int32
                                const struct touch_sums *with, const struct touch_sums *without)
 {
     const struct fluid_constants *const k = &f->k;
-    const four_double pressure = acting_pressure(f, p, i);
+    const four_double pressure = acting_pressure(f, p, i, f->effects);
     const four_double ax = own_sum(with->ax) - own_sum(without->ax);
     const four_double ay = own_sum(with->ay) - own_sum(without->ay);
     const four_double rate = own_sum(with->rate) - own_sum(without->rate);
