@@ -101,6 +101,10 @@ static void an_unchanged_fork_keeps_the_bits(void)
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_read(&other, path, &diag), diag.text);
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, checkpoint_fork(&other, &second, &diag), diag.text);
         TEST_ASSERT_EQUAL_INT64(sorts, second.state.sorts);
+        /* Its account of energy begins anew. */
+        const struct ledger before = simulation_ledger(&first), now = simulation_ledger(&second);
+        TEST_ASSERT_TRUE(fabs(before.dissipated) > 1e-6 * before.internal);
+        TEST_ASSERT_DOUBLE_WITHIN(1e-12 * fabs(now.potential), 0, now.dissipated);
         step(&first, 100);
         step(&second, 100);
         TEST_ASSERT_TRUE_MESSAGE(particles(&first) == particles(&second), sets[k]);

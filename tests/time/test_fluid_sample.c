@@ -69,6 +69,18 @@ static void test_anywhere(void)
     }
 }
 
+/* The flux is one of volume: a tenth more density, a tenth less volume. */
+static void test_flux_of_denser_water(void)
+{
+    const double from[2] = {0.2, 0.05}, to[2] = {0.2, 0.15};
+    open_at(0, 0);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0;
+    const double flux = simulation_flux(&rig.sim, from, to);
+    for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0.1;
+    assert_near(1e-12, flux / 1.1, simulation_flux(&rig.sim, from, to), "flux");
+}
+
 /* The volume of the water decides its level, not the heights of single rows; also where it is shallow, and
  * beside a wall. */
 static void test_level_of_volume(void)
@@ -114,6 +126,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_anywhere);
+    RUN_TEST(test_flux_of_denser_water);
     RUN_TEST(test_level_of_volume);
     RUN_TEST(test_across_periodic_sides);
     return UNITY_END();
