@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Nothing switches at the density of water: a gate and a plate between waters move by at most 1e-6 of their largest
-displacement more or less when their density is 1e-6 below or above it."""
+"""Nothing switches at the density of water: a gate and a plate between waters move by at most 1e-6 of their
+largest displacement more or less when their density is 1e-6 below or above it."""
 import csv
 import subprocess
 import sys
