@@ -61,7 +61,8 @@ def single(measure):
 
 
 def skins(*settings):
-    return [[*settings, f"numerics.skin={skin}"] for skin in (0.5, 0.55, 0.6, 0.65, 0.7)]
+    """Runs that differ in round-off alone. The cells limit the skin, so that larger ones are equal."""
+    return [[*settings, f"numerics.skin={skin}"] for skin in (0.35, 0.4, 0.45, 0.5, 0.55)]
 
 
 # Shipped cases and templates with walls or bodies, coarse and short: the end (s), other settings. Not the

@@ -76,16 +76,11 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->external[KIND_SOLID].at) find_external(s, KIND_SOLID, time);
 }
 
-void accept_evaluation(struct simulation *s)
-{
-    s->evaluated = false;
-    if (s->effects & FX_DAMPER) fluid_follow_density(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
-}
-
 void evaluate_start(struct simulation *s)
 {
     evaluate_fluid(s, s->state.time);
-    accept_evaluation(s);
+    s->evaluated = false;
+    if (s->effects & FX_DAMPER) fluid_follow_density(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
 }
 
 /* The extremes over a range of fluid particles, without branches. */

@@ -20,12 +20,10 @@ void solid_only_step(struct simulation *s, double t_limit);
  * positions at `time`. */
 void evaluate_fluid(struct simulation *s, double time);
 
-/* The same for the state at the start of a step. Not repeated if output has just evaluated it. */
+/* The same for the state at the start of a step. Not repeated if output has just evaluated it. The
+ * acoustic damper's density then follows, once a step (T-9b); an evaluation for output changes
+ * nothing. */
 void evaluate_start(struct simulation *s);
-
-/* Marks the evaluation as used by a step: the next one refers to it. An evaluation for output
- * changes nothing. */
-void accept_evaluation(struct simulation *s);
 
 /* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end
  * - 1; `by` holds its parameters. Finds their extremes while they are in the caches. */

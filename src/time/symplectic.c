@@ -128,7 +128,6 @@ void symplectic_step(struct simulation *s, double t_limit)
     phase_add(s, PHASE_update, clock);
 
     evaluate_fluid(s, time + 0.5 * dt);
-    accept_evaluation(s);
     book_midpoint(s, dt);
     clock = wall_clock();
     if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);

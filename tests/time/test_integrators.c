@@ -522,6 +522,30 @@ static void test_free_fall_with_uneven_steps(void)
     }
 }
 
+/* T-9b once a step, whatever the number of evaluations: in water of an even density the excess of the damper
+ * falls by tau/(tau + dt) a step. The step before the first one is 0. */
+static void test_the_damper_follows_once_a_step(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < COUNT_OF(integrators); k++) {
+        rig_open(&rig,
+                 "dp = 1 cm\nend_time = 1\nprecision = double\n[numerics]\nfixed_step = 1e-4\n"
+                 "[fluid w]\nshape = box 0, 0, 0.2, 0.2\nsound_speed = 20\nacoustic_damper = 4\n"
+                 "[domain]\nlower = 0, 0\nupper = 0.2, 0.2\nperiodic = xy\n",
+                 integrators[k], NULL);
+        const struct fluid_constants *const c = &rig.sim.fluid.k;
+        struct particles *const p = &rig.sim.kind[KIND_FLUID];
+        for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0.01;
+        rig_steps(&rig, 4, 1);
+        const double tau = 4 * c->h / c->c0, kept = tau / (tau + 1e-4);
+        for (int64_t i = 0; i < p->n; i++)
+            assert_near(1e-12, 0.01 * kept * kept * kept, p->dens[i] - p->dens_slow[i],
+                        integrators[k]);
+        rig_close(&rig);
+    }
+}
+
 int main(void)
 {
     rig_one_thread();
@@ -536,5 +560,6 @@ int main(void)
     RUN_TEST(test_the_force_is_carried_only_to_where_it_is_used);
     RUN_TEST(test_least_lag_of_what_the_fluid_sees);
     RUN_TEST(test_free_fall_with_uneven_steps);
+    RUN_TEST(test_the_damper_follows_once_a_step);
     return UNITY_END();
 }
