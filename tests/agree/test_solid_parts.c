@@ -79,6 +79,12 @@ static void test_damped(void)
     compare(bar, 2, "bar.damping_time=1 ms", "bar.hourglass_form=printed");
 }
 
+/* Neighbours three columns away, which a part has to copy. */
+static void test_a_wide_kernel(void)
+{
+    compare(bar, 3, "numerics.h_over_dp=1.8", "precision=mixed");
+}
+
 static void test_joined_bodies(void) { compare(joined, 4, "precision=mixed", "title=mast"); }
 
 static void test_structure_in_water(void)
@@ -161,6 +167,7 @@ int main(void)
     RUN_TEST(test_default_laws);
     RUN_TEST(test_printed_laws);
     RUN_TEST(test_damped);
+    RUN_TEST(test_a_wide_kernel);
     RUN_TEST(test_joined_bodies);
     RUN_TEST(test_structure_in_water);
     RUN_TEST(test_particles_at_the_edge_of_reach);

@@ -2,6 +2,7 @@
  * Snapshots: appended, dropped by a restart, kept when the copy in the making is damaged, held open
  * or cannot be written. Other readers of the file: test_snapshot_reader.py. */
 #include "output/snapshot.h"
+#include "output/point_data.h"
 #include "geometry/load.h"
 #include "tiny.h"
 #include "unity.h"
@@ -281,10 +282,28 @@ static void everything_in_single_precision_unless_chosen(void)
     TEST_ASSERT_EQUAL_UINT(8, item_bytes("VTKHDF/Points"));
 }
 
+/* rho0/det F, with stretches of 1.1 and 0.95. */
+static void density_of_a_stretched_solid(void)
+{
+    struct particles *const p = &simulation.kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        p->ux[i] = 0.1 * p->X[i];
+        p->uy[i] = -0.05 * p->Y[i];
+    }
+    solid_stress(&simulation.solid, p);
+    for (int64_t i = 0; i < p->n; i++) {
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 1.1 * 0.95,
+                                  snapshot_value(D_DET_F, &simulation, KIND_SOLID, i, 0));
+        TEST_ASSERT_DOUBLE_WITHIN(1e-3, scene.solid[0].density / (1.1 * 0.95),
+                                  snapshot_value(D_DENSITY, &simulation, KIND_SOLID, i, 0));
+    }
+}
+
 int main(void)
 {
     H5open();
     UNITY_BEGIN();
+    RUN_TEST(density_of_a_stretched_solid);
     RUN_TEST(snapshots_are_appended);
     RUN_TEST(a_restart_drops_later_ones);
     RUN_TEST(a_restart_without_the_file_begins_anew);

@@ -42,9 +42,44 @@ static void test_fluid_in_a_bed(void)
         }
 }
 
+/* A body that is stretched takes more room along and less across: 0.35 spacings of its own. */
+static void test_fluid_in_a_stretched_body(void)
+{
+    static const struct {
+        double x, y; /* spacings from a particle */
+        int inside;
+    } row[] = {{0.5, 0, 1}, {0.55, 0, 0},    {0, 0.26, 1},
+               {0, 0.3, 0}, {0.35, 0.15, 1}, {0.4, 0.25, 0}};
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+             "[fluid w]\nshape = box 0.3, 0, 0.4, 0.1\nsound_speed = 20\n"
+             "[solid s]\nshape = box 0, 0, 0.1, 0.1\ndensity = 1100\nyoung = 1e6\npoisson = 0.4\n",
+             NULL);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID], *const s = &rig.sim.kind[KIND_SOLID];
+    for (int64_t i = 0; i < s->n; i++) {
+        s->x[i] = 1.5 * s->X[i];
+        s->y[i] = 0.8 * s->Y[i];
+        s->Uxx[i] = 0.5;
+        s->Uyy[i] = -0.2;
+        s->Uxy[i] = s->Uyx[i] = 0;
+    }
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        p->x[0] = 1.5 * 0.055 + 0.01 * row[k].x;
+        p->y[0] = 0.8 * 0.055 + 0.01 * row[k].y;
+        rig_sort(&rig);
+        int64_t first;
+        char what[64];
+        snprintf(what, sizeof what, "(%g, %g)", row[k].x, row[k].y);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, monitor_crossed(&rig.sim, &first), what);
+        for (int64_t i = 0; i < p->n; i++) /* sorting has moved it */
+            if (p->x[i] < 0.2) p->x[i] = 0.5, p->y[i] = 0.5;
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_fluid_in_a_bed);
+    RUN_TEST(test_fluid_in_a_stretched_body);
     return UNITY_END();
 }

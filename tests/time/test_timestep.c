@@ -50,6 +50,25 @@ static void test_bounds_by_hand(void)
 }
 
 /* A sliver at the end is shared: within two steps of the limit both are equal. */
+static void pull_down(void *context, double time, const struct particles *p, double *ax, double *ay)
+{
+    (void)context, (void)time, (void)ax;
+    for (int64_t i = 0; i < p->n; i++) ay[i] = -30;
+}
+
+/* A program's acceleration counts together with gravity: 40 m/s^2 in Eq. 28a. */
+static void test_bound_with_a_push(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+             "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n",
+             NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_OK,
+                          simulation_external(&rig.sim, KIND_FLUID, pull_down, NULL, &rig.diag));
+    rig_steps(&rig, 1, 1);
+    assert_near(1e-9, 1600, rig.sim.fluid.extremes.acceleration2, "|a|^2");
+}
+
 static void test_steps_before_a_limit_are_equal(void)
 {
     rig_open(&rig, gate, "numerics.fixed_step=1e-4", NULL);
@@ -403,6 +422,7 @@ int main(void)
     RUN_TEST(test_decay_bounds_by_hand);
     RUN_TEST(test_repulsion_bound_by_hand);
     RUN_TEST(test_added_mass_bound_by_hand);
+    RUN_TEST(test_bound_with_a_push);
     RUN_TEST(test_steps_before_a_limit_are_equal);
     RUN_TEST(test_substeps_cover_the_longest_step);
     RUN_TEST(test_multirate_auto);
