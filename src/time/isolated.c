@@ -8,10 +8,10 @@
 
 void limit_isolated_tension(struct simulation *s)
 {
-    /* T-45: ten times the density change that c0 is chosen for, and two thirds of the guard's limit.
-     * Larger tension is not part of the flow. */
+    /* T-45: what a water hammer at the speed that c0 is chosen for changes, and two thirds of the guard's
+     * limit. Larger tension is not part of the flow. */
     const double factor = s->scene->numerics.sound_factor;
-    const double lowest = max2(-10 / square(factor), -2.0 / 3 * s->guard.dens_limit);
+    const double lowest = max2(-1 / factor, -2.0 / 3 * s->guard.dens_limit);
     if (!(s->extremes.dens_low < lowest)) return;
     struct particles *const p = &s->kind[KIND_FLUID];
     /* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */

@@ -81,16 +81,18 @@ static void test_leapfrog_forgets_its_rates(void)
     TEST_ASSERT_EQUAL_INT64(1, rig.sim.state.tension_limited);
 }
 
-/* Ten times what c0 is chosen for: with sound_factor = 20 a fortieth; with 5 a fifth, which the
- * guard leaves. */
+/* A water hammer at the speed that c0 is chosen for: with sound_factor = 20 a twentieth; with 5 and less a
+ * fifth, which the guard leaves. */
 static void test_limit_follows_the_sound_factor(void)
 {
     static const struct {
         const char *factor;
         double above, below;
-    } row[] = {{"numerics.sound_factor=20", -0.0249, -0.0251},
+    } row[] = {{"numerics.sound_factor=40", -0.0249, -0.0251},
+               {"numerics.sound_factor=20", -0.0499, -0.0501},
                {"numerics.sound_factor=10", -0.099, -0.101},
-               {"numerics.sound_factor=5", -0.199, -0.201}};
+               {"numerics.sound_factor=5", -0.199, -0.201},
+               {"numerics.sound_factor=4", -0.199, -0.201}};
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         rig_open(&rig, scene, row[k].factor, "water.sound_speed=0", "water.max_speed=1", NULL);
         fluid = &rig.sim.kind[KIND_FLUID];
