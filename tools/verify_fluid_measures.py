@@ -64,23 +64,52 @@ def penetration(run):
     return [("particles that have entered, by snapshots", count, 0), ("nearest to a body, dp", least, None)]
 
 
-def cavity(run, left, right):
-    """Widest gap between a submerged vertical face and the fluid, in dp, over all snapshots. `left` and
-    `right` are the x of faces with fluid on that side. A row of 1.5 dp is submerged if at least six particles
-    lie in the 8 dp beside the face, and at least five touch it in the 8 dp above; a jet or a film is none."""
+def largest_group(points, reach):
+    """The points of the largest group whose members are linked by distances within reach."""
+    if len(points) == 0:
+        return points
+    near, left, best = Near(points, reach), set(range(len(points))), []
+    while len(left) > len(best):
+        group = [left.pop()]
+        for k in group:  # grows as its neighbours join
+            linked = [j for j in near.around(points[k])
+                      if j in left and np.hypot(*(points[j] - points[k])) < reach]
+            left.difference_update(linked)
+            group += linked
+        best = max(best, group, key=len)
+    return points[best]
+
+
+def distances(water, bodies, sign):
+    """How far fluid particles are from the face of a body at their height, in the direction of sign and in
+    the unit of the coordinates, which is dp; nan above the body. The face is half a spacing outside the
+    centres."""
+    rows, edge = np.floor(bodies[:, 1]).astype(int), {}
+    for row, x in zip(rows, sign * bodies[:, 0]):
+        edge[row] = max(edge.get(row, -math.inf), x)
+    faces = [edge.get(row, math.nan) for row in np.floor(water[:, 1]).astype(int)]
+    return sign * water[:, 0] - np.array(faces) - 0.5
+
+
+def cavity(run, face, sign):
+    """Widest gap between a submerged upright face and the fluid, in dp, over all snapshots. The face is that
+    of the bodies within 24 dp of x = face, wherever it has bent to, with fluid in the direction of sign. A
+    row of 1.5 dp is submerged if at least six particles lie in the 8 dp beside the face, and at least five
+    touch it in the 8 dp above; a jet or a film is none. Only the largest group of particles within 32 dp of
+    x = face counts, linked by 2 dp: drops in the air are no water that the face is under."""
     widest, dp = 0.0, run.dp
     for shots, step in snapshots(run):
-        x, kind = shots.load(step, "Points")[:, :2], shots.load(step, "kind")
-        water = x[kind == FLUID]
-        for face, sign in [(f, -1) for f in left] + [(f, 1) for f in right]:
-            away = sign * (water[:, 0] - face) / dp
-            y, away = water[(away > 0) & (away < 8), 1] / dp, away[(away > 0) & (away < 8)]
-            touching = np.sort(y[away < 1.5])
-            for row in np.arange(0.5, touching[-5], 0.5) if len(touching) >= 5 else ():
-                here = away[abs(y - row) < 0.75]
-                gap = here.min() - 0.5 if len(here) >= 6 else 0
-                if gap > 1 and ((touching > row) & (touching < row + 8)).sum() >= 5:
-                    widest = max(widest, float(gap))
+        x, kind = shots.load(step, "Points")[:, :2] / dp, shots.load(step, "kind")
+        off = abs(x[:, 0] - face / dp)
+        water = largest_group(x[(kind == FLUID) & (off < 32)], 2)
+        away = distances(water, x[(kind != FLUID) & (off < 24)], sign)
+        y, away = water[(away > 0) & (away < 8), 1], away[(away > 0) & (away < 8)]
+        touching = np.sort(y[away < 1.5])
+        for row in np.arange(0.5, touching[-5], 0.5) if len(touching) >= 5 else ():
+            here = away[abs(y - row) < 0.75]
+            gap = here.min() - 0.5 if len(here) >= 6 else 0
+            if gap > 1 and ((touching > row) & (touching < row + 8)).sum() >= 5:
+                widest = max(widest, float(gap))
     return widest
 
 
@@ -185,7 +214,7 @@ def impact_of(limit):
                 ("mean of the plateau, rho g H", float(q[plateau].mean()), None),
                 ("later peak, mean over 20 ms, rho g H", float(mean[later][:-10].max()), None),
                 *penetration(run),
-                ("widest cavity at the far wall, dp", cavity(run, [3.22], []), 1)]
+                ("widest cavity at the far wall, dp", cavity(run, 3.22, -1), 1)]
     return measure
 
 
@@ -270,7 +299,7 @@ def measure_baffle(runs):
                  (f"{words}, 4 across against 8, % more", float(100 * (one / two - 1)), 5)]
     for words, run in (("4 across", runs[0]), ("8 across", runs[half])):
         rows += [(f"{words}: {what}", value, limit) for what, value, limit in penetration(run)]
-        rows.append((f"{words}: widest cavity upstream, dp", cavity(run, [0.5], []), 1))
+        rows.append((f"{words}: widest cavity upstream, dp", cavity(run, 0.5, -1), 1))
     return rows
 
 
