@@ -41,6 +41,7 @@ struct entry {
     const char *set; /* the --set argument, or NULL */
     const char *key;
     const char *value;
+    const char *replaces; /* the file's value that --set replaces, or NULL */
 };
 
 struct case_section {

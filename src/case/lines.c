@@ -173,7 +173,8 @@ static enum err read_entry(struct reader *r, int line, char *text)
     const char *const value = cut_value(equals + 1, &why);
     if (why) return bad_line(r, line, "`%s` %s", key, why);
     if (!r->in_lost_section)
-        r->entries[r->n_entries++] = (struct entry){r->n_sections - 1, line, NULL, key, value};
+        r->entries[r->n_entries++] =
+            (struct entry){.section = r->n_sections - 1, .line = line, .key = key, .value = value};
     return ERR_OK;
 }
 
@@ -317,15 +318,18 @@ static enum err find_target(struct reader *r, const struct entry *e, const char 
 }
 
 /* Replaces the file's entry for the key (all entries of a list of shapes). */
-static void put_entry(struct reader *r, const struct entry *e)
+static void put_entry(struct reader *r, struct entry e)
 {
     int kept = 0;
     for (int k = 0; k < r->n_entries; k++) {
-        const struct entry *old = &r->entries[k];
-        if (old->section != e->section || strcmp(old->key, e->key) != 0) r->entries[kept++] = *old;
+        const struct entry old = r->entries[k];
+        if (old.section != e.section || strcmp(old.key, e.key) != 0)
+            r->entries[kept++] = old;
+        else
+            e.replaces = old.set ? old.replaces : old.value;
     }
     r->n_entries = kept;
-    r->entries[r->n_entries++] = *e;
+    r->entries[r->n_entries++] = e;
 }
 
 static enum err apply_set(struct reader *r, const char *set)
@@ -354,7 +358,7 @@ static enum err apply_set(struct reader *r, const char *set)
     e.value = cut_value(value, &why);
     if (why) return bad_entry(r, &e, "`%s` %s", key, why);
     TRY(find_target(r, &e, prefix, &e.section));
-    put_entry(r, &e);
+    put_entry(r, e);
     return ERR_OK;
 }
 

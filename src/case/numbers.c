@@ -180,11 +180,32 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     return false;
 }
 
+/* What makes quantities not fit where --set gives a constant without the unit that it has in the file: for the
+ * end of a message, or "". */
+static const char *unit_left_out(struct reader *r, char text[300])
+{
+    for (int k = 0; k < r->n_constants; k++) {
+        struct constant *const c = &r->constants[k];
+        const struct entry *const e = c->entry;
+        const struct expr_names names = {r, case_name, EXPR_FIXED};
+        struct quantity before;
+        char why[EXPR_WHY];
+        if (!e->replaces || !evaluate_constant(r, c, why) || c->q.dim.kind != DIM_PLAIN) continue;
+        if (!expr_value(slice_of(e->replaces), &names, &before, why)) continue;
+        if (before.dim.kind != DIM_KNOWN) continue;
+        snprintf(text, 300, "; --set %.60s has no unit, but the case has `%.60s = %.60s`: give one",
+                 e->set, e->key, e->replaces);
+        return text;
+    }
+    return "";
+}
+
 /* A consequence of a problem already reported is not reported again. */
 enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why)
 {
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
-    return bad_value(r, e, "%s", why);
+    char unit[300];
+    return bad_value(r, e, "%s%s", why, unit_left_out(r, unit));
 }
 
 enum err case_all_constants(struct reader *r)
@@ -222,10 +243,10 @@ enum err case_check_dim(struct reader *r, const struct entry *e, const struct di
                         const char *unit)
 {
     if (dim_fits(dim, unit)) return ERR_OK;
-    char have[DIM_TEXT], want[DIM_TEXT];
+    char have[DIM_TEXT], want[DIM_TEXT], left_out[300];
     dim_text(dim, have);
     unit_dim_text(unit, want);
-    return bad_value(r, e, "%s where %s is expected", have, want);
+    return bad_value(r, e, "%s where %s is expected%s", have, want, unit_left_out(r, left_out));
 }
 
 enum err case_number(struct reader *r, const struct entry *e, struct slice text, const char *unit,

@@ -361,6 +361,22 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double *const low = s->scene->domain_lower, *const high = s->scene->domain_upper;
+    const double x = p->x[first], y = p->y[first];
+    const char *const side = x < low[0]     ? "left"
+                             : x >= high[0] ? "right"
+                             : y < low[1]   ? "lower"
+                                            : "upper";
+    diag_warn(d,
+              "t = %.6g s: fluid particle %lld has left the domain through its %s side, at (%.6g, "
+              "%.6g) m, and is removed: its mass and pressure will be missing; a [wall] in its way "
+              "or a larger [domain] keeps it",
+              s->state.time, (long long)p->id[first], side, x, y);
+}
+
 /* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
 #define CROSSING_SHARE 0.01
 enum { CROSSING_LEAST = 3, CROSSING_INTERVAL = 2 * CHECK_INTERVAL };

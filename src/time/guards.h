@@ -18,6 +18,9 @@ enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
  * there are more than stray particles. */
 enum err guards_penetration(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
+/* Says that fluid has left the domain: the particles from `first` on, which are no longer in a cell. */
+void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d);
+
 /* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
 int64_t monitor_crossed(const struct simulation *s, int64_t *first);
 

@@ -192,6 +192,7 @@ static enum err sort_particles(struct simulation *s, struct diag *d)
     if (s->effects & FX_COUPLING) forget_touch(s, KIND_SOLID);
     if (s->effects & FX_OPEN) TRY(open_exchange(&s->open, &s->fluid.k, fluid, d));
     const int64_t lost = cells_sort(&s->cells, KIND_FLUID, fluid);
+    if (lost && s->state.lost == 0) guards_warn_of_loss(s, fluid->n - lost, d);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
         const double energy = energy_of(s, fluid, i);
         s->state.lost_energy += energy;

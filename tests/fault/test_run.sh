@@ -136,7 +136,7 @@ awk -F, -v rows=$((tenths * 100 + 2)) '
     END { exit bad || NR != rows }' "$dir/killed/probes.csv" ||
     fail "killed and continued: a gap or a doubled row in probes.csv"
 
-# --- fluid that runs out is said at the end ---
+# --- fluid that runs out is said when it begins to, and at the end ---
 cat >"$dir/leak.cfg" <<'END'
 dp = 10 mm
 end_time = 0.3
@@ -151,6 +151,8 @@ shape = box -0.03, 0, 0, 0.1
 shape = box -0.03, -0.03, 0.05, 0
 END
 expect 0 'of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/leak"
+said=$(grep -c 't = 0.[0-9]* s: fluid particle [0-9]* has left the domain through its [a-z]* side, at' "$dir/output")
+[ "$said" = 1 ] || fail "the first particle that leaves is said $said times, not once"
 # All of it: nothing is left that could have gained energy.
 sed -i '/-0.03, -0.03/d' "$dir/leak.cfg"
 expect 0 '50 of 50 fluid particles have left the domain' "$dir/leak.cfg" --quiet --out "$dir/dry"
