@@ -16,7 +16,10 @@ done
 run() {
     local name=$1
     shift
-    "$SPHFSI" "$work/$name.cfg" --out "$work/$name" "$@" --quiet >"$work/log" 2>&1 || { cat "$work/log"; failed=1; }
+    if ! "$SPHFSI" "$work/$name.cfg" --out "$work/$name" "$@" --quiet >"$work/log" 2>&1; then
+        cat "$work/log"
+        failed=1
+    fi
     grep -i warning "$work/log" && failed=1
     grep -q '"fluid_left_domain": 0,' "$work/$name/summary.json" || failed=1
 }

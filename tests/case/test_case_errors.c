@@ -396,10 +396,6 @@ static const struct {
     {TOP SOLID, "zebra=1", "--set zebra=1: unknown key or constant `zebra`"},
     {TOP SOLID, "dp=1 MPa",
      "--set dp=1 MPa: dp = 1 MPa: a pressure (Pa) where a length (m) is expected"},
-    {"dp = 1 mm\nend_time = 1\n" FLUID "max_speed = sqrt(9.81 m/s^2*H)\n[constants]\nH = 0.3 m\n",
-     "H=0.15",
-     "bad.cfg:6: max_speed = sqrt(9.81 m/s^2*H): a quantity in m^0.5/s where a speed (m/s) is "
-     "expected; --set H=0.15 has no unit, but the case has `H = 0.3 m`: give one"},
     {TOP SOLID, "b.young=1 MPa", "--set b.young=1 MPa: the case has no section `b`"},
     {TOP SOLID, "a.yuong=1 MPa", "--set a.yuong=1 MPa: unknown key `yuong`; did you mean `young`?"},
     {TOP SOLID, "solid a.young=", "--set solid a.young=: `young` has no value"},
