@@ -286,8 +286,18 @@ static const char *step_key(const struct simulation *s)
     if (s->scene->numerics.fixed_step > 0) return "fixed_step";
     return s->effects & FX_FLUID ? "cfl" : "solid_safety";
 }
+
+/* The work of dummies does not depend on the step. Fluid that is resolved better makes it less, also between
+ * bodies that meet. */
+static const char *less_of(const struct simulation *s, const struct gain *g)
+{
+    return g->term == TERM_ALL ? "dp" : step_key(s);
+}
+
 static const char *remedy_of(const struct simulation *s, const struct gain *g)
 {
+    if (g->term == TERM_ALL)
+        return s->effects & FX_CONTACT && s->contact.near ? " or a larger gap in [contact]" : "";
     if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
@@ -353,10 +363,10 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
         return diag_fail(d, ERR_GUARD, "%s. The run is unstable; a smaller %s%s may help", text,
-                         step_key(s), remedy_of(s, &g));
+                         less_of(s, &g), remedy_of(s, &g));
     if (s->guard.warned_energy) return ERR_OK;
     s->guard.warned_energy = true;
-    diag_warn(d, "%s. The results may be invalid; a smaller %s%s may help", text, step_key(s),
+    diag_warn(d, "%s. The results may be invalid; a smaller %s%s may help", text, less_of(s, &g),
               remedy_of(s, &g));
     return ERR_OK;
 }

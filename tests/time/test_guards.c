@@ -294,6 +294,25 @@ static void test_terms_apart(void)
         TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain((enum account_term)t, 0.02));
         TEST_ASSERT_EQUAL_INT(t + 1, warnings);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, names[t]), warning);
+        TEST_ASSERT_TRUE(!strstr(warning, "; a smaller dp ") == (t != TERM_ALL));
+    }
+}
+
+/* Where bodies meet in water, the layer between them may be too thin. */
+static void test_a_gain_between_bodies(void)
+{
+    for (int near = 0; near < 2; near++) {
+        warnings = 0;
+        rig.sim.guard.warned_energy = false;
+        rig.sim.effects |= FX_CONTACT;
+        rig.sim.contact.near = near;
+        rig.sim.gain = (struct gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
+        rig.sim.checked = true;
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+        TEST_ASSERT_NOT_NULL_MESSAGE(
+            strstr(warning, near ? "; a smaller dp or a larger gap in [contact] may help"
+                                 : "; a smaller dp may help"),
+            warning);
     }
 }
 
@@ -381,6 +400,7 @@ int main(void)
     RUN_TEST(test_energy_that_is_gained);
     RUN_TEST(test_a_gain_that_lasts);
     RUN_TEST(test_terms_apart);
+    RUN_TEST(test_a_gain_between_bodies);
     RUN_TEST(test_what_may_help_is_said);
     RUN_TEST(test_warnings_before_the_end);
     RUN_TEST(test_substeps_without_end);
