@@ -74,6 +74,14 @@ static void test_nan_velocity_of_the_fluid(void)
     expect(KIND_FLUID, 37, "speed");
 }
 
+/* The first particle that is wrong is named, though another was noticed. */
+static void test_nan_position_of_the_fluid(void)
+{
+    rig.sim.kind[KIND_FLUID].vx[50] = (double)NAN;
+    rig.sim.kind[KIND_FLUID].x[3] = (double)NAN;
+    expect(KIND_FLUID, 3, "position (m)");
+}
+
 static void test_infinite_velocity_of_the_fluid(void)
 {
     rig.sim.kind[KIND_FLUID].vx[99] = -(double)INFINITY;
@@ -386,6 +394,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_a_sound_state_passes);
     RUN_TEST(test_nan_velocity_of_the_fluid);
+    RUN_TEST(test_nan_position_of_the_fluid);
     RUN_TEST(test_infinite_velocity_of_the_fluid);
     RUN_TEST(test_speed_of_sound_of_the_fluid);
     RUN_TEST(test_density_of_the_fluid);
