@@ -31,7 +31,7 @@ def arguments(description, example, default, picture):
     parser.add_argument("--label", action="append", default=[], metavar="TEXT",
                         help="legend text of the --reference at the same place")
     parser.add_argument("--out", metavar="FILE", help="picture, .png or .pdf "
-                        f"(default: {picture} in the first run's folder)")
+                        f"(default: {picture} in the first folder)")
     parser.add_argument("--csv", metavar="FILE", help="write the table, in SI units")
     args = parser.parse_args()
     if not args.run:
@@ -88,7 +88,7 @@ def plot(args, choose, draw, picture):
         print_table(rows, units)
     if args.csv:
         write_csv(args.csv, rows)
-    runfiles.save(figure, args.out or runs[0].folder / picture)
+    runfiles.save(figure, args.out or Path(args.run[0]) / picture)
 
 
 def main():

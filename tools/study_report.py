@@ -218,17 +218,19 @@ def summary(study):
     """Three sentences: the price of half the error, the finest runs, the settings that save most."""
     price, finest, none = [], [], []
     for case, entry in study.cases.items():
+        title = entry.get("title", case)
+        title = title[0].lower() + title[1:]
         b = study.slope(case, main_error(entry))
-        price += [(2 ** (1 / b), case)] if b else []
-        none += [] if b else [case]
+        price += [(2 ** (1 / b), title)] if b else []
+        none += [] if b else [title]
         known = [p for p in study.base(case) if study.error(p)]
-        finest += [(study.error(known[-1]), cost(known[-1]), case)] if known else []
+        finest += [(study.error(known[-1]), cost(known[-1]), title)] if known else []
     text = "**What does accuracy cost?** "
     if price:
         (low, easy), (high, hard) = min(price), max(price)
         text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times "
                  "the CPU time")
-        text += (f"; in {', '.join(none)} it does not reduce the error. " if none else ". ")
+        text += (f". It does not reduce the error of: {', '.join(none)}. " if none else ". ")
     if finest:
         (low, fast, best), (high, slow, worst) = min(finest), max(finest)
         text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to "

@@ -99,7 +99,8 @@ def order_table(study):
                 continue
             c, before = orders(values)
             reference = error.get("reference") if error["kind"] in SCALAR else None
-            rows.append([case, error["name"], against(error), *(f"{v:.5g}" for _, v in values[:3]),
+            rows.append([entry.get("title", case), error["name"], against(error),
+                         *(f"{v:.5g}" for _, v in values[:3]),
                          f"{c['order']:.2f}" if c["order"] else f"none ({c['why']})", before,
                          f"{c['extrapolated']:.5g}" if c["order"] else "-", f"{100 * c['band']:.2g}",
                          "-" if reference is None else f"{reference:.5g}"])
@@ -117,7 +118,8 @@ def halving_table(study):
                 continue
             order = np.polyfit(np.log([p["dp"] for p in points]),
                                np.log([p["errors"][error] for p in points]), 1)[0]
-            rows.append([case, error, reference, f"{percent(points[0]['errors'][error])} to "
+            rows.append([entry.get("title", case), error, reference,
+                         f"{percent(points[0]['errors'][error])} to "
                          f"{percent(points[-1]['errors'][error])}", f"{order:.2f}",
                          f"{2 ** (1 / b):.1f}" if b else "refinement does not reduce it"])
     return table(["case", "error", "against", "coarsest to finest (%)", "power of dp",

@@ -194,7 +194,7 @@ def test_refinement(tmp):
     from sphfsi.files import make_runs
     names = [run.name for run in make_runs([study])]
     assert names == ["dp-0.01", "dp-0.005", "dp-0.0025"], names
-    draws(study / "probes.png", "plot_probes", study, "--out", study / "probes.png")
+    draws(study / "probes.png", "plot_probes", study)
     draws(study / "ledger.png", "plot_ledger", study, "--out", study / "ledger.png")
 
 
