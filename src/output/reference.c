@@ -196,8 +196,8 @@ static double at_time(const struct curve *curve, double t)
     return curve->value[k - 1] + fraction * (curve->value[k] - curve->value[k - 1]);
 }
 
-/* The first local extremum within 2 % of the largest magnitude. Of an oscillation this is always the same
- * cycle, where round-off would decide which one is the highest. */
+/* The first local extremum within 0.5 % of the largest magnitude, as in python/sphfsi/draw_probes.py. Of an
+ * oscillation this is always the same cycle, where round-off would decide which one is the highest. */
 static void find_peak(const struct curve *v, double from, double until, double *peak, double *when)
 {
     double top = 0;
@@ -208,7 +208,7 @@ static void find_peak(const struct curve *v, double from, double until, double *
         const double here = fabs(v->value[k]);
         if (v->t[k] < from || v->t[k] > until) continue;
         if (!isnan(*peak) && here < fabs(*peak)) return;
-        if (here < 0.98 * top || here == fabs(*peak)) continue;
+        if (here < 0.995 * top || here == fabs(*peak)) continue;
         *peak = v->value[k];
         *when = v->t[k];
     }

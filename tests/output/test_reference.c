@@ -90,11 +90,12 @@ static void test_one_row_is_constant_and_the_first_of_equal_peaks_counts(void)
 {
     put("r.csv", "0 2\n");
     const struct score c =
-        score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n0,0,0\n1,-1.99,0\n2,0,0\n3,2,0\n4,0,0\n");
-    TEST_ASSERT_EQUAL(5, c.points);
-    TEST_ASSERT_EQUAL_DOUBLE(-1.99, c.peak);
+        score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n0,0,0\n0.4,1.98,0\n0.6,0,0\n1,-1.992,0\n"
+                                   "2,0,0\n3,2,0\n4,0,0\n");
+    TEST_ASSERT_EQUAL(7, c.points);
+    TEST_ASSERT_EQUAL_DOUBLE(-1.992, c.peak); /* 1.98 is 1 % below the largest */
     TEST_ASSERT_EQUAL_DOUBLE(1, c.peak_time);
-    TEST_ASSERT_DOUBLE_WITHIN(1e-12, (0 - 1.99 + 0 + 2 + 0) / 5 - 2, c.mean);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, (1.98 - 1.992 + 2) / 7 - 2, c.mean);
 }
 
 static void test_nothing_in_common(void)
