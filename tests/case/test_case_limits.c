@@ -74,6 +74,10 @@ static void test_values_that_do_not_fit_together(void)
          "clamp = box 0, 0, 10 mm, 5 mm\nclamp_motion = m\n[motion m]\nstart = 2\nstop = 2\n"
          "velocity = 1, 0\n",
          "l.cfg:10: [motion m] start = 2 s must come before stop = 2 s"},
+        {TOP "[motion m]\nkind = rotation\nangle_amplitude = 0.1\n" WATER,
+         "l.cfg:3: [motion m] angle_amplitude needs `period`"},
+        {TOP "[motion m]\nkind = rotation\n" WATER,
+         "l.cfg:3: [motion m] kind = rotation needs `angle`, `angle_amplitude` or `file`"},
         {TOP WATER "[probe p]\nquantity = force\n",
          "l.cfg:6: [probe p] needs `body`, the solids or walls that are measured"},
         {TOP SOLID "[probe p]\npoint = 5 mm, 5 mm\n",
