@@ -184,9 +184,10 @@ double simulation_flux(const struct simulation *s, const double a[2], const doub
     const struct particles *const p = &s->kind[KIND_FLUID];
     const double length = elementary_hypot(b[0] - a[0], b[1] - a[1]);
     const double tx = (b[0] - a[0]) / length, ty = (b[1] - a[1]) / length;
-    /* The mean over a strip, weighted by a cosine bell of area 1. With three spacings to either
-     * side its sum over a lattice is exact. */
-    const double dp = s->scene->top.dp, reach = 3 * dp;
+    /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side is the least
+     * for which its sum over a lattice is exact. A wider strip would miss what flows into an opening
+     * round its edge. */
+    const double dp = s->scene->top.dp, reach = dp;
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) {
         const double x = cells_minimum_image(&s->cells, 0, p->x[i] - a[0]);

@@ -104,6 +104,17 @@ static void test_level_of_volume(void)
         assert_near(0.03 * dp, 3 * dp, simulation_level(s, along[k], dp), "level of a layer");
 }
 
+/* Water that moves within a spacing of a line alone passes it as if all did. */
+static void test_flux_is_that_at_the_line(void)
+{
+    open_at(0, 0);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++)
+        if (fabs(p->x[i] - 0.2) > rig.sim.scene->top.dp) p->vx[i] = 0;
+    const double low[2] = {0.2, 0.05}, high[2] = {0.2, 0.15};
+    assert_near(0.01 * 0.2, 2 * 0.1, simulation_flux(&rig.sim, low, high), "flux");
+}
+
 /* Water without a surface in both directions: nothing differs at the sides. */
 static void test_across_periodic_sides(void)
 {
@@ -128,6 +139,7 @@ int main(void)
     RUN_TEST(test_anywhere);
     RUN_TEST(test_flux_of_denser_water);
     RUN_TEST(test_level_of_volume);
+    RUN_TEST(test_flux_is_that_at_the_line);
     RUN_TEST(test_across_periodic_sides);
     return UNITY_END();
 }
