@@ -77,11 +77,19 @@ def test_particles_that_enter():
 
 def test_a_cavity_is_below_water_that_touches_the_face():
     def widest(run):
-        return of.cavity(run, [0], [])
+        return of.cavity(run, 0, -1)
     x, y = LATTICE.T
     assert at_the_wall(LATTICE, widest) == 0
     assert at_the_wall(LATTICE[(x < -3) | (y < 2) | (y > 5)], widest) == 3
     assert at_the_wall(LATTICE[(x < -3) | (y < 2)], widest) == 0  # open above
+    drops = np.array([(-3.5 - i, 20.5 + j) for i in range(4) for j in range(12)])
+    assert at_the_wall(np.vstack([LATTICE, drops]), widest) == 0  # drops in the air hang on no water
+
+
+def test_a_wave_without_a_period_has_no_figure():
+    t = np.arange(0, 7, 0.001)
+    found = of.wave_of("frequency")(Made({"time_s": t, "kinetic_J_per_m": np.exp(-t)}))
+    assert all(math.isnan(figure) for _, figure, _ in found), found
 
 
 if __name__ == "__main__":
