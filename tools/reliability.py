@@ -194,13 +194,13 @@ def random_lines():
     count = scenes["outcomes"]
     lines = ["", "## Random scenes", "",
              "`make random-cases` draws small scenes with a seed and runs each with every build "
-             f"({', '.join(scenes['builds'])}), on another number of threads, killed and restarted, "
-             "stopped and restarted on another build, and forked without a change. State, rows and snapshots "
-             "have to agree bit by bit; of a fork its last snapshot.", "",
+             f"({', '.join(scenes['builds'])}) and on another number of threads. Each is killed and "
+             "restarted, stopped and restarted on another build, and forked without a change. State, rows "
+             "and snapshots have to agree bit by bit; of a fork its last snapshot.", "",
              f"Of {scenes['cases']:,} scenes (seeds {scenes['seeds'][0]} to {scenes['seeds'][1]}, "
              f"{scenes['steps']:,} steps) {count.get('finished', 0):,} finished with finite numbers and "
-             f"speeds below that of sound, {count.get('stopped by a guard', 0)} were stopped by a guard at "
-             f"the same step everywhere, {len(scenes['failures'])} differ. {count.get('refused', 0)} more "
+             f"speeds below that of sound. {count.get('stopped by a guard', 0)} were stopped by a guard at "
+             f"the same step everywhere. {len(scenes['failures'])} differ. {count.get('refused', 0)} more "
              f"were refused by a sentence. Program "
              f"{scenes['version']}, {scenes['date']}, {scenes['seconds']} s.",
              "", "| of the scenes | have |", "|---|---|"]

@@ -16,6 +16,16 @@ enum gradient_sum {
     GRADIENT_SUMS = OF_V + 2
 };
 
+/* Adds V t^3 xi xi, the matrix whose inverse makes gradients exact for linear fields, to the first
+ * three sums. */
+SPHFSI_INLINE void add_moments(vreal sum[][PARTS], int part, vreal wx, vreal wy,
+                               const struct separation *r)
+{
+    sum[OF_XX][part] = vfma(wx, r->x, sum[OF_XX][part]);
+    sum[OF_XY][part] = vfma(wx, r->y, sum[OF_XY][part]);
+    sum[OF_YY][part] = vfma(wy, r->y, sum[OF_YY][part]);
+}
+
 /* Adds V (f_a - f_b) t^3 xi, of which grad W is a multiple, to the sums of a field. */
 SPHFSI_INLINE void add_difference(vreal sum[][PARTS], int field, int part, vreal wx, vreal wy,
                                   vreal difference)
@@ -36,9 +46,7 @@ SPHFSI_INLINE void gradient_add(const struct neighbours *neighbours, const struc
             const real *const b = candidates(neighbours, code, part);
             const struct separation r = separation_from(a, code, b);
             const vreal w = gradient_weight(&r, b), wx = w * r.x, wy = w * r.y;
-            sum[OF_XX][part] = vfma(wx, r.x, sum[OF_XX][part]);
-            sum[OF_XY][part] = vfma(wx, r.y, sum[OF_XY][part]);
-            sum[OF_YY][part] = vfma(wy, r.y, sum[OF_YY][part]);
+            add_moments(sum, part, wx, wy, &r);
             add_difference(sum, OF_P, part, wx, wy, a->p - lane(b, PACKED_P));
             add_difference(sum, OF_DENS, part, wx, wy, a->dens - lane(b, PACKED_DENS));
             add_difference(sum, OF_U, part, wx, wy, a->u - lane(b, u));
@@ -125,7 +133,7 @@ SPHFSI_INLINE void pack_gradients(const struct fluid *f, const struct particles 
 static void laplacian_of(const struct neighbours *neighbours, const struct receiver *a,
                          const struct velocity_gradient *own, double laplacian[GROUPS][2])
 {
-    enum { XX, XY, YY, U_XX, U_XY, U_YY, V_XX, V_XY, V_YY, ALL };
+    enum { U_XX = OF_P, U_XY, U_YY, V_XX, V_XY, V_YY, ALL };
     vreal sum[ALL][PARTS] = {{{0}}};
     for (int k = 0; k < neighbours->n; k++)
         for (int part = 0; part < PARTS; part++) {
@@ -137,9 +145,7 @@ static void laplacian_of(const struct neighbours *neighbours, const struct recei
                         u_y = own->u_y - lane(b, PACKED_DU_DY),
                         v_x = own->v_x - lane(b, PACKED_DV_DX),
                         v_y = own->v_y - lane(b, PACKED_DV_DY);
-            sum[XX][part] = vfma(wx, r.x, sum[XX][part]);
-            sum[XY][part] = vfma(wx, r.y, sum[XY][part]);
-            sum[YY][part] = vfma(wy, r.y, sum[YY][part]);
+            add_moments(sum, part, wx, wy, &r);
             sum[U_XX][part] = vfma(u_x, wx, sum[U_XX][part]);
             sum[U_XY][part] = sum[U_XY][part] + vfma(u_x, wy, u_y * wx);
             sum[U_YY][part] = vfma(u_y, wy, sum[U_YY][part]);
@@ -151,7 +157,7 @@ static void laplacian_of(const struct neighbours *neighbours, const struct recei
     for (int m = 0; m < ALL; m++) total(sum[m], of[m]);
     for (int g = 0; g < GROUPS; g++) {
         const struct moments m =
-            moments_of((double)of[XX][g], (double)of[XY][g], (double)of[YY][g]);
+            moments_of((double)of[OF_XX][g], (double)of[OF_XY][g], (double)of[OF_YY][g]);
         laplacian[g][0] =
             moments_trace(&m, (double)of[U_XX][g], (double)of[U_XY][g], (double)of[U_YY][g]);
         laplacian[g][1] =
