@@ -60,14 +60,15 @@ def check_text(path, lines):
             report(path, number, f"{word[0]} (an issue's number makes the last one acceptable)")
 
 
-# A string of a user must never reach a shell: no other program is started at all.
+# A string of a user must never reach a shell: no other program is started at all. main.c starts itself again.
 PROGRAMS = re.compile(r"\b(system|popen|exec[lv]p?e?|execvpe|fexecve|fork|vfork|posix_spawnp?)\s*\(")
 
 
 def check_programs(path, lines):
     for number, line in enumerate(lines, 1):
         call = PROGRAMS.search(line)
-        if call and path.suffix in (".c", ".h", ".def"):
+        itself = path.as_posix().endswith("src/app/main.c") and "execv(path, argv)" in line
+        if call and not itself and path.suffix in (".c", ".h", ".def"):
             report(path, number, f"{call[1]}() starts another program")
 
 

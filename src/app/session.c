@@ -7,7 +7,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <strings.h>
 
 static void forward_warning(void *context, const char *text)
 {
@@ -144,14 +143,12 @@ static int threads_by_default(int64_t n, int offered, const struct sphfsi_option
 /* Threads wait for each other several times a step, and one without a core delays all. */
 static void say_busy(int asked, const struct sphfsi_options *o)
 {
-    const char *const policy = getenv("OMP_WAIT_POLICY");
-    if (asked == 1 || (policy && strcasecmp(policy, "passive") == 0)) return;
+    if (asked == 1) return;
     const int idle = thread_idle_cores();
     if (idle < asked)
         session_say(o,
                     "the machine is busy: %d of %d cores idle for the %d threads that are asked "
-                    "for, so they may wait most of the time; --threads %d or "
-                    "OMP_WAIT_POLICY=passive before the command is faster",
+                    "for, so they wait for each other; --threads %d is no slower now",
                     idle, thread_cores(), asked, idle);
 }
 
