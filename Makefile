@@ -192,9 +192,10 @@ $(B)/unity.o: $(UNITY_SRC)/unity.c $(B)/flags
 $(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(CORE)
 	$(Q)$(LINK) $(WRAP)
 
-# Puts itself between the program and its memory (CMakeLists.txt, too).
-$(B)/tests/fault/test_alloc: private WRAP := $(addprefix -Wl$(comma)--wrap=,malloc calloc realloc \
-  aligned_alloc free fopen fdopen opendir)
+# A test that puts itself between the program and a library names the functions in lines of its own
+# (CMakeLists.txt and tools/mutants.py, too).
+$(TESTS): private WRAP = $(addprefix -Wl$(comma)--wrap=,$(shell sed -n 's/^ \* --wrap: //p' \
+  $(@:$(B)/%=%).c | tr -d '*/'))
 
 $(BENCHES): $(B)/bench_%: $(B)/bench/%.o $(CORE)
 	$(Q)$(LINK)

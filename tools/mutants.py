@@ -222,8 +222,8 @@ def link(program, test, fault, objects, folder):
     if out.exists():
         return
     out.parent.mkdir(parents=True, exist_ok=True)
-    wrap = ["-Wl," + ",".join(f"--wrap={name}" for name in "malloc calloc realloc aligned_alloc free fopen "
-                              "fdopen opendir".split())] if test.endswith("/test_alloc.c") else []
+    named = re.findall(r"^ \* --wrap: ([\w ]+)", (ROOT / test).read_text(), re.M)
+    wrap = [f"-Wl,--wrap={name}" for name in " ".join(named).split()] if test.endswith(".c") else []
     parts = [part for part in parts if not any(o.endswith("src_app_main.o") for o in objects)
              or not part.endswith("main.o")]
     core = str(program.build / "core.a")

@@ -324,8 +324,8 @@ bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layou
 static bool put_text(hid_t at, const char *name, const char *text)
 {
     const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-    H5Tset_size(type, text[0] ? strlen(text) : 1);
-    const hid_t a = H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+    const bool sized = H5Tset_size(type, text[0] ? strlen(text) : 1) >= 0;
+    const hid_t a = sized ? H5Acreate2(at, name, type, space, H5P_DEFAULT, H5P_DEFAULT) : -1;
     const bool ok = a >= 0 && H5Awrite(a, type, text) >= 0;
     H5Aclose(a);
     H5Sclose(space);

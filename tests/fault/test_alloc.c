@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart, a
  * fork, --inspect and --explain: a sentence and a status each time, nothing leaks, no lock is left, and
- * what was good stays good. malloc, calloc, realloc, aligned_alloc, fopen, fdopen and opendir of this
- * program are put in between by the linker (--wrap). Those within HDF5, a shared library, are not: it
- * says itself that it does not survive all of them; a snapshot that fails is rehearsed by full disks. */
+ * what was good stays good. The linker puts these in between:
+ * --wrap: malloc calloc realloc aligned_alloc free fopen fdopen opendir
+ * Those within HDF5, a shared library, are not: it says itself that it does not survive all of them; a
+ * snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
 #include "base/files.h"
 #include "sphfsi.h"
 #include "tiny.h"
