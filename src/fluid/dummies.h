@@ -314,13 +314,12 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
 
 _Static_assert(CELL_CAPACITY % EOS_BLOCK == 0, "a cell's dummies fill whole blocks");
 
-SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
-                                   const struct cells *c, int32_t cell, effect_set fx)
+/* Pressures and state of the dummies of a cell. */
+SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *f, struct particles *p, enum kind kind,
+                                         const struct cells *c, int32_t cell, effect_set fx)
 {
     struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);
-    const struct vector_constants k =
-        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct vector_constants){0};
     const int32_t clusters = clusters_in(&c->kind[kind], cell);
     double pressure[CELL_CAPACITY], dens[CELL_CAPACITY];
     gather_around_cell(neighbour_scratch, f, c, KIND_FLUID, cell);
@@ -337,45 +336,79 @@ SPHFSI_INLINE void dummies_of_cell(const struct fluid *f, struct particles *p, e
     for (int32_t m = 0; m < clusters; m++) {
         const struct dummies d = dummies_at(f, c, kind, cell, m);
         dummies_state(f, p, &d, &pressure[m * CLUSTER], &dens[m * CLUSTER], fx);
-        if (!p->fx && !(fx & SURFACE_EFFECTS)) continue;
+    }
+}
+
+/* After it: what the effects of a surface need, and the forces of the fluid. */
+SPHFSI_INLINE void dummies_surface_of_cell(const struct fluid *f, struct particles *p,
+                                           enum kind kind, const struct cells *c, int32_t cell,
+                                           effect_set fx)
+{
+    struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(f, c);
+    const struct vector_constants k =
+        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct vector_constants){0};
+    for (int32_t m = 0; m < clusters_in(&c->kind[kind], cell); m++) {
+        const struct dummies d = dummies_at(f, c, kind, cell, m);
+        if (fx & SURFACE_EFFECTS) pack_surface_fields(f, p, &d, fx);
+        if (!p->fx && !(fx & FX_NO_SLIP)) continue;
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
         if (fx & FX_NO_SLIP) no_slip(f, p, &d, &neighbours, &sides);
-        if (fx & SURFACE_EFFECTS) pack_surface_fields(f, p, &d, fx);
         if (p->fx) dummies_forces(f, p, &d, &neighbours, &sides, &k, fx);
     }
 }
 
-/* A cell, for the sets of effects that are frequent; `any` has those of the case. */
+/* Both for a cell, for the sets of effects that are frequent; `any` has those of the case. They are called
+ * by address, so what is compiled into one does not change the other. */
 typedef void SWEEP(dummies_cell)(const struct fluid *f, struct particles *p, enum kind kind,
                                  const struct cells *c, int32_t cell);
-#define DUMMIES(name, of_kind, set)                                                               \
+#define DUMMIES(name, of_cell, of_kind, set)                                                      \
     static void SWEEP(dummies_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
                                       const struct cells *c, int32_t cell)                        \
     {                                                                                             \
         (void)kind;                                                                               \
-        dummies_of_cell(f, p, (of_kind), c, cell, (set));                                         \
+        of_cell(f, p, (of_kind), c, cell, (set));                                                 \
     }
-DUMMIES(wall, KIND_WALL, 0u)
-DUMMIES(moving_wall, KIND_WALL, FX_MOTION)
-DUMMIES(solid, KIND_SOLID, 0u)
-DUMMIES(impedance, KIND_SOLID, FX_IMPEDANCE)
-DUMMIES(any, kind, f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+#define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
+DUMMIES(wall, dummies_state_of_cell, KIND_WALL, 0u)
+DUMMIES(moving_wall, dummies_state_of_cell, KIND_WALL, FX_MOTION)
+DUMMIES(solid, dummies_state_of_cell, KIND_SOLID, 0u)
+DUMMIES(surface_bare, dummies_surface_of_cell, kind, 0u)
+DUMMIES(surface_impedance, dummies_surface_of_cell, KIND_SOLID, FX_IMPEDANCE)
+DUMMIES(surface_standard, dummies_surface_of_cell, kind, STANDARD_SURFACE)
+DUMMIES(surface_standard_impedance, dummies_surface_of_cell, KIND_SOLID,
+        STANDARD_SURFACE | FX_IMPEDANCE)
+DUMMIES(surface_any, dummies_surface_of_cell, kind,
+        f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
 #undef DUMMIES
 
-static SWEEP(dummies_cell) * SWEEP(dummies_choice)(effect_set effects, enum kind kind)
+static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind kind)
 {
-    if (effects & SURFACE_EFFECTS) return SWEEP(dummies_any);
-    if (kind == KIND_SOLID)
-        return effects & FX_IMPEDANCE ? SWEEP(dummies_impedance) : SWEEP(dummies_solid);
+    if (kind == KIND_SOLID) return SWEEP(dummies_solid);
     return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
+}
+
+static SWEEP(dummies_cell) * SWEEP(dummies_surface)(effect_set effects, enum kind kind)
+{
+    const bool impedance = kind == KIND_SOLID && effects & FX_IMPEDANCE;
+    const effect_set surface = effects & (SURFACE_EFFECTS | FX_WALL_DAMPING);
+    if (surface == 0)
+        return impedance ? SWEEP(dummies_surface_impedance) : SWEEP(dummies_surface_bare);
+    if (surface != STANDARD_SURFACE) return SWEEP(dummies_surface_any);
+    return impedance ? SWEEP(dummies_surface_standard_impedance) : SWEEP(dummies_surface_standard);
 }
 
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
-    SWEEP(dummies_cell) *const of_cell = SWEEP(dummies_choice)(f->effects, kind);
+    struct particles *const p = &kinds[kind];
+    SWEEP(dummies_cell) *const state = SWEEP(dummies_state)(f->effects, kind);
+    SWEEP(dummies_cell) *const surface =
+        p->fx || f->effects & SURFACE_EFFECTS ? SWEEP(dummies_surface)(f->effects, kind) : NULL;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++)
-        of_cell(f, &kinds[kind], kind, c, f->near_fluid[kind][k]);
+    for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
+        state(f, p, kind, c, f->near_fluid[kind][k]);
+        if (surface) surface(f, p, kind, c, f->near_fluid[kind][k]);
+    }
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""An effect that a scene does not use costs nothing: its instructions and bytes are within 1 % of those of
-a program compiled without the effect, and its state is the same to the bit. A wall that no fluid reaches
-costs nothing either.
+"""An effect that a scene does not use costs nothing: its instructions and bytes are at most 0.05 % above
+those of a program compiled without the effect, and its state is the same to the bit. A wall that no
+fluid reaches costs at most 1 %. The short form, which any compiler has to pass, allows 1 % for all
+effects at once.
 
 Valgrind counts the instructions within simulation_step, which are the same in every run. Those of the
 allocator are left out: the threads' library calls it at each parallel region, and they depend on earlier
@@ -24,12 +25,15 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 BUILD = ROOT / "build/absence"
 REPORT = ROOT / "docs/absence.md"
 ALLOWED = 0.01
+ALLOWED_EACH = 0.0005
 STEPS = 24
 STEP = 1e-4  # s: fixed, so that the number of steps does not depend on anything
 
-TOP = f"scheme = paper\ndp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = {STEP}\n"
+ANY = f"dp = 1 cm\nend_time = 1\n[numerics]\nfixed_step = {STEP}\n"
+TOP = "scheme = paper\n" + ANY
 FLUID = "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
 WATER = FLUID + "surface = 0.1\nartificial_viscosity = 0.05\ndensity_diffusion = 0.1\n"
+STANDARD_WATER = FLUID + "surface = 0.1\nartificial_viscosity = 0.05\n"
 WALL = "[wall tank]\nshape = polyline thickness -0.03: 0, 0.2; 0, 0; 0.4, 0; 0.4, 0.2\n"
 FAR_WALL = "[wall far]\nshape = box 0.5, 0, 0.9, 0.2\n"
 DOMAIN = "[domain]\nlower = -0.1, -0.1\nupper = 1, 0.5\n"
@@ -48,6 +52,7 @@ SCENES = {
     "dam break": GRAVITY + TOP + WATER + WALL + OUTPUT,
     "solid alone": TOP + SOLID + OUTPUT,
     "gate": GRAVITY + TOP + WATER + WALL + SOLID + OUTPUT,
+    "standard gate": GRAVITY + ANY + STANDARD_WATER + WALL + SOLID + OUTPUT,
 }
 
 
@@ -102,15 +107,15 @@ def measure(program, scene):
         return steps, summary["memory_bytes"], summary["state_hash"], set(summary["effects"])
 
 
-def compare(left_out, program, scene, whole):
+def compare(left_out, program, scene, whole, allowed):
     """What the effects cost a scene that does not have them, instructions and bytes; whether it is good."""
     steps, size, state, _ = measure(program, SCENES[scene])
     excess = [whole[scene][0] / steps - 1, whole[scene][1] / size - 1]
     same = state == whole[scene][2]
-    good = max(excess) <= ALLOWED and same
+    good = max(excess) <= allowed and same
     print(f"{'ok' if good else 'FAILED':6s} {scene:12s} without {' '.join(left_out)}: {steps:.0f} "
-          f"instructions a step, {100 * excess[0]:+.2f} % with it; {size} bytes, "
-          f"{100 * excess[1]:+.2f} %{'' if same else '; OTHER BITS'}", flush=True)
+          f"instructions a step, {100 * excess[0]:+.3f} % with it; {size} bytes, "
+          f"{100 * excess[1]:+.3f} %{'' if same else '; OTHER BITS'}", flush=True)
     return excess, good
 
 
@@ -130,13 +135,17 @@ def row(name, cells):
 
 def summary(effects, costs):
     """Three sentences: whether an effect that a scene does not use costs anything."""
-    most, size = (max(abs(cell[k]) for cell in costs.values()) for k in (0, 1))
-    over = sum(max(cell) > ALLOWED for cell in costs.values())
+    most = max(cell[0] for cell in costs.values())
+    least = min(cell[0] for cell in costs.values())
+    size = max(abs(cell[1]) for cell in costs.values())
+    over = sum(max(cell) > ALLOWED_EACH for cell in costs.values())
     return (f"**Does an effect cost anything in a scene that does not use it?** {len(costs)} pairs of "
-            f"{len(effects)} effects and {len(SCENES)} scenes were compared. The largest difference is "
-            f"{100 * most:.2f} % of the instructions and {100 * size:.2f} % of the bytes. {over} "
-            f"pairs are above the limit of "
-            f"{100 * ALLOWED:.0f} %. The results are the same to the bit.")
+            f"{len(effects)} effects and {len(SCENES)} scenes were compared. The program with the effect "
+            f"takes from {100 * least:+.3f} to {100 * most:+.3f} % more instructions than the one without "
+            f"it, and {100 * size:.2f} % more bytes. {over} pairs are above the limit of "
+            f"{100 * ALLOWED_EACH:.2f} %. "
+            "The results are the same to the bit. Where code is absent, the compiler assigns registers "
+            "differently in code that stays, which is why some programs are dearer without the effect.")
 
 
 def report(whole, effects, costs, far, version):
@@ -144,7 +153,7 @@ def report(whole, effects, costs, far, version):
         "# What an absent effect costs", "", summary(effects, costs), "",
         f"`make absence` writes this report. It builds {len(effects) + 1} programs: one with all "
         f"effects, and for "
-        "each effect one without it. Each runs four small scenes (`tests/agree/test_absence.py`) over "
+        "each effect one without it. Each runs five small scenes (`tests/agree/test_absence.py`) over "
         f"{STEPS} steps on one thread, for x86-64-v3. Valgrind counts the instructions within "
         "`simulation_step`, which are the same in every run. Bytes are those of the run's arena. The "
         "hash of the "
@@ -154,12 +163,12 @@ def report(whole, effects, costs, far, version):
         row("bytes", [str(whole[s][1]) for s in SCENES]), "",
         "Each cell says by how much the program with all effects exceeds the one without the effect: "
         "instructions / bytes. *on*: the scene uses the effect, so there is nothing to compare. The limit is "
-        f"{100 * ALLOWED:.0f} %.", "",
+        f"{100 * ALLOWED_EACH:.2f} %.", "",
         row("effect", SCENES), row("---", ["---:"] * len(SCENES))]
     for effect in effects:
         lines.append(row(effect, [
             "on" if (effect, s) not in costs else
-            "{:+.2f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]))
+            "{:+.3f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]))
     near, both, _ = far
     lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes {both:.0f} "
                   f"instructions a "
@@ -177,7 +186,7 @@ def each(effects, whole, far, version):
             continue
         program = build("without", [effect])
         for scene in scenes:
-            costs[effect, scene], good = compare([effect], program, scene, whole)
+            costs[effect, scene], good = compare([effect], program, scene, whole, ALLOWED_EACH)
             failures += not good
     report(whole, effects, costs, far, version)
     return failures
@@ -188,10 +197,10 @@ def together(effects, whole):
     used = set.union(*(row[3] for row in whole.values()))
     unused = [e for e in effects if e not in used and e != "MULTIRATE"]
     program = build("quick", unused)
-    failures = sum(not compare(unused, program, name, whole)[1] for name in whole)
+    failures = sum(not compare(unused, program, name, whole, ALLOWED)[1] for name in whole)
     rows = re.findall(r"^\| ([A-Z_]+) \|.*", REPORT.read_text(), re.M)
-    over = [float(c) for c in re.findall(r"([+-]\d+\.\d\d) %", REPORT.read_text())]
-    if rows != effects or not over or max(over) > 100 * ALLOWED:
+    costs = [float(c) for c in re.findall(r"\| ([+-]\d+\.\d+) % /", REPORT.read_text())]
+    if rows != effects or not costs or max(costs) > 100 * ALLOWED_EACH:
         print(f"FAILED {REPORT} does not have every effect within the limit: make absence writes it anew")
         failures += 1
     return failures
