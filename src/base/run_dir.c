@@ -107,7 +107,13 @@ static enum err lock_run_dir(struct run_dir *dir, struct diag *d)
             return e;
         }
         struct stat mine, named;
-        if (fstat(fd, &mine) == 0 && stat(path, &named) == 0 && mine.st_ino == named.st_ino) {
+        const bool opened = fstat(fd, &mine) == 0, there = opened && stat(path, &named) == 0;
+        if (!there && (!opened || errno != ENOENT)) {
+            diag_fail(d, ERR_IO, "%s: cannot be looked up: %s", path, strerror(errno));
+            close(fd);
+            return ERR_IO;
+        }
+        if (there && mine.st_ino == named.st_ino) {
             if (ftruncate(fd, 0) != 0 || dprintf(fd, "%ld\n", (long)getpid()) < 0)
                 diag_warn(d,
                           "%s: cannot write the process ID, so a second run cannot say which "
