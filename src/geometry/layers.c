@@ -14,69 +14,6 @@ enum { PARTS = 8 };
 /* Two points of a wall nearer than this many dp count as one. */
 static const double too_near = 0.65;
 
-/* --- points in a hash table --- */
-
-static uint64_t slot_of(const struct point_grid *t, int64_t i, int64_t j)
-{
-    uint64_t key = (uint64_t)i * 0x9E3779B97F4A7C15u ^ (uint64_t)j * 0xC2B2AE3D27D4EB4Fu;
-    key ^= key >> 29;
-    key *= 0xBF58476D1CE4E5B9u;
-    return (key >> 32) & t->mask;
-}
-
-static void link_point(struct point_grid *t, int64_t k)
-{
-    const uint64_t slot =
-        slot_of(t, (int64_t)floor(t->pt[k][0] / t->side), (int64_t)floor(t->pt[k][1] / t->side));
-    t->next[k] = t->head[slot];
-    t->head[slot] = (int32_t)(k + 1);
-}
-
-static enum err grow(struct point_grid *t, struct sampler *g)
-{
-    const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
-    if (capacity > INT32_MAX / 2)
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: dp = %g m needs too many wall particles along curved or slanted "
-                         "walls; use a larger dp or shorter walls",
-                         g->scene->path, g->scene->top.dp);
-    double(*pt)[2] = arena_alloc(&g->temp, (size_t)capacity, sizeof *pt, "walls", g->diag);
-    t->next = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->next, "walls", g->diag);
-    t->head = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->head, "walls", g->diag);
-    if (!pt || !t->next || !t->head) return ERR_MEMORY;
-    if (t->n) memcpy(pt, t->pt, (size_t)t->n * sizeof *pt);
-    t->pt = pt;
-    t->capacity = capacity;
-    t->mask = (uint64_t)capacity - 1;
-    for (int64_t k = 0; k < t->n; k++) link_point(t, k);
-    return ERR_OK;
-}
-
-static enum err add_point(struct point_grid *t, struct sampler *g, double x, double y)
-{
-    if (t->n == t->capacity) TRY(grow(t, g));
-    t->pt[t->n][0] = x;
-    t->pt[t->n][1] = y;
-    link_point(t, t->n++);
-    return ERR_OK;
-}
-
-/* Whether a point of the table is nearer than `distance`. */
-static bool any_within(const struct point_grid *t, double x, double y, double distance)
-{
-    if (t->n == 0) return false;
-    const int64_t i0 = (int64_t)floor((x - distance) / t->side),
-                  i1 = (int64_t)floor((x + distance) / t->side),
-                  j0 = (int64_t)floor((y - distance) / t->side),
-                  j1 = (int64_t)floor((y + distance) / t->side);
-    for (int64_t j = j0; j <= j1; j++)
-        for (int64_t i = i0; i <= i1; i++)
-            for (int32_t n = t->head[slot_of(t, i, j)]; n; n = t->next[n - 1])
-                if (square(t->pt[n - 1][0] - x) + square(t->pt[n - 1][1] - y) < square(distance))
-                    return true;
-    return false;
-}
-
 /* --- choice of pieces --- */
 
 /* Whether all edges of a shape are along the lattice. The joints between a polyline's segments are
@@ -247,7 +184,7 @@ static enum err add_faces(struct layers *l, struct face_set *set, const struct l
         for (int j = 0; j < e.parts; j++) {
             double at[2];
             part_of(&e, j, 0, at);
-            if (exposed(l, &e, j)) TRY(add_point(&set->grid, l->g, at[0], at[1]));
+            if (exposed(l, &e, j)) TRY(grid_add(&set->grid, l->g, at[0], at[1]));
         }
     }
     return ERR_OK;
@@ -265,7 +202,7 @@ struct trace {
 
 static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
 {
-    if (any_within(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
+    if (grid_any_within(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
         !in_wall(l, at[0], at[1]) || on_the_lattice(l, at[0], at[1]))
         return ERR_OK;
     if (t->n == t->capacity) {
@@ -327,8 +264,8 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
 /* Adds a point unless there is already one at its place. */
 static enum err offer(struct layers *l, double x, double y)
 {
-    if (any_within(&l->points, x, y, too_near * l->dp)) return ERR_OK;
-    return add_point(&l->points, l->g, x, y);
+    if (grid_any_within(&l->points, x, y, too_near * l->dp)) return ERR_OK;
+    return grid_add(&l->points, l->g, x, y);
 }
 
 /* Points at equal distances along the trace from `first` to `last`. */
@@ -428,7 +365,7 @@ enum err layers_create(struct layers *l, struct sampler *g, const struct region 
 
 enum err layers_take(struct layers *l, double x, double y)
 {
-    TRY(add_point(&l->points, l->g, x, y));
+    TRY(grid_add(&l->points, l->g, x, y));
     l->first = l->points.n;
     return ERR_OK;
 }
@@ -452,6 +389,6 @@ enum err layers_trace(struct layers *l)
 enum err layers_fill(struct layers *l, double x, double y)
 {
     for (int k = 0; k < l->n_sets; k++)
-        if (any_within(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
+        if (grid_any_within(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
     return offer(l, x, y);
 }

@@ -3,16 +3,7 @@
 #ifndef SPHFSI_GEOMETRY_LAYERS_H
 #define SPHFSI_GEOMETRY_LAYERS_H
 
-#include "geometry/sampling.h"
-
-/* Points in a hash table of square cells. */
-struct point_grid {
-    int64_t n, capacity;
-    double (*pt)[2];
-    int32_t *next, *head; /* index + 1; 0: none */
-    uint64_t mask;
-    double side;
-};
+#include "geometry/grid.h"
 
 /* Faces from which layers are measured. A polyline has its own, on the drawn side, and layers
  * through all of its thickness. All other shapes have one common set, and layers as deep as the

@@ -323,6 +323,7 @@ enum err scene_sample(struct scene *s, struct diag *d)
     enum err err = geometry_sample(&g, &points);
     if (!err) err = geometry_check_regions(&g);
     if (!err) err = geometry_merge(&g, &points);
+    if (!err) err = geometry_pack(&g);
     if (!err) err = geometry_open(&g);
     if (!err) err = geometry_extent(&g);
     if (!err) err = geometry_warn_of_gaps(&g);

@@ -63,6 +63,9 @@ enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
 
+/* Packs fluid beside edges that are not along its lattice, with `scheme = standard` (geometry/pack.c). */
+enum err geometry_pack(struct sampler *g) SPHFSI_CHECKED;
+
 /* Whether a point is inside a region's shapes, with the rounding of geometry_sample. */
 bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
 

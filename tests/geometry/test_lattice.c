@@ -354,6 +354,63 @@ static void test_space_is_filled(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.01, 1, mean / (double)n);
 }
 
+/* The particles of water beside slopes and a hump have its area, of water around a cylinder also. With
+ * `scheme = paper` those too near to a wall are missing. */
+static void test_fluid_beside_slopes_has_its_area(void)
+{
+    static const char slope[] = "scheme = standard\ndp = 1 mm\nend_time = 1\n[constants]\na = 30 "
+                                "deg\nL = 10 mm/tan(a)\nw = 60 mm\n"
+                                "[fluid w]\nsound_speed = 20\nshape = polygon 0, 0; 15 mm, 0; 15 "
+                                "mm + L, 10 mm; w, 10 mm; w, 20 mm; "
+                                "0, 20 mm\n"
+                                "[wall t]\nshape = polyline thickness -5 mm: 0, 28 mm; 0, 0; 15 "
+                                "mm, 0; 15 mm + L, 10 mm; w, 10 mm; "
+                                "w, 28 mm\n[numerics]\nlattice_angle = 0\n";
+    static const char *const angles[] = {"a=15 deg", "a=20 deg", "a=30 deg", "a=45 deg",
+                                         "a=60 deg"};
+    static const double value[] = {15, 20, 30, 45, 60};
+    for (size_t k = 0; k < COUNT_OF(angles); k++) {
+        must_read(slope, angles[k]);
+        const double L = 10 / tan(value[k] * pi / 180), area = 20 * 60 - 10 * (45 - 0.5 * L);
+        TEST_ASSERT_DOUBLE_WITHIN_MESSAGE(1, area, (double)scene.points[KIND_FLUID].n, angles[k]);
+    }
+    must_read(slope, "scheme=paper");
+    TEST_ASSERT_TRUE(scene.points[KIND_FLUID].n < 834); /* of 836.6 */
+}
+
+/* A uniform pressure pushes no particle of the water around a cylinder: the kernel's gradient sums to
+ * nearly nothing, also beyond those that were moved. No two particles are near to each other. */
+static void test_fluid_around_a_cylinder_is_packed(void)
+{
+    must_read("scheme = standard\ndp = 1 mm\nend_time = 1\n[fluid w]\nsound_speed = 20\n"
+              "shape = box 0, 0, 40 mm, 40 mm\nminus = circle 20.3 mm, 19.6 mm, 6.4 mm\n"
+              "[wall c]\nshape = circle 20.3 mm, 19.6 mm, 6.4 mm\n",
+              NULL);
+    const double dp = scene.top.dp, h = scene.h;
+    const struct scene_points *const p = &scene.points[KIND_FLUID];
+    TEST_ASSERT_DOUBLE_WITHIN(1, 1600 - pi * square(6.4), (double)p->n);
+    int64_t beside = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        double sum[2] = {0, 0};
+        const double away = hypot(p->x[i] - 0.0203, p->y[i] - 0.0196) / dp;
+        TEST_ASSERT_TRUE(away > 6.4);
+        if (away > 6.4 + 3) continue;
+        for (int kind = 0; kind < KIND_COUNT; kind++)
+            for (int64_t j = 0; j < scene.points[kind].n; j++) {
+                const double dx = p->x[i] - scene.points[kind].x[j],
+                             dy = p->y[i] - scene.points[kind].y[j], r = hypot(dx, dy);
+                if (r == 0 || r >= 2 * h) continue;
+                TEST_ASSERT_TRUE(r > 0.8 * dp);
+                const double slope = 35 / (4 * pi * pow(h, 4)) * pow(1 - 0.5 * r / h, 3);
+                sum[0] += square(dp) * slope * dx;
+                sum[1] += square(dp) * slope * dy;
+            }
+        TEST_ASSERT_TRUE(h * hypot(sum[0], sum[1]) < 1e-3);
+        beside++;
+    }
+    TEST_ASSERT_TRUE(beside > 100);
+}
+
 static void test_a_periodic_domain_is_not_turned(void)
 {
     static const char text[] =
@@ -384,6 +441,8 @@ int main(void)
     RUN_TEST(test_layers_follow_faces);
     RUN_TEST(test_layers_are_even);
     RUN_TEST(test_space_is_filled);
+    RUN_TEST(test_fluid_beside_slopes_has_its_area);
+    RUN_TEST(test_fluid_around_a_cylinder_is_packed);
     RUN_TEST(test_a_periodic_domain_is_not_turned);
     return UNITY_END();
 }

@@ -1,0 +1,343 @@
+/* SPDX-License-Identifier: MIT
+ * Fluid beside edges that are not along its lattice. The cells with their centre inside the shape and not
+ * too near to a wall cover less than its area, and the level falls. So as many of the cells that such
+ * edges cut are filled as their parts inside the shape add up to. Then the particles there are moved until
+ * a uniform pressure pushes none of them (T-80; particle packing, Colagrossi et al. 2012). */
+#include "geometry/grid.h"
+#include "geometry/near.h"
+
+#include "base/elementary.h"
+#include "case/case.h"
+#include "particles/kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Parts per spacing that edges are divided into; lines through a cell, for its area in the shape. */
+enum { PARTS = 8, LINES = 16 };
+/* Slope of an edge that counts as one along the lattice. */
+static const double along_lattice = 1e-6;
+/* A shift is this times h^2 grad C, below the limit of 0.5 of Lind et al. 2012, and at most `longest` dp.
+ * The shifts end when all are below `still` dp. */
+static const double shift_factor = 0.2, longest = 0.1, still = 1e-4;
+static const int most_shifts = 1000;
+
+/* The cells that slanted edges of a region cut, in the order of the edges; in cells of the lattice. */
+struct cut_cells {
+    const struct region *region;
+    struct point_grid grid; /* their centres */
+    double *share;          /* part of the cell that is in the shape */
+    double (*middle)[2];    /* centre of that part */
+};
+
+/* --- cells --- */
+
+static void cells_of(const struct region *region, double x, double y, double at[2])
+{
+    const struct scene_lattice *const l = &region->lattice;
+    at[0] = (x - l->origin[0]) / l->spacing[0];
+    at[1] = (y - l->origin[1]) / l->spacing[1];
+}
+
+static bool in_shape(const struct sampler *g, const struct region *r, double x, double y)
+{
+    for (int k = 0; k < r->minus.n; k++)
+        if (outline_contains(&r->minus.item[k], x, y, g->scratch)) return false;
+    for (int k = 0; k < r->add.n; k++)
+        if (outline_contains(&r->add.item[k], x, y, g->scratch)) return true;
+    return false;
+}
+
+/* Adds the cell of a point of an edge with this normal, unless the shape is on both of its sides. */
+static enum err visit(struct cut_cells *c, struct sampler *g, const double at[2],
+                      const double normal[2])
+{
+    const double step = 1e-3 * c->region->lattice.dp;
+    if (in_shape(g, c->region, at[0] + step * normal[0], at[1] + step * normal[1]) ==
+        in_shape(g, c->region, at[0] - step * normal[0], at[1] - step * normal[1]))
+        return ERR_OK;
+    double cell[2];
+    cells_of(c->region, at[0], at[1], cell);
+    const double i = floor(cell[0]) + 0.5, j = floor(cell[1]) + 0.5;
+    return grid_any_within(&c->grid, i, j, 0.5) ? ERR_OK : grid_add(&c->grid, g, i, j);
+}
+
+static enum err visit_edge(struct cut_cells *c, struct sampler *g, const double a[2],
+                           const double b[2])
+{
+    const double dx = b[0] - a[0], dy = b[1] - a[1], length = elementary_hypot(dx, dy);
+    if (min2(fabs(dx), fabs(dy)) <= along_lattice * length) return ERR_OK;
+    const double normal[2] = {-dy / length, dx / length};
+    const int parts = 1 + (int)min2(1e8, length / c->region->lattice.dp * PARTS);
+    for (int k = 0; k < parts; k++) {
+        const double s = (k + 0.5) / parts, at[2] = {a[0] + s * dx, a[1] + s * dy};
+        TRY(visit(c, g, at, normal));
+    }
+    return ERR_OK;
+}
+
+static enum err visit_circle(struct cut_cells *c, struct sampler *g, const struct outline *o)
+{
+    const int parts = 1 + (int)min2(1e8, 2 * PI * o->radius / c->region->lattice.dp * PARTS);
+    for (int k = 0; k < parts; k++) {
+        const double angle = 2 * PI * k / parts,
+                     normal[2] = {elementary_cos(angle), elementary_sin(angle)},
+                     at[2] = {o->centre[0] + o->radius * normal[0],
+                              o->centre[1] + o->radius * normal[1]};
+        TRY(visit(c, g, at, normal));
+    }
+    return ERR_OK;
+}
+
+static enum err visit_outlines(struct cut_cells *c, struct sampler *g, const struct outlines *o)
+{
+    for (int k = 0; k < o->n; k++) {
+        const struct outline *const piece = &o->item[k];
+        if (piece->n == 0) TRY(visit_circle(c, g, piece));
+        for (int j = 0; j < piece->n; j++)
+            TRY(visit_edge(c, g, piece->pt[j], piece->pt[(j + 1) % piece->n]));
+    }
+    return ERR_OK;
+}
+
+/* Share of the cell with this centre, and the middle of it. `line` and `scratch` as for outlines_union. */
+static double share_of(const struct region *r, const double centre[2], double middle[2],
+                       double *line, double *scratch)
+{
+    const struct scene_lattice *const l = &r->lattice;
+    double area = 0, moment[2] = {0, 0};
+    for (int n = 0; n < LINES; n++) {
+        const double y = centre[1] - 0.5 + (n + 0.5) / LINES;
+        const int ends =
+            outlines_union(&r->add, &r->minus, l->origin[1] + y * l->spacing[1], line, scratch);
+        for (int e = 0; e + 1 < ends; e += 2) {
+            const double low = max2((line[e] - l->origin[0]) / l->spacing[0], centre[0] - 0.5),
+                         high = min2((line[e + 1] - l->origin[0]) / l->spacing[0], centre[0] + 0.5);
+            if (high <= low) continue;
+            area += high - low;
+            moment[0] += (high - low) * 0.5 * (low + high);
+            moment[1] += (high - low) * y;
+        }
+    }
+    for (int c = 0; c < 2; c++) middle[c] = area > 0 ? moment[c] / area : centre[c];
+    return area / LINES;
+}
+
+static enum err find_cells(struct cut_cells *c, struct sampler *g, const struct region *region)
+{
+    *c = (struct cut_cells){.region = region, .grid.side = 1};
+    TRY(visit_outlines(c, g, &region->add));
+    TRY(visit_outlines(c, g, &region->minus));
+    const size_t n = (size_t)c->grid.n + 1;
+    const size_t ends = (size_t)(outlines_ends(&region->add) + outlines_ends(&region->minus)) + 4;
+    double *const line = arena_alloc(&g->temp, 2 * ends, sizeof *line, "packing", g->diag);
+    c->share = arena_alloc(&g->temp, n, sizeof *c->share, "packing", g->diag);
+    c->middle = arena_alloc(&g->temp, n, sizeof *c->middle, "packing", g->diag);
+    if (!line || !c->share || !c->middle) return ERR_MEMORY;
+    for (int64_t k = 0; k < c->grid.n; k++)
+        c->share[k] = share_of(region, c->grid.pt[k], c->middle[k], line, line + ends);
+    return ERR_OK;
+}
+
+/* --- particles --- */
+
+/* All regions together. */
+struct packing {
+    struct sampler *g;
+    struct point_grid cells, air; /* cut by an edge; outside all shapes, m */
+    int64_t n, n_free;            /* points; those that may move come first */
+    double *x, *y, *volume;
+    int64_t *particle; /* of a free point: its index */
+};
+
+/* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is filled when the
+ * sum of the shares exceeds the number of filled cells by a half. */
+static enum err refill(struct packing *p, const struct cut_cells *c, struct scene_points *to)
+{
+    const struct scene_points *const from = &p->g->scene->points[KIND_FLUID];
+    const struct scene_lattice *const l = &c->region->lattice;
+    for (int64_t k = 0; k < from->n; k++) {
+        double at[2], cell[2];
+        if (from->body[k] != c->region->body) continue;
+        lattice_place(l, from->x[k], from->y[k], at);
+        cells_of(c->region, at[0], at[1], cell);
+        if (grid_any_within(&c->grid, cell[0], cell[1], 0.1)) continue;
+        to->x[to->n] = from->x[k];
+        to->y[to->n] = from->y[k];
+        to->body[to->n++] = from->body[k];
+    }
+    double owed = 0;
+    for (int64_t k = 0; k < c->grid.n; k++) {
+        const double *const centre = c->grid.pt[k];
+        TRY(grid_add(&p->cells, p->g, centre[0], centre[1]));
+        owed += c->share[k];
+        if (owed < 0.5) continue;
+        owed--;
+        double at[2];
+        place_of_lattice(l, l->origin[0] + c->middle[k][0] * l->spacing[0],
+                         l->origin[1] + c->middle[k][1] * l->spacing[1], at);
+        to->x[to->n] = at[0];
+        to->y[to->n] = at[1];
+        to->body[to->n++] = c->region->body;
+    }
+    return ERR_OK;
+}
+
+/* Whether a position is within `reach` smoothing lengths of a cut cell. */
+static bool beside(const struct packing *p, double x, double y, double reach)
+{
+    const struct scene *const s = p->g->scene;
+    double at[2];
+    lattice_place(&s->lattice, x, y, at);
+    for (int c = 0; c < 2; c++) at[c] = (at[c] - s->lattice.origin[c]) / s->lattice.spacing[c];
+    return grid_any_within(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
+}
+
+/* Cells of the lattice outside all shapes count as points, so that nothing moves into the air. */
+static enum err add_air(struct packing *p)
+{
+    const struct sampler *const g = p->g;
+    const struct scene_lattice *const l = &g->scene->lattice;
+    const int64_t around = (int64_t)ceil(2 * KERNEL_REACH * g->scene->h / g->scene->top.dp);
+    for (int64_t k = 0; k < p->cells.n; k++)
+        for (int64_t j = -around; j <= around; j++)
+            for (int64_t i = -around; i <= around; i++) {
+                const double cell[2] = {p->cells.pt[k][0] + (double)i,
+                                        p->cells.pt[k][1] + (double)j};
+                double at[2];
+                place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
+                                 l->origin[1] + cell[1] * l->spacing[1], at);
+                bool covered = false;
+                for (int r = 0; r < g->n_regions && !covered; r++)
+                    covered = geometry_covers(g, &g->regions[r], at[0], at[1]);
+                if (!covered && !grid_any_within(&p->air, at[0], at[1], 0.1 * l->dp))
+                    TRY(grid_add(&p->air, p->g, at[0], at[1]));
+            }
+    return ERR_OK;
+}
+
+static void add_point(struct packing *p, double x, double y, double volume)
+{
+    p->x[p->n] = x;
+    p->y[p->n] = y;
+    p->volume[p->n++] = volume;
+}
+
+/* The points that take part: fluid within the kernel's reach of a cut cell moves, all else stays. */
+static enum err gather(struct packing *p)
+{
+    const struct sampler *const g = p->g;
+    const struct scene *const s = g->scene;
+    size_t n = (size_t)p->air.n;
+    for (int kind = 0; kind < KIND_COUNT; kind++) n += (size_t)s->points[kind].n;
+    p->x = arena_alloc(&p->g->temp, n, sizeof *p->x, "packing", g->diag);
+    p->y = arena_alloc(&p->g->temp, n, sizeof *p->y, "packing", g->diag);
+    p->volume = arena_alloc(&p->g->temp, n, sizeof *p->volume, "packing", g->diag);
+    p->particle = arena_alloc(&p->g->temp, n, sizeof *p->particle, "packing", g->diag);
+    if (!p->x || !p->y || !p->volume || !p->particle) return ERR_MEMORY;
+    for (int fixed = 0; fixed < 2; fixed++) {
+        for (int kind = 0; kind < (fixed ? KIND_COUNT : KIND_FLUID + 1); kind++) {
+            const struct scene_points *const from = &s->points[kind];
+            for (int64_t k = 0; k < from->n; k++) {
+                const bool moves =
+                    kind == KIND_FLUID && beside(p, from->x[k], from->y[k], KERNEL_REACH);
+                if (moves == (fixed == 1) ||
+                    !beside(p, from->x[k], from->y[k], 2 * KERNEL_REACH + 1))
+                    continue;
+                if (moves) p->particle[p->n] = k;
+                const double dp = kind == KIND_SOLID ? scene_solid_dp(s, from->body[k]) : s->top.dp;
+                add_point(p, from->x[k], from->y[k], square(dp));
+            }
+        }
+        if (!fixed) p->n_free = p->n;
+    }
+    for (int64_t k = 0; k < p->air.n; k++)
+        add_point(p, p->air.pt[k][0], p->air.pt[k][1], square(s->top.dp));
+    return ERR_OK;
+}
+
+/* Minus the gradient of C, 1/m (T-80). */
+static void push(const struct packing *p, const struct near_table *t, int64_t k, double sum[2])
+{
+    const double h = p->g->scene->h, x = p->x[k], y = p->y[k];
+    const int64_t ci = near_cell(t, x), cj = near_cell(t, y);
+    sum[0] = sum[1] = 0;
+    for (int64_t j = cj - 1; j <= cj + 1; j++)
+        for (int64_t i = ci - 1; i <= ci + 1; i++)
+            for (int32_t n = near_first(t, i, j); n; n = t->next[n - 1]) {
+                const double dx = x - p->x[n - 1], dy = y - p->y[n - 1],
+                             r = sqrt(dx * dx + dy * dy);
+                if (r >= KERNEL_REACH * h || near_cell(t, p->x[n - 1]) != i ||
+                    near_cell(t, p->y[n - 1]) != j)
+                    continue;
+                const double factor = -p->volume[n - 1] * kernel_slope(r, h);
+                sum[0] += factor * dx;
+                sum[1] += factor * dy;
+            }
+}
+
+/* The shifts of T-80. */
+static enum err settle(struct packing *p)
+{
+    const struct sampler *const g = p->g;
+    const double h = g->scene->h, dp = g->scene->top.dp;
+    struct near_table t;
+    TRY(near_create(&t, KERNEL_REACH * h, p->n, p->x, p->y, &p->g->temp, g->diag));
+    double(*move)[2] =
+        arena_alloc(&p->g->temp, (size_t)p->n_free + 1, sizeof *move, "packing", g->diag);
+    if (!move) return ERR_MEMORY;
+    double largest = HUGE_VAL;
+    for (int step = 0; step < most_shifts && largest > still * dp; step++) {
+        largest = 0;
+        memset(t.head, 0, ((size_t)t.mask + 1) * sizeof *t.head);
+        for (int64_t k = 0; k < p->n; k++) near_insert(&t, k);
+        for (int64_t k = 0; k < p->n_free; k++) push(p, &t, k, move[k]);
+        for (int64_t k = 0; k < p->n_free; k++) {
+            for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);
+            const double length = elementary_hypot(move[k][0], move[k][1]);
+            const double part = min2(1, longest * dp / max2(length, 1e-300));
+            p->x[k] += part * move[k][0];
+            p->y[k] += part * move[k][1];
+            largest = max2(largest, part * length);
+        }
+    }
+    return ERR_OK;
+}
+
+enum err geometry_pack(struct sampler *g)
+{
+    struct scene *const s = g->scene;
+    struct scene_points *const points = &s->points[KIND_FLUID];
+    if (s->top.scheme != SCHEME_STANDARD || points->n == 0) return ERR_OK;
+    struct cut_cells *const cut =
+        arena_alloc(&g->temp, (size_t)s->n_fluid, sizeof *cut, "packing", g->diag);
+    if (!cut) return ERR_MEMORY;
+    int64_t most = 0;
+    int n_cut = 0;
+    for (int k = 0; k < g->n_regions; k++) {
+        if (g->regions[k].kind != KIND_FLUID) continue;
+        TRY(find_cells(&cut[n_cut], g, &g->regions[k]));
+        most += cut[n_cut++].grid.n;
+    }
+    if (most == 0) return ERR_OK;
+    s->packed = true;
+    struct packing p = {.g = g,
+                        .cells.side = KERNEL_REACH * s->h / s->top.dp,
+                        .air.side = s->top.dp};
+    struct scene_points to = {0};
+    const size_t n = (size_t)(points->n + most);
+    to.x = arena_alloc(&s->arena, n, sizeof *to.x, "particles", g->diag);
+    to.y = arena_alloc(&s->arena, n, sizeof *to.y, "particles", g->diag);
+    to.body = arena_alloc(&s->arena, n, sizeof *to.body, "particles", g->diag);
+    if (!to.x || !to.y || !to.body) return ERR_MEMORY;
+    for (int k = 0; k < n_cut; k++) TRY(refill(&p, &cut[k], &to));
+    *points = to;
+    TRY(add_air(&p));
+    TRY(gather(&p));
+    TRY(settle(&p));
+    for (int64_t k = 0; k < p.n_free; k++) {
+        points->x[p.particle[k]] = p.x[k];
+        points->y[p.particle[k]] = p.y[k];
+    }
+    return ERR_OK;
+}
