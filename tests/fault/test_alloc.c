@@ -1,24 +1,29 @@
 /* SPDX-License-Identifier: MIT
  * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart, a
- * fork, --inspect and --explain: a sentence and a status each time, nothing leaks, no lock is left, and
- * what was good stays good. The linker puts these in between:
- * --wrap: malloc calloc realloc aligned_alloc free fopen fdopen opendir
+ * fork, a refinement, the parts of a solid, --inspect, --explain and --preview: a sentence and a status each
+ * time, nothing leaks, no lock is left, and what was good stays good. The linker puts these in between:
+ * --wrap: malloc calloc realloc aligned_alloc free fopen fdopen opendir open_memstream
  * Those within HDF5, a shared library, are not: it says itself that it does not survive all of them; a
  * snapshot that fails is rehearsed by test_snapshot_faults.c and by full disks. */
 #include "base/files.h"
+#include "base/threads.h"
+#include "geometry/load.h"
+#include "rig.h"
 #include "sphfsi.h"
 #include "tiny.h"
 #include "unity.h"
 
 #include <dirent.h>
 #include <errno.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-static long countdown = -1, live, failures;
-static bool hit;
+static atomic_long countdown = -1, live; /* parts of a solid are made by their threads */
+static long failures;
+static atomic_bool hit;
 
 static bool fails(void)
 {
@@ -41,6 +46,7 @@ void __real_free(void *memory);
 FILE *__real_fopen(const char *path, const char *mode);
 FILE *__real_fdopen(int fd, const char *mode);
 DIR *__real_opendir(const char *path);
+FILE *__real_open_memstream(char **text, size_t *size);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
 void *__wrap_realloc(void *old, size_t size);
@@ -49,6 +55,7 @@ void __wrap_free(void *memory);
 FILE *__wrap_fopen(const char *path, const char *mode);
 FILE *__wrap_fdopen(int fd, const char *mode);
 DIR *__wrap_opendir(const char *path);
+FILE *__wrap_open_memstream(char **text, size_t *size);
 
 void *__wrap_malloc(size_t size) { return fails() ? NULL : counted(__real_malloc(size)); }
 
@@ -82,6 +89,12 @@ FILE *__wrap_fopen(const char *path, const char *mode)
 }
 
 FILE *__wrap_fdopen(int fd, const char *mode) { return fails() ? NULL : __real_fdopen(fd, mode); }
+
+/* Its text is the caller's to free. */
+FILE *__wrap_open_memstream(char **text, size_t *size)
+{
+    return fails() ? NULL : counted(__real_open_memstream(text, size));
+}
 
 DIR *__wrap_opendir(const char *path) { return fails() ? NULL : __real_opendir(path); }
 
@@ -151,6 +164,93 @@ static enum sphfsi_status explain(void)
     return sphfsi_explain(&o);
 }
 
+static enum sphfsi_status explain_json(void)
+{
+    const struct sphfsi_options o = options(NULL, 0);
+    return sphfsi_explain_json(&o);
+}
+
+static enum sphfsi_status preview(void)
+{
+    char image[PATH_BYTES + 8];
+    snprintf(image, sizeof image, "%s.svg", folder);
+    const struct sphfsi_options o = options(image, 0);
+    const enum sphfsi_status status = sphfsi_preview(&o);
+    unlink(image);
+    return status;
+}
+
+/* Three runs of a beam of a few particles. */
+static enum sphfsi_status refine(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 0.16, 0.08\n"
+        "clamp = box 0, 0, 0.08, 0.08\ndensity = 1000\nyoung = 1 MPa\n"
+        "poisson = 0.3\n[probe M]\nbody = a\npoint = 0.16, 0.04\n"
+        "[probe N]\nbody = a\npoint = 0.16, 0\ninterval = 1e-5\n"
+        "[output]\nsnapshot_interval = 0\ncheckpoint_interval = 0\n"
+        "probe_interval = 1e-5\nledger_interval = 1e-5\n";
+    static const char *const one[] = {"title=refined"};
+    const struct sphfsi_options o = {
+        .case_text = text, .sets = one, .n_sets = 1, .until = 2e-5, .threads = 1, .out = folder};
+    return sphfsi_refine(&o, 3, 2);
+}
+
+static void push(void *context, const struct sphfsi_particles *p, double *ax, double *ay)
+{
+    (void)context;
+    for (int64_t i = 0; i < p->n; i++) ax[i] = ay[i] = 1;
+}
+
+static void drive(void *context, double time, double d[2], double v[2], double a[2])
+{
+    (void)context, (void)time;
+    d[0] = d[1] = v[0] = v[1] = a[0] = a[1] = 0;
+}
+
+/* A program's own force and motion; the case has a velocity that depends on time. */
+static enum sphfsi_status library(void)
+{
+    static const char text[] =
+        "dp = 1 cm\nend_time = 1 s\n[motion m]\nvelocity = 0.1*t/s, 0\n"
+        "[solid a]\nshape = box 0, 0, 0.05, 0.04\nclamp = box 0, 0, 0.02, 0.04\n"
+        "clamp_motion = m\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n";
+    const struct sphfsi_options o = {.case_text = text, .threads = 1};
+    struct sphfsi_simulation *s;
+    enum sphfsi_status status = sphfsi_create(&s, &o);
+    if (!status) status = sphfsi_set_force(s, SPHFSI_SOLID, push, NULL);
+    if (!status) status = sphfsi_set_motion(s, "m", drive, NULL);
+    if (!status) status = sphfsi_step(s, 1);
+    const char *const said = sphfsi_error();
+    TEST_ASSERT_TRUE(!status || said[0]);
+    const enum sphfsi_status freed = sphfsi_free(s);
+    return status ? status : freed;
+}
+
+/* A solid in parts, one for each of two threads. */
+static enum sphfsi_status in_parts(void)
+{
+    static const char text[] = "dp = 1 cm\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 1.5, 0.04\n"
+                               "clamp = box 0, 0, 0.02, 0.04\ndensity = 1000\nyoung = 1 MPa\n"
+                               "poisson = 0.3\n";
+    static struct scene scene;
+    static struct simulation simulation;
+    static struct diag d;
+    const int before = thread_count();
+    d = (struct diag){.code = ERR_OK};
+    thread_use(2);
+    enum err e = scene_load_text(&scene, text, "parts", 0, NULL, &d);
+    if (!e) {
+        e = simulation_create(&simulation, &scene, &d);
+        TEST_ASSERT_TRUE(e || simulation.solid.part);
+        simulation_free(&simulation);
+        scene_free(&scene);
+    }
+    thread_use(before);
+    TEST_ASSERT_TRUE_MESSAGE(!e || strstr(d.text, "memory"), d.text);
+    return (enum sphfsi_status)e;
+}
+
 static void begin(void)
 {
     snprintf(begun, sizeof begun, "%s", tiny_path("begun"));
@@ -203,7 +303,7 @@ static void judge(enum sphfsi_status status, long n, const char *what)
     /* The checkpoint that a restart began from is there, or a later one. */
     const bool begun_before = strcmp(what, "restart") == 0;
     TEST_ASSERT_TRUE_MESSAGE(!begun_before || count_checkpoints() > 0, message);
-    if (!status) return;
+    if (!status || strcmp(what, "parts") == 0) return;
     const bool sequence = strstr(sphfsi_error(), "memory") != NULL;
     TEST_ASSERT_TRUE_MESSAGE(sequence, message);
     TEST_ASSERT_TRUE_MESSAGE(status == SPHFSI_MEMORY || status == SPHFSI_IO ||
@@ -247,6 +347,16 @@ static void of_inspect(void) { every_one(inspect, "inspect", 1); }
 
 static void of_explain(void) { every_one(explain, "explain", 100); }
 
+static void of_explain_json(void) { every_one(explain_json, "json", 100); }
+
+static void of_preview(void) { every_one(preview, "preview", 50); }
+
+static void of_refine(void) { every_one(refine, "refine", 100); }
+
+static void of_a_library(void) { every_one(library, "library", 50); }
+
+static void of_parts(void) { every_one(in_parts, "parts", 50); }
+
 int main(void)
 {
     if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
@@ -258,6 +368,11 @@ int main(void)
     RUN_TEST(of_a_fork);
     RUN_TEST(of_inspect);
     RUN_TEST(of_explain);
+    RUN_TEST(of_explain_json);
+    RUN_TEST(of_preview);
+    RUN_TEST(of_refine);
+    RUN_TEST(of_a_library);
+    RUN_TEST(of_parts);
     printf("found: %ld failing allocations\n", failures);
     return UNITY_END();
 }

@@ -103,7 +103,7 @@ static char whole[32]; /* the hash of a run of nothing but successes */
 static void note(void *context, enum sphfsi_message kind, const char *text)
 {
     (void)context, (void)text;
-    warnings += kind == SPHFSI_WARNING;
+    warnings += kind == SPHFSI_WARNING && countdown >= 0 && hit;
 }
 
 static struct sphfsi_options options(void)
