@@ -106,13 +106,15 @@ static void warn_of_cuts(struct sampler *g, const struct region *region)
     }
 }
 
-/* --- between sections of any shape --- */
+/* --- between sections, and shapes of a section, of any kind --- */
 
 /* Particles of walls and solids in one list. */
 struct faces {
     struct near_table near;
     int64_t n, n_wall;
     double *x, *y;
+    int *part; /* the shape of each, counted over all regions; -1: unknown */
+    int n_parts;
 };
 
 static bool is_wall(const struct faces *f, int64_t k) { return k < f->n_wall; }
@@ -129,10 +131,38 @@ static const char *name_of(const struct scene *s, int section)
                                : s->solid[section - s->n_wall].common.name;
 }
 
-static int line_of(const struct scene *s, int section)
+/* The region of a section. */
+static int region_of(const struct sampler *g, int section)
 {
-    return section < s->n_wall ? s->wall[section].common.line
-                               : s->solid[section - s->n_wall].common.line;
+    const int n_wall = g->scene->n_wall;
+    int k = 0;
+    while (g->regions[k].kind != (section < n_wall ? KIND_WALL : KIND_SOLID) ||
+           g->regions[k].body != (section < n_wall ? section : section - n_wall))
+        k++;
+    return k;
+}
+
+/* Shapes are told apart unless there are too many to mark each with each. */
+static enum err number_parts(struct faces *f, struct sampler *g)
+{
+    enum { MAX_PARTS = 2000 };
+    const int sections = g->scene->n_wall + g->scene->n_solid;
+    int *const first = arena_alloc(&g->temp, (size_t)sections, sizeof *first, "gaps", g->diag);
+    f->part = arena_alloc(&g->temp, (size_t)f->n, sizeof *f->part, "gaps", g->diag);
+    if (!first || !f->part) return ERR_MEMORY;
+    for (int k = 0; k < sections; k++) {
+        first[k] = f->n_parts;
+        f->n_parts += g->regions[region_of(g, k)].list->n;
+    }
+    const bool shapes = f->n_parts <= MAX_PARTS;
+    if (!shapes) f->n_parts = sections;
+    for (int64_t k = 0; k < f->n; k++) {
+        const int section = section_of(g->scene, f, k);
+        const struct region *const region = &g->regions[region_of(g, section)];
+        const int shape = shapes ? geometry_shape_at(g, region, f->x[k], f->y[k]) : 0;
+        f->part[k] = shape < 0 ? -1 : shapes ? first[section] + shape : section;
+    }
+    return ERR_OK;
 }
 
 static enum err list_faces(struct faces *f, struct sampler *g)
@@ -150,7 +180,7 @@ static enum err list_faces(struct faces *f, struct sampler *g)
     }
     TRY(near_create(&f->near, 2.1 * g->scene->top.dp, f->n, f->x, f->y, &g->temp, g->diag));
     for (int64_t k = 0; k < f->n; k++) near_insert(&f->near, k);
-    return ERR_OK;
+    return number_parts(f, g);
 }
 
 /* Whether a particle lies nearer to the point than `reach`, at most a cell's side. */
@@ -164,26 +194,24 @@ static bool is_covered(const struct faces *f, double x, double y, double reach)
     return false;
 }
 
-/* A gap that warn_slits judges by its drawn width: between shapes that are all boxes, uncut. */
-static bool is_slit(const struct sampler *g, int a, int b)
+/* Whether a particle is one of a box that is not cut. */
+static bool is_of_box(const struct sampler *g, const struct faces *f, int64_t k)
 {
-    bool boxes = true;
-    for (int k = 0; k < g->n_regions; k++) {
-        const struct region *const region = &g->regions[k];
-        const int section = region->kind == KIND_WALL    ? region->body
-                            : region->kind == KIND_SOLID ? g->scene->n_wall + region->body
-                                                         : -1;
-        if (section != a && section != b) continue;
-        for (int n = 0; n < region->list->n; n++) boxes &= region->list->item[n].kind == SHAPE_BOX;
-        boxes &= region->minus.n == 0;
-    }
-    return boxes;
+    const struct region *const region = &g->regions[region_of(g, section_of(g->scene, f, k))];
+    const int shape = geometry_shape_at(g, region, f->x[k], f->y[k]);
+    return region->minus.n == 0 && shape >= 0 && region->list->item[shape].kind == SHAPE_BOX;
+}
+
+/* A gap that warn_slits judges by its drawn width. */
+static bool is_slit(const struct sampler *g, const struct faces *f, int64_t k, int64_t m)
+{
+    return is_of_box(g, f, k) && is_of_box(g, f, m);
 }
 
 struct pair_visitor {
     struct sampler *g;
     const struct faces *f;
-    bool *settled; /* [sections^2] pairs of sections that need no further look */
+    bool *settled; /* pairs of sections, or of shapes, that need no further look */
 };
 typedef void pair_function(struct pair_visitor *v, int64_t k, int64_t m);
 
@@ -219,11 +247,31 @@ static bool is_passage(const struct sampler *g, const struct faces *f, const dou
 }
 
 /* Whether the sections of two particles are settled. */
-static bool *mark_of(const struct pair_visitor *v, int64_t k, int64_t m)
+static bool *mark_of_sections(const struct pair_visitor *v, int64_t k, int64_t m)
 {
     const struct scene *const s = v->g->scene;
     const int a = section_of(s, v->f, k), b = section_of(s, v->f, m);
     return &v->settled[(a < b ? a : b) * (s->n_wall + s->n_solid) + (a < b ? b : a)];
+}
+
+enum { BETWEEN_TEXT = 2 * SCENE_NAME + 32 };
+
+/* The line of the case, of a shape if it is known, and the sections between which a gap is. */
+static void name_gap(const struct sampler *g, const struct faces *f, int64_t k, int64_t m,
+                     char place[LOCATION_TEXT], char between[BETWEEN_TEXT])
+{
+    const struct scene *const s = g->scene;
+    const struct region *const region = &g->regions[region_of(g, section_of(s, f, m))];
+    const int shape = geometry_shape_at(g, region, f->x[m], f->y[m]);
+    const int a = section_of(s, f, k), b = section_of(s, f, m);
+    const char *const of = kind_names[is_wall(f, m) ? KIND_WALL : KIND_SOLID];
+    scene_location(s, shape >= 0 ? region->list->item[shape].line : region->line, place);
+    if (a == b)
+        snprintf(between, BETWEEN_TEXT, "in [%s %s]", of, name_of(s, b));
+    else
+        snprintf(between, BETWEEN_TEXT, "between [%s %s] and [%s %s]",
+                 kind_names[is_wall(f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a), of,
+                 name_of(s, b));
 }
 
 /* Warns if an empty gap lies between two particles in which at most one particle fits. Centres on both
@@ -237,19 +285,12 @@ static void warn_of_gap(struct pair_visitor *v, int64_t k, int64_t m)
     const double dp = s->top.dp, dx = f->x[m] - f->x[k], dy = f->y[m] - f->y[k];
     const double r = elementary_hypot(dx, dy), at[2] = {f->x[k] + 0.5 * dx, f->y[k] + 0.5 * dy};
     const double along[2] = {-dy / r, dx / r};
-    if (r < 1.5 * dp || *mark_of(v, k, m) || is_covered(f, at[0], at[1], 0.75 * dp)) return;
-    const int a = section_of(s, f, k), b = section_of(s, f, m);
-    if (is_slit(v->g, a, b) || !is_passage(v->g, f, at, along)) return;
-    *mark_of(v, k, m) = true;
-    char place[LOCATION_TEXT], between[2 * SCENE_NAME + 32];
-    scene_location(s, line_of(s, b), place);
-    const char *const of = kind_names[is_wall(f, m) ? KIND_WALL : KIND_SOLID];
-    if (a == b)
-        snprintf(between, sizeof between, "in [%s %s]", of, name_of(s, b));
-    else
-        snprintf(between, sizeof between, "between [%s %s] and [%s %s]",
-                 kind_names[is_wall(f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a), of,
-                 name_of(s, b));
+    if (r < 1.5 * dp || *mark_of_sections(v, k, m) || is_covered(f, at[0], at[1], 0.75 * dp))
+        return;
+    if (is_slit(v->g, f, k, m) || !is_passage(v->g, f, at, along)) return;
+    *mark_of_sections(v, k, m) = true;
+    char place[LOCATION_TEXT], between[BETWEEN_TEXT];
+    name_gap(v->g, f, k, m, place, between);
     diag_warn(v->g->diag,
               "%s: the gap %s at (%.4g, %.4g) m is no wider than dp = %g m, so hardly any fluid "
               "passes; use a smaller dp or close the gap",
@@ -272,41 +313,49 @@ static bool is_open(const struct sampler *g, const struct faces *f, int64_t k, i
     return open > POINTS / 4;
 }
 
-/* Settles the sections of two particles that touch as drawn. */
-static void mark_touching(struct pair_visitor *v, int64_t k, int64_t m)
+/* Whether the shapes of two particles are settled; NULL: nothing is known of them. */
+static bool *mark_of_parts(const struct pair_visitor *v, int64_t k, int64_t m)
 {
-    const int a = section_of(v->g->scene, v->f, k), b = section_of(v->g->scene, v->f, m);
-    if (a != b && !*mark_of(v, k, m)) *mark_of(v, k, m) = !is_open(v->g, v->f, k, m);
+    const int a = v->f->part[k], b = v->f->part[m];
+    if (a < 0 || b < 0 || a == b) return NULL;
+    return &v->settled[(size_t)(a < b ? a : b) * (size_t)v->f->n_parts + (size_t)(a < b ? b : a)];
 }
 
-/* Warns of particles that touch and whose sections touch nowhere as drawn. */
+/* Settles the shapes of two particles that touch as drawn. */
+static void mark_touching(struct pair_visitor *v, int64_t k, int64_t m)
+{
+    bool *const mark = mark_of_parts(v, k, m);
+    if (mark && !*mark) *mark = !is_open(v->g, v->f, k, m);
+}
+
+/* Warns of particles that touch and whose shapes touch nowhere as drawn. */
 static void warn_of_closed(struct pair_visitor *v, int64_t k, int64_t m)
 {
-    const struct scene *const s = v->g->scene;
     const struct faces *const f = v->f;
-    const int a = section_of(s, f, k), b = section_of(s, f, m);
-    if (a == b || *mark_of(v, k, m) || is_slit(v->g, a, b)) return;
-    *mark_of(v, k, m) = true;
-    char place[LOCATION_TEXT];
-    scene_location(s, line_of(s, b), place);
+    bool *const mark = mark_of_parts(v, k, m);
+    if (!mark || *mark || is_slit(v->g, f, k, m)) return;
+    *mark = true;
+    char place[LOCATION_TEXT], between[BETWEEN_TEXT];
+    name_gap(v->g, f, k, m, place, between);
     diag_warn(v->g->diag,
-              "%s: the gap between [%s %s] and [%s %s] at (%.4g, %.4g) m is narrower than dp = %g "
-              "m and closed by sampling, so no fluid passes; use a smaller dp or close the gap",
-              place, kind_names[is_wall(f, k) ? KIND_WALL : KIND_SOLID], name_of(s, a),
-              kind_names[is_wall(f, m) ? KIND_WALL : KIND_SOLID], name_of(s, b),
-              0.5 * (f->x[k] + f->x[m]), 0.5 * (f->y[k] + f->y[m]), s->top.dp);
+              "%s: the gap %s at (%.4g, %.4g) m is narrower than dp = %g m and closed by sampling, "
+              "so no fluid passes; use a smaller dp or close the gap",
+              place, between, 0.5 * (f->x[k] + f->x[m]), 0.5 * (f->y[k] + f->y[m]),
+              v->g->scene->top.dp);
 }
 
 static enum err warn_of_gaps(struct sampler *g)
 {
     const struct scene *const s = g->scene;
-    const size_t n = (size_t)s->n_wall + (size_t)s->n_solid;
+    const size_t sections = (size_t)s->n_wall + (size_t)s->n_solid;
     const double dp = s->top.dp;
     struct faces f = {0};
     struct pair_visitor narrow = {.g = g, .f = &f}, closed = {.g = g, .f = &f};
     TRY(list_faces(&f, g));
-    narrow.settled = arena_alloc(&g->temp, n * n, sizeof *narrow.settled, "gaps", g->diag);
-    closed.settled = arena_alloc(&g->temp, n * n, sizeof *closed.settled, "gaps", g->diag);
+    const size_t parts = (size_t)f.n_parts;
+    narrow.settled =
+        arena_alloc(&g->temp, sections * sections, sizeof *narrow.settled, "gaps", g->diag);
+    closed.settled = arena_alloc(&g->temp, parts * parts, sizeof *closed.settled, "gaps", g->diag);
     if (!narrow.settled || !closed.settled) return ERR_MEMORY;
     for (int64_t k = 0; k < f.n; k++) visit_pairs(&narrow, k, (1 + one_wide) * dp, warn_of_gap);
     for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.2 * dp, mark_touching);

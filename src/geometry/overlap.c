@@ -41,17 +41,23 @@ static int motion_of(const struct scene *s, const struct region *wall)
     return scene_find_motion(s, s->wall[wall->body].motion);
 }
 
-bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y)
+int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y)
 {
     double at[2];
     lattice_place(&region->lattice, x, y, at);
     at[0] += NUDGE_X * region->lattice.spacing[0];
     at[1] += NUDGE_Y * region->lattice.spacing[1];
     for (int k = 0; k < region->minus.n; k++)
-        if (outline_contains(&region->minus.item[k], at[0], at[1], g->scratch)) return false;
+        if (outline_contains(&region->minus.item[k], at[0], at[1], g->scratch)) return -1;
     for (int k = 0; k < region->add.n; k++)
-        if (outline_contains(&region->add.item[k], at[0], at[1], g->scratch)) return true;
-    return false;
+        if (outline_contains(&region->add.item[k], at[0], at[1], g->scratch))
+            return region->add.shape[k];
+    return -1;
+}
+
+bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y)
+{
+    return geometry_shape_at(g, region, x, y) >= 0;
 }
 
 /* Whether point k can be omitted because of point `other`. Lattices at different angles, and

@@ -66,7 +66,9 @@ enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECK
 /* Packs fluid beside edges that are not along its lattice, with `scheme = standard` (geometry/pack.c). */
 enum err geometry_pack(struct sampler *g) SPHFSI_CHECKED;
 
-/* Whether a point is inside a region's shapes, with the rounding of geometry_sample. */
+/* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or -1; and
+ * whether there is one. */
+int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y);
 bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
 
 /* Warns of openings that sampling has closed or left one particle wide (geometry/gaps.c). */

@@ -279,6 +279,18 @@ static void test_a_gap_that_sampling_closes(void)
                                                   "(0.0525, 0) m is narrower than dp = 0.005 m and "
                                                   "closed by sampling"),
                                  warnings);
+    /* Between shapes of one section. */
+    read(HEAD SHORT TANK "shape = polygon 0.05, 0.002; 0.07, 0.002; 0.07, 0.08; 0.05, 0.08\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings, "doubts.cfg:10: the gap in [wall tank] at "
+                         "(0.0525, 0) m is narrower than dp = 0.005 m and closed by"),
+        warnings);
+    TEST_ASSERT_NULL(strstr(strstr(warnings, ": the gap") + 1, ": the gap")); /* one warning */
+    /* Shapes that overlap, that share an edge, or that touch a third one only. */
+    read(HEAD SHORT TANK "shape = polygon 0.05, -0.01; 0.07, -0.01; 0.07, 0.08; 0.05, 0.08\n"
+                         "shape = polygon 0.07, 0; 0.09, 0; 0.07, 0.04\n"
+                         "shape = circle 0.06, 0.08, 0.01\nshape = box 0.07, 0.042, 0.09, 0.06\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the gap"), warnings);
     /* Two circles and the floor touch as drawn, at a point. */
     read(HEAD SHORT TANK "[solid a]\nshape = circle 0.06, 0.01, 0.01\n" POST
                          "[solid b]\nshape = circle 0.08, 0.01, 0.01\n" POST);
