@@ -143,6 +143,23 @@ static void say_fields(const struct simulation *s, const struct sphfsi_options *
         1e-6 * (double)s->arena.bytes, 1e-6 * (double)s->scene->arena.bytes);
 }
 
+/* The largest load of single instants falls with dp for as long as an impact lasts a few particles;
+ * template `baffle`, docs/fluid_verification.md. */
+static void say_instants(const struct scene *c, const struct sphfsi_options *o)
+{
+    for (int k = 0; k < c->n_probe; k++) {
+        const struct scene_probe *const p = &c->probe[k];
+        const bool load = p->quantity == PROBE_FORCE || p->quantity == PROBE_PRESSURE ||
+                          p->quantity == PROBE_SURFACE_PRESSURE;
+        if (load && p->average == 0)
+            session_say(o,
+                        "  [probe %s]: rows are of single instants, whose largest in an impact "
+                        "depends on dp; a mean over time (`average`), an impulse or the reaction "
+                        "of a clamp depends less on it",
+                        p->common.name);
+    }
+}
+
 static void say_output(const struct simulation *s, const struct sphfsi_options *o)
 {
     const struct snapshot_layout layout = snapshot_file_layout(s->scene);
@@ -157,6 +174,7 @@ static void say_output(const struct simulation *s, const struct sphfsi_options *
                 "twice that space during the run",
                 snapshots, points, point, 1e-6 * snapshots * points * point,
                 layout.deflate ? "before compression" : "(no compression)");
+    if (s->effects & FX_FLUID) say_instants(s->scene, o);
 }
 
 static void say_bounds(const struct simulation *s, const struct sphfsi_options *o)
