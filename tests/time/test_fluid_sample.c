@@ -81,6 +81,23 @@ static void test_flux_of_denser_water(void)
     assert_near(1e-12, flux / 1.1, simulation_flux(&rig.sim, from, to), "flux");
 }
 
+/* Water up to the top of the domain, and a surface just above it: the level is that of the water, not that of
+ * the domain. */
+static void test_level_at_the_top_of_the_domain(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[domain]\nlower = -0.1, -0.1\nupper = 0.5, 0.2\n"
+             "[fluid w]\nshape = box 0, 0, 0.4, 0.2\nsound_speed = 30\n",
+             NULL);
+    struct particles *const p = &rig.sim.kind[KIND_FLUID];
+    for (int k = 0; k < 5; k++) {
+        const double rise = 0.0005 * k;
+        for (int64_t i = 0; i < p->n; i++) p->y[i] += k ? 0.0005 : 0;
+        rig_evaluate(&rig);
+        assert_near(0.0007, 0.2 + rise, simulation_level(&rig.sim, 0.2, 0.1), "level");
+    }
+}
+
 /* The volume of the water decides its level, not the heights of single rows; also where it is shallow, and
  * beside a wall. */
 static void test_level_of_volume(void)
@@ -138,6 +155,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_anywhere);
     RUN_TEST(test_flux_of_denser_water);
+    RUN_TEST(test_level_at_the_top_of_the_domain);
     RUN_TEST(test_level_of_volume);
     RUN_TEST(test_flux_is_that_at_the_line);
     RUN_TEST(test_across_periodic_sides);

@@ -156,6 +156,27 @@ static void test_inverted_solid(void)
     expect(KIND_SOLID, at, "det F");
 }
 
+/* The guards judge the gradients of the displacements as of the last sub-step, not those of the start. */
+static void test_lone_solid_is_judged_as_it_is(void)
+{
+    rig_open(&rig,
+             "dp = 1 cm\nend_time = 1\n[solid bar]\nshape = box 0, 0, 0.2, 0.05\n"
+             "clamp = box 0, 0, 0.02, 0.05\ndensity = 1100\nyoung = 1e6\npoisson = 0.3\n"
+             "velocity = -4 s^-1*x, 0\n",
+             NULL);
+    struct particles *const p = &rig.sim.kind[KIND_SOLID];
+    double lowest = 1;
+    for (int step = 0; step < 20; step++) {
+        rig_steps(&rig, 1, 1);
+        const double found = rig.sim.state.det_low;
+        solid_stress(&rig.sim.solid, p);
+        for (int64_t i = 0; i < p->n; i++)
+            lowest = min2(lowest, (1 + p->Uxx[i]) * (1 + p->Uyy[i]) - p->Uxy[i] * p->Uyx[i]);
+        TEST_ASSERT_TRUE(lowest < 1);
+        assert_near(0.1 * (1 - lowest), lowest, found, "smallest det F");
+    }
+}
+
 static void test_lone_solid_turned_inside_out(void)
 {
     rig_open(&rig,
@@ -402,6 +423,7 @@ int main(void)
     RUN_TEST(test_velocity_of_the_solid);
     RUN_TEST(test_velocity_of_a_body);
     RUN_TEST(test_inverted_solid);
+    RUN_TEST(test_lone_solid_is_judged_as_it_is);
     RUN_TEST(test_lone_solid_turned_inside_out);
     RUN_TEST(test_collapsed_step);
     RUN_TEST(test_one_warning_for_fast_fluid);
