@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * The public header, used as a program would: it alone is included. */
+ * The public header, used as a program would. */
 #include "sphfsi.h"
+#include "rig.h"
 #include "tiny.h"
 #include "unity.h"
 
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
 static struct sphfsi_simulation *s;
+static struct rig rig;
 static int warnings, notes;
 
 static void on_message(void *context, enum sphfsi_message kind, const char *text)
@@ -91,6 +94,70 @@ static void rates_are_up_to_date(void)
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(s, 1));
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "ddens", &rate));
     TEST_ASSERT_TRUE(memcmp(seen, rate.data, sizeof seen) != 0);
+}
+
+/* The force on a structure is that of the fluid at the present positions, neither what the coupling weighs nor
+ * that of the last step: as the sweeps find it in the same state. */
+static void force_on_solids_is_the_present_one(void)
+{
+    static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
+                                              "integrator=leapfrog"};
+    for (size_t k = 0; k < sizeof integrators / sizeof *integrators; k++) {
+        tearDown();
+        struct sphfsi_options o = tiny_options();
+        const char *const sets[] = {"scheme=paper", integrators[k]};
+        o.sets = sets;
+        o.n_sets = 2;
+        TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_create(&s, &o));
+        rig_open(&rig, tiny_case, integrators[k], NULL);
+        for (int step = 0; step < 40; step++) {
+            TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_step(s, 1));
+            rig_steps(&rig, 1, 1);
+        }
+        struct sphfsi_view x;
+        TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_FLUID, "x", &x));
+        TEST_ASSERT_TRUE(sphfsi_time(s) == rig.sim.state.time);
+        for (int64_t i = 0; i < x.count; i++)
+            TEST_ASSERT_TRUE(((const double *)x.data)[i] == rig.sim.kind[KIND_FLUID].x[i]);
+        const struct particles *const p = &rig.sim.kind[KIND_SOLID];
+        double before[64], changed = 0, top = 0;
+        TEST_ASSERT_TRUE(p->n <= 64);
+        for (int64_t i = 0; i < p->n; i++) before[i] = p->fx[i];
+        rig_evaluate(&rig);
+        struct sphfsi_view fx, fy;
+        TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_SOLID, "fx", &fx));
+        TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_field(s, SPHFSI_SOLID, "fy", &fy));
+        for (int64_t i = 0; i < p->n; i++) {
+            TEST_ASSERT_TRUE(((const double *)fx.data)[i] == p->fx[i]);
+            TEST_ASSERT_TRUE(((const double *)fy.data)[i] == p->fy[i]);
+            changed = fmax(changed, fabs(p->fx[i] - before[i]));
+            top = fmax(top, fabs(p->fx[i]));
+        }
+        TEST_ASSERT_TRUE(top > 1 && changed > 1e-6 * top);
+        rig_close(&rig);
+    }
+}
+
+/* A scene without motions, probes, walls or fluid has none to name. */
+static void what_is_not_there_has_no_nearest(void)
+{
+    static const char text[] = "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.1, 0.05\n"
+                               "density = 1000\nyoung = 1e6\npoisson = 0.3\n";
+    const struct sphfsi_options o = {.case_text = text, .threads = 1};
+    double values[SPHFSI_PROBE_COLUMNS];
+    tearDown();
+    TEST_ASSERT_EQUAL_INT(SPHFSI_OK, sphfsi_create(&s, &o));
+    TEST_ASSERT_NULL(sphfsi_field_name(s, SPHFSI_FLUID, 0));
+    TEST_ASSERT_NOT_NULL(sphfsi_field_name(s, SPHFSI_SOLID, 0));
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_probe(s, "P", values));
+    TEST_ASSERT_EQUAL_STRING("probe: the case has no [probe P]", sphfsi_error());
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_set_motion(s, "m", NULL, NULL));
+    TEST_ASSERT_EQUAL_STRING("motion: the case has no [motion m]", sphfsi_error());
+    TEST_ASSERT_NULL(sphfsi_template("xyzxyzxyz"));
+    TEST_ASSERT_NULL(strstr(sphfsi_error(), "nearest"));
+    TEST_ASSERT_EQUAL_INT(128 + 15, sphfsi_exit_status(SPHFSI_INTERRUPT, 15));
+    TEST_ASSERT_EQUAL_INT(sphfsi_exit_status(SPHFSI_INTERRUPT, 0),
+                          sphfsi_exit_status(SPHFSI_INTERRUPT, 128));
 }
 
 static void an_unknown_field_names_the_nearest(void)
@@ -307,6 +374,8 @@ int main(void)
     RUN_TEST(fields_are_views);
     RUN_TEST(pressure_is_up_to_date);
     RUN_TEST(rates_are_up_to_date);
+    RUN_TEST(force_on_solids_is_the_present_one);
+    RUN_TEST(what_is_not_there_has_no_nearest);
     RUN_TEST(an_unknown_field_names_the_nearest);
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);
