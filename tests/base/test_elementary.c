@@ -85,6 +85,15 @@ static void exact_and_special_values(void)
     TEST_ASSERT_TRUE(elementary_atan2(1, 1) == atan2(1, 1) &&
                      elementary_atan2(0, -1) == atan2(0, -1));
     TEST_ASSERT_TRUE(elementary_atan2(-1, -1) == atan2(-1, -1));
+    TEST_ASSERT_TRUE(elementary_tan(0) == 0 && signbit(elementary_tan(-0.0)));
+    TEST_ASSERT_TRUE(elementary_tan(1e300) == tan(1e300) && isnan(elementary_tan(inf)));
+    TEST_ASSERT_TRUE(elementary_tanh(0) == 0 && signbit(elementary_tanh(-0.0)));
+    TEST_ASSERT_TRUE(isnan(elementary_tanh((double)NAN)) && isnan(elementary_cosh((double)NAN)));
+    TEST_ASSERT_TRUE(elementary_pow(inf, 2) == inf && elementary_pow(inf, -1) == 0);
+    TEST_ASSERT_TRUE(elementary_pow(2, inf) == inf && elementary_pow(0.5, inf) == 0);
+    TEST_ASSERT_TRUE(elementary_atan2(inf, 1) == atan2(inf, 1) && elementary_atan2(1, inf) == 0 &&
+                     elementary_atan2(1, 0) == atan2(1, 0));
+    TEST_ASSERT_TRUE(elementary_hypot(1, -inf) == inf && isnan(elementary_hypot((double)NAN, 1)));
 }
 
 /* Found once; equal with glibc, musl, gcc, clang and in WebAssembly. */
