@@ -16,7 +16,7 @@ from pathlib import Path
 from stability_map import statics
 
 ROOT = Path(__file__).resolve().parents[1]
-TERMS = ("fluid", "dissipation", "interface", "solid", "boundaries")
+TERMS = ("fluid", "dissipation", "interface", "solid", "restarts", "boundaries")
 THIN = "tests/stability/thin.cfg"
 DROP = """dp = 5 mm
 end_time = 0.1

@@ -47,7 +47,7 @@ LIMITS = """\
 * Fluid on one side of a thin body interacts with fluid on the other side if the body is thinner than the
   kernel radius less one spacing, whatever `sides` is. Two particles are enough at h/dp up to 1.5, three at 2.
   The program warns.
-* `wall_repulsion` stores energy while it pushes. No account of the ledger has this energy.
+* `wall_repulsion` stores energy while it pushes. The account of energy has it (L-7b), the ledger has not.
 """
 
 

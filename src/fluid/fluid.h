@@ -6,6 +6,9 @@
 #include "particles/clusters.h"
 #include "case/effects.h"
 
+#define ETA2 0.01           /* (eta/h)^2 */
+#define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
+
 /* Constants of the fluid, SI. */
 struct fluid_constants {
     double h, c0, rho0;

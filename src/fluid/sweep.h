@@ -18,9 +18,6 @@
 #include "fluid/pair_laws.h"
 #include "fluid/packed.h"
 
-#define ETA2 0.01           /* (eta/h)^2 */
-#define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
-
 static struct vector_constants constants_of_sweep(const struct fluid *f)
 {
     const struct fluid_constants *const fk = &f->k;

@@ -166,7 +166,7 @@ static void write_gains(struct json *j, const struct account *a)
 {
     static const char *const names[ACCOUNT_TERMS] = {
         [TERM_FLUID] = "fluid", [TERM_DISSIPATION] = "dissipation", [TERM_INTERFACE] = "interface",
-        [TERM_SOLID] = "solid", [TERM_ALL] = "boundaries",
+        [TERM_SOLID] = "solid", [TERM_RESTARTS] = "restarts",       [TERM_ALL] = "boundaries",
     };
     json_open(j, "gains_by_term", '{');
     for (int t = 0; t < ACCOUNT_TERMS; t++) {

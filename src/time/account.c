@@ -143,14 +143,22 @@ void account_touch(struct simulation *s)
 
 struct energies {
     double kinetic, potential, internal, elastic, hourglass, contact;
-    double dummies; /* compression energy of dummies by their pressure */
-    double damper;  /* that the acoustic damper holds and has yet to dissipate (T-9a) */
-    double scale;   /* of a strain of 1, or of a fluid at the speed of sound */
+    double dummies;     /* compression energy of dummies by their pressure */
+    double repulsion;   /* of walls and structures, by L-7b */
+    double alternating; /* by which Verlet's two solutions differ (T-46f) */
+    double damper;      /* that the acoustic damper holds and has yet to dissipate (T-9a) */
+    double scale;       /* of a strain of 1, or of a fluid at the speed of sound */
 };
 
 static double energy_without_potential(const struct energies *e)
 {
-    return e->kinetic + e->internal + e->elastic + e->hourglass + e->contact;
+    return e->kinetic + e->internal + e->elastic + e->hourglass + e->contact + e->repulsion;
+}
+
+/* That the work on a section changes. */
+static double own_energy(const struct energies *e)
+{
+    return energy_without_potential(e) - e->repulsion + e->potential - e->alternating;
 }
 
 static void add_energies(struct energies *sum, const struct energies *e)
@@ -162,6 +170,8 @@ static void add_energies(struct energies *sum, const struct energies *e)
     sum->hourglass += e->hourglass;
     sum->contact += e->contact;
     sum->dummies += e->dummies;
+    sum->repulsion += e->repulsion;
+    sum->alternating += e->alternating;
     sum->damper += e->damper;
     sum->scale += e->scale;
 }
@@ -217,6 +227,35 @@ static void add_dummies(const struct simulation *s, struct energies *of)
     }
 }
 
+void account_alternating(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double c0 = s->fluid.k.c0, since = s->state.dt;
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int64_t i = 0; i < p->n && p->vx_old; i++) {
+        if (p->open && p->open[i]) continue; /* set anew at each evaluation */
+        const double m = p->m ? s->fluid.k.mass * p->m[i] : s->fluid.k.mass;
+        const double u = p->vx_old[i] + since * p->ax[i], v = p->vy_old[i] + since * p->ay[i];
+        const double d = p->dens_old[i] + since * p->ddens[i];
+        of[p->body[i]] += 0.5 * m *
+                          (0.5 * (square(p->vx[i]) + square(p->vy[i]) - square(u) - square(v)) +
+                           eos_energy(p->dens[i], c0) - eos_energy(d, c0));
+    }
+}
+
+/* Energies of fluids that depend on more than their own particles' state. */
+static void add_shared(const struct simulation *s, struct energies *of)
+{
+    double repulsion[SCENE_MAX_SECTIONS] = {0}, alternating[SCENE_MAX_SECTIONS] = {0};
+    if (s->effects & FX_REPULSION) simulation_repulsion(s, repulsion);
+    if (s->effects & FX_VERLET) account_alternating(s, alternating);
+    for (int k = 0; k < s->scene->n_fluid; k++) {
+        struct energies *const e = &of[account_entry(KIND_FLUID, k)];
+        e->repulsion = repulsion[k];
+        e->alternating = alternating[k];
+    }
+}
+
 /* Energies of the sections. The first solid carries the energy of contact of all. */
 static void find_energies(struct simulation *s, struct energies of[ACCOUNT_ENTRIES])
 {
@@ -224,6 +263,7 @@ static void find_energies(struct simulation *s, struct energies of[ACCOUNT_ENTRI
     if (s->effects & FX_FLUID) add_fluid(s, of);
     if (s->effects & FX_SOLID) add_solids(s, of);
     if (s->effects & FX_FLUID) add_dummies(s, of);
+    if (s->effects & FX_FLUID) add_shared(s, of);
     if (s->effects & FX_CONTACT)
         of[account_entry(KIND_SOLID, 0)].contact =
             contact_energy(&s->contact, &s->kind[KIND_SOLID], s->state.time);
@@ -251,14 +291,16 @@ static void find_terms(const struct simulation *s, const struct energies of[ACCO
     find_interface_work(s, to_return);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         const bool solid = k >= account_entry(KIND_SOLID, 0);
-        const double more = energy_without_potential(&of[k]) + of[k].potential - a->put[k];
+        const double more = own_energy(&of[k]) - a->put[k];
         terms[TERM_FLUID][k] = solid ? 0 : more;
         terms[TERM_SOLID][k] = solid ? more : 0;
         terms[TERM_DISSIPATION][k] = a->spent[k] + of[k].damper;
         terms[TERM_INTERFACE][k] =
             solid ? a->exchange[k] - to_return[k - account_entry(KIND_SOLID, 0)] : 0;
+        terms[TERM_RESTARTS][k] = a->restarts[k];
         terms[TERM_ALL][k] = terms[TERM_FLUID][k] + terms[TERM_SOLID][k] +
-                             terms[TERM_DISSIPATION][k] + terms[TERM_INTERFACE][k] + a->dummies[k];
+                             terms[TERM_DISSIPATION][k] + terms[TERM_INTERFACE][k] +
+                             terms[TERM_RESTARTS][k] + a->dummies[k] + of[k].repulsion;
     }
 }
 
@@ -274,10 +316,10 @@ void account_begin(struct simulation *s)
     find_interface_work(s, &a->exchange[account_entry(KIND_SOLID, 0)]);
     for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
         const double available = energy_without_potential(&of[k]);
-        a->put[k] = available + of[k].potential;
+        a->put[k] = own_energy(&of[k]);
         a->lowest[k] = of[k].potential;
         for (int t = 0; t < ACCOUNT_TERMS; t++) a->available[t][k] = available;
-        a->low[TERM_ALL][k] = of[k].dummies + of[k].damper;
+        a->low[TERM_ALL][k] = of[k].dummies + of[k].damper + of[k].repulsion;
         a->low[TERM_DISSIPATION][k] = of[k].damper;
         a->region[k] = k;
         contact += of[k].contact;

@@ -20,6 +20,10 @@ void account_begin(struct simulation *s);
 void account_work(struct account *a, enum account_source source, enum kind kind, int section,
                   double work);
 
+/* T-46f: half of the energy by which the present state of each fluid section differs from the last but one,
+ * which Verlet carries on as a solution of its own. Rates must be up to date. */
+void account_alternating(const struct simulation *s, double of[SCENE_MAX_SECTIONS]);
+
 /* Notes the work of a step: its change bounds the error of the sums over steps. */
 void account_step(struct account *a, enum account_source source, int entry, double work);
 

@@ -202,6 +202,18 @@ void book_step(struct simulation *s, double dt)
     integrate(a, s, power, delivered, a->pending);
 }
 
+void book_restart(struct simulation *s)
+{
+    struct account *const a = &s->state.account;
+    double lost[SCENE_MAX_SECTIONS];
+    account_alternating(s, lost);
+    for (int k = 0; k < s->scene->n_fluid; k++) {
+        const int entry = account_entry(KIND_FLUID, k);
+        a->put[entry] += lost[k];
+        a->restarts[entry] += lost[k];
+    }
+}
+
 void book_midpoint(struct simulation *s, double dt)
 {
     struct power power[SCENE_MAX_SECTIONS];
@@ -260,7 +272,8 @@ void book_change(struct simulation *s, const struct fluid_energy *before)
 }
 
 /* The rates of the last step have changed the density over the whole step, and half of this is still to be
- * counted. That half will have no pressure: its work is counted here. */
+ * counted. That half will have no pressure: its work is counted here. By Verlet what is counted half a step
+ * before is the mean of both solutions' (T-46f). */
 void book_reset(struct simulation *s, int64_t i)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];
@@ -268,7 +281,9 @@ void book_reset(struct simulation *s, int64_t i)
     const double c0 = s->fluid.k.c0, d = p->dens[i];
     const double rate = p->ddens_old ? p->ddens_old[i] : p->ddens[i];
     const double half = a->pending * rate * compression_rate(d, square(c0) / EOS_GAMMA);
-    const double loss = (p->m ? p->m[i] : 1) * s->fluid.k.mass * (eos_energy(d, c0) - half);
+    const double held = p->dens_old ? 0.5 * (eos_energy(d, c0) + eos_energy(p->dens_old[i], c0))
+                                    : eos_energy(d, c0) - half;
+    const double loss = (p->m ? p->m[i] : 1) * s->fluid.k.mass * held;
     const int entry = account_entry(KIND_FLUID, p->body[i]);
     a->put[entry] -= loss;
     a->spent[entry] -= loss;

@@ -16,6 +16,9 @@ void book_check(struct simulation *s);
 /* The same after so many steps of a solid without fluid. */
 void book_check_solid_only(struct simulation *s, int64_t steps_before);
 
+/* At a state from which Verlet takes an Euler step, after book_step: the solution that it discards. */
+void book_restart(struct simulation *s);
+
 /* After an evaluation in the middle of a step of dt: counts its rates over the step. */
 void book_midpoint(struct simulation *s, double dt);
 

@@ -4,6 +4,7 @@
 #include "base/elementary.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
@@ -14,14 +15,14 @@
 /* Called for particle i of a kind at distance r from the sampled point. */
 typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
 
-static void each_near(const struct simulation *s, enum kind kind, double x, double y,
-                      visitor *visit, void *sums)
+static void each_within(const struct simulation *s, enum kind kind, double x, double y,
+                        double distance, visitor *visit, void *sums)
 {
     const struct cells *const c = &s->cells;
     const struct cell_list *const list = &c->kind[kind];
     const struct particles *const p = &s->kind[kind];
     /* Cells that may hold particles within reach: these may have moved since they were sorted. */
-    const double reach = KERNEL_REACH * s->fluid.k.h + c->skin;
+    const double reach = distance + c->skin;
     int first[2], n[2];
     for (int axis = 0; axis < 2; axis++) {
         const int cells = axis ? c->ny : c->nx;
@@ -41,6 +42,12 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
             visit(s, kind, i, elementary_hypot(dx, dy), sums);
         }
     }
+}
+
+static void each_near(const struct simulation *s, enum kind kind, double x, double y,
+                      visitor *visit, void *sums)
+{
+    each_within(s, kind, x, y, KERNEL_REACH * s->fluid.k.h, visit, sums);
 }
 
 static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i, double r,
@@ -73,6 +80,57 @@ int simulation_near(const struct simulation *s, double x, double y)
     if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, count_near, &n);
     if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, count_near, &n);
     return n;
+}
+
+/* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope from r to
+ * r0, by four points of Gauss. */
+static double repulsion_held(double r, double r0, double h)
+{
+    static const double at[] = {0.069431844202973713, 0.330009478207571868, 0.669990521792428132,
+                                0.930568155797026287};
+    static const double weight[] = {0.173927422568726929, 0.326072577431273071,
+                                    0.326072577431273071, 0.173927422568726929};
+    double sum = 0;
+    for (int g = 0; g < 4; g++) {
+        const double x = r + at[g] * (r0 - r), eta2 = ETA2 * square(h);
+        const double stress = (square(r0) + eta2) / (square(x) + eta2) - 1;
+        sum -= weight[g] * stress * kernel_slope(x, h) * x;
+    }
+    return sum * (r0 - r);
+}
+
+/* Adds that of a dummy at the distance r, times its volume, m^2. */
+static void add_repulsion(const struct simulation *s, enum kind kind, int64_t i, double r,
+                          void *sums)
+{
+    const struct particles *const p = &s->kind[kind];
+    const struct fluid *const f = &s->fluid;
+    const double over = f->volume[kind][p->body[i]];
+    const double r0 = REPULSION_REACH * 0.5 * (1 + sqrt(over)) * f->k.dp;
+    if (r < r0)
+        *(double *)sums +=
+            over * f->k.mass / (f->k.rho0 * (1 + p->dens[i])) * repulsion_held(r, r0, f->k.h);
+}
+
+void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
+    const struct fluid_constants *const k = &s->fluid.k;
+    const double reach = REPULSION_REACH * k->dp; /* solids are as fine as the fluid, or finer */
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int32_t n = 0; n < list->n_active; n++) {
+        const int32_t cell = list->active[n];
+        if (!s->fluid.near_dummies[cell]) continue;
+        for (int32_t i = list->start[cell]; i < list->start[cell] + list->count[cell]; i++) {
+            double sum = 0;
+            for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+                if (s->cells.kind[kind].n_active)
+                    each_within(s, (enum kind)kind, p->x[i], p->y[i], reach, add_repulsion, &sum);
+            of[p->body[i]] += (p->m ? p->m[i] : 1) * k->mass / (1 + p->dens[i]) * k->repulsion *
+                              square(k->c0) * sum;
+        }
+    }
 }
 
 struct sample simulation_sample(const struct simulation *s, double x, double y)

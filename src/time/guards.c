@@ -298,6 +298,7 @@ static const char *remedy_of(const struct simulation *s, const struct gain *g)
 {
     if (g->term == TERM_ALL)
         return s->effects & FX_CONTACT && s->contact.near ? " or a larger gap in [contact]" : "";
+    if (g->term == TERM_RESTARTS) return " or a larger verlet_reset";
     if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
@@ -321,6 +322,7 @@ static const char *source_of(const struct simulation *s, const struct gain *g)
         [TERM_DISSIPATION] = "the fluid's dissipation",
         [TERM_INTERFACE] = "the exchange between fluid and structure",
         [TERM_SOLID] = "the solid's stress or time integration",
+        [TERM_RESTARTS] = "the Euler steps of integrator = verlet",
         [TERM_ALL] = "the boundaries of the fluid",
     };
     if (g->term == TERM_SOLID && lacks_potential(s))

@@ -112,6 +112,9 @@ struct sample {
 };
 struct sample simulation_sample(const struct simulation *s, double x, double y);
 
+/* Energy that walls and structures have stored by repelling each fluid section (L-7b), J/m. */
+void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIONS]);
+
 /* Particles of all kinds within reach of a point. */
 int simulation_near(const struct simulation *s, double x, double y);
 

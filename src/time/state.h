@@ -16,6 +16,7 @@ enum account_term {
     TERM_DISSIPATION, /* work of viscosity, diffusion, shifting and T-45 */
     TERM_INTERFACE,   /* work on structures less what the fluid delivers */
     TERM_SOLID,       /* what the solid's energy gains beyond the work on it */
+    TERM_RESTARTS,    /* what Verlet's Euler steps add (Eq. 26) */
     TERM_ALL,         /* these, and the work of dummies */
     ACCOUNT_TERMS
 };
@@ -30,7 +31,8 @@ struct account {
      * from step to step. */
     double put[ACCOUNT_ENTRIES], last[ACCOUNT_SOURCES][ACCOUNT_ENTRIES];
     double step_work[ACCOUNT_ENTRIES];
-    double spent[ACCOUNT_ENTRIES];   /* TERM_DISSIPATION of fluids */
+    double spent[ACCOUNT_ENTRIES];    /* TERM_DISSIPATION of fluids */
+    double restarts[ACCOUNT_ENTRIES]; /* TERM_RESTARTS of fluids */
     double dummies[ACCOUNT_ENTRIES]; /* work of dummies on the fluid beyond that on the structure */
     double exchange[ACCOUNT_ENTRIES]; /* TERM_INTERFACE of solids, with the work still to return */
     /* Of regions, at their first section: the lowest value of each term, the energy that dummies

@@ -67,6 +67,7 @@ void verlet_step(struct simulation *s, double t_limit)
     const bool euler = s->state.verlet_count == 0;
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
     book_step(s, dt);
+    if (euler) book_restart(s);
     advance_fluid(s, update_rows, &(struct step_sizes){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {

@@ -314,6 +314,7 @@ static void test_terms_apart(void)
                                         [TERM_DISSIPATION] = "dissipation",
                                         [TERM_INTERFACE] = "exchange",
                                         [TERM_SOLID] = "the solid's",
+                                        [TERM_RESTARTS] = "Euler steps",
                                         [TERM_ALL] = "boundaries"};
     for (int t = 0; t < ACCOUNT_TERMS; t++) {
         simulation_refresh(&rig.sim);
