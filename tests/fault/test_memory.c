@@ -176,13 +176,13 @@ static void settings_fail_cleanly(void)
     sphfsi_free(s);
 }
 
-static void run_fails(const char *text, double until, int step)
+static void run_fails(const char *text, const char *folder, double until, int step)
 {
     struct sphfsi_options o = {.case_text = text, .until = until, .threads = 1};
     enum sphfsi_status status = SPHFSI_MEMORY;
     for (long n = 0; status && n < 5000; n += step) {
         char name[32];
-        snprintf(name, sizeof name, "run%ld", n);
+        snprintf(name, sizeof name, "%s%ld", folder, n);
         o.out = tiny_path(name);
         arena_fail_after(n);
         status = sphfsi_run(&o);
@@ -191,12 +191,12 @@ static void run_fails(const char *text, double until, int step)
     TEST_ASSERT_EQUAL_INT(SPHFSI_OK, status);
 }
 
-static void a_run_fails_cleanly(void) { run_fails(tiny_case, 0.0002, 7); }
+static void a_run_fails_cleanly(void) { run_fails(tiny_case, "tiny", 0.0002, 7); }
 
 static void a_rich_run_fails_cleanly(void)
 {
     write_files();
-    run_fails(rich, 0.0002, 3);
+    run_fails(rich, "rich", 0.0002, 3);
 }
 
 int main(void)
