@@ -160,6 +160,18 @@ static void what_is_not_there_has_no_nearest(void)
                           sphfsi_exit_status(SPHFSI_INTERRUPT, 128));
 }
 
+/* Nothing is made of a case that cannot be read. */
+static void a_refinement_of_a_wrong_case(void)
+{
+    const struct sphfsi_options o = {.case_text = "dp = 1 cm\nend_time = 1\n[solid a]\nyuong = 1\n",
+                                     .threads = 1,
+                                     .out = tiny_path("refined")};
+    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_refine(&o, 3, 2));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "yuong"), sphfsi_error());
+    struct stat info;
+    TEST_ASSERT_NOT_EQUAL(0, stat(tiny_path("refined"), &info));
+}
+
 static void an_unknown_field_names_the_nearest(void)
 {
     struct sphfsi_view v;
@@ -376,6 +388,7 @@ int main(void)
     RUN_TEST(rates_are_up_to_date);
     RUN_TEST(force_on_solids_is_the_present_one);
     RUN_TEST(what_is_not_there_has_no_nearest);
+    RUN_TEST(a_refinement_of_a_wrong_case);
     RUN_TEST(an_unknown_field_names_the_nearest);
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);

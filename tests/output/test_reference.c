@@ -107,6 +107,36 @@ static void test_nothing_in_common(void)
     TEST_ASSERT_EQUAL_STRING("P_dx_m: its times do not overlap with those of r", text);
 }
 
+/* One row of the probe, and two at the same time, of which the first is met first; rows that lack the column are
+ * passed over, and a point ends at a comment or at the end of the file. */
+static void test_few_and_odd_rows(void)
+{
+    put("r.csv", " \t# nothing\n\r\n0 2\t\n1, 4");
+    const struct score one = score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n1,3,0\n");
+    TEST_ASSERT_EQUAL(1, one.points);
+    TEST_ASSERT_EQUAL_DOUBLE(-1, one.mean);
+    scene_free(&scene);
+    const struct score two =
+        score_of("file = r.csv\n", "time_s,P_dx_m,P_dy_m\n0,1,0\n0.5\n1,3,0\n1,5,0\n");
+    TEST_ASSERT_EQUAL(2, two.points);
+    TEST_ASSERT_EQUAL_DOUBLE(-1, two.mean);
+    scene_free(&scene);
+    const struct score late =
+        score_of("file = r.csv\nuntil = 0.5\n", "time_s,P_dx_m,P_dy_m\n0,1,0\n0.4,2,0\n1,9,0\n");
+    TEST_ASSERT_EQUAL(1, late.points);
+    TEST_ASSERT_EQUAL_DOUBLE(2, late.peak);
+}
+
+/* More lines than are read. */
+static void test_a_file_of_too_many_lines(void)
+{
+    FILE *file = fopen(tiny_path("r.csv"), "w");
+    for (int k = 0; k <= 1000000; k++) fputs("\n", file);
+    fclose(file);
+    TEST_ASSERT_EQUAL(ERR_INPUT, open_with("file = r.csv\n", "time_s,P_dx_m"));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "has more than 1000000 lines"), diag.text);
+}
+
 /* Zero everywhere: an error has no per cent. */
 static void test_a_reference_of_zero(void)
 {
@@ -202,6 +232,8 @@ int main(void)
     RUN_TEST(test_formula_and_window);
     RUN_TEST(test_one_row_is_constant_and_the_first_of_equal_peaks_counts);
     RUN_TEST(test_nothing_in_common);
+    RUN_TEST(test_few_and_odd_rows);
+    RUN_TEST(test_a_file_of_too_many_lines);
     RUN_TEST(test_a_reference_of_zero);
     RUN_TEST(test_two_references_of_a_probe);
     RUN_TEST(test_missing_file);

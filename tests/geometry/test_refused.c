@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT
+ * Scenes that can be read, but not be sampled or divided into cells: too wide, too narrow, or with an opening
+ * in a body. The message says what would be right. */
+#include "geometry/load.h"
+#include "time/simulation.h"
+#include "unity.h"
+
+#include <string.h>
+
+#define SOLID "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
+#define CHANNEL                                                                 \
+    "dp = 1 cm\nend_time = 1\n[domain]\nlower = -0.3, -0.1\nupper = 0.4, 0.2\n" \
+    "[fluid w]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n[wall b]\n"       \
+    "shape = box -0.2, -0.04, 0.4, 0\nshape = box -0.2, 0.1, 0.4, 0.14\n"       \
+    "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nvelocity = 0.1, 0\n"                 \
+    "[outflow o]\nfrom = 0.2, 0\nto = 0.2, 0.1\npressure = 0\n"
+
+static struct scene scene;
+static struct simulation simulation;
+static struct diag diag;
+
+void setUp(void) { diag = (struct diag){.code = ERR_OK}; }
+void tearDown(void) {}
+
+/* Reads, samples and builds. */
+static enum err build(const char *text)
+{
+    setUp();
+    enum err e = scene_load_text(&scene, text, "g.cfg", 0, NULL, &diag);
+    if (e) return e;
+    e = simulation_create(&simulation, &scene, &diag);
+    if (!e) simulation_free(&simulation);
+    scene_free(&scene);
+    return e;
+}
+
+static const struct {
+    const char *text, *message;
+} refused[] = {
+    {"dp = 1 cm\nend_time = 1\n[domain]\nlower = 0, -0.1\nupper = 0.06, 0.3\nperiodic = x\n"
+     "[fluid w]\nshape = box 0, 0, 0.06, 0.1\nsound_speed = 20\n",
+     "periodic in x and only 0.06 m wide there; at least 0.126 m is needed"},
+    {"dp = 1 cm\nend_time = 1\n[domain]\nlower = -0.1, 0\nupper = 0.3, 0.06\nperiodic = y\n"
+     "[fluid w]\nshape = box 0, 0, 0.1, 0.06\nsound_speed = 20\n",
+     "periodic in y and only 0.06 m wide there"},
+    {CHANNEL "[solid s]\nshape = box -0.06, 0.03, -0.02, 0.07\n" SOLID,
+     "[inflow i] lies in a solid at (-0.025, 0.065) m: move the line"},
+    {"dp = 1 mm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+     "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n"
+     "[inflow i]\nfrom = 2e7, 0\nto = 0, 0\nspeed = 0.1\n",
+     "buffer for more than 1e8 particles"},
+    {"dp = 1 mm\nend_time = 1\n[solid w]\nshape = box 0, 0, 0.1, 0.1\n"
+     "shape = box 5000000, 0, 5000000.1, 0.1\n" SOLID,
+     "the shapes span more than 1e+10 cells"},
+};
+
+static void test_each_is_refused(void)
+{
+    for (size_t k = 0; k < COUNT_OF(refused); k++) {
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_INPUT, build(refused[k].text), refused[k].message);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, refused[k].message), diag.text);
+    }
+}
+
+static void test_the_channel_itself_is_not(void)
+{
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, build(CHANNEL), diag.text);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_each_is_refused);
+    RUN_TEST(test_the_channel_itself_is_not);
+    return UNITY_END();
+}
