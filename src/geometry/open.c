@@ -65,7 +65,8 @@ struct lattice {
 
 static struct lattice lattice_of(const struct scene *s, const struct scene_open *o)
 {
-    struct lattice l = {(int)max2(1, round(o->length / s->top.dp)),
+    const double most = 1e9; /* more than is accepted, but an integer */
+    struct lattice l = {(int)min2(most, max2(1, round(o->length / s->top.dp))),
                         (int)round(o->depth / s->top.dp), 0};
     l.step = o->length / l.across;
     return l;

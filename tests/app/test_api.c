@@ -96,8 +96,8 @@ static void rates_are_up_to_date(void)
     TEST_ASSERT_TRUE(memcmp(seen, rate.data, sizeof seen) != 0);
 }
 
-/* The force on a structure is that of the fluid at the present positions, neither what the coupling weighs nor
- * that of the last step: as the sweeps find it in the same state. */
+/* The force on a structure is that of the fluid at the present positions, neither what the coupling weighs
+ * nor that of the last step: as the sweeps find it in the same state. */
 static void force_on_solids_is_the_present_one(void)
 {
     static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
@@ -158,6 +158,30 @@ static void what_is_not_there_has_no_nearest(void)
     TEST_ASSERT_EQUAL_INT(128 + 15, sphfsi_exit_status(SPHFSI_INTERRUPT, 15));
     TEST_ASSERT_EQUAL_INT(sphfsi_exit_status(SPHFSI_INTERRUPT, 0),
                           sphfsi_exit_status(SPHFSI_INTERRUPT, 128));
+}
+
+static char explained[20000];
+
+static void keep_note(void *context, enum sphfsi_message kind, const char *text)
+{
+    (void)context;
+    if (kind == SPHFSI_NOTE) snprintf(explained, sizeof explained, "%s", text);
+}
+
+/* Scenes of one kind: only a solid has a step of its own. */
+static void lone_bodies_are_explained(void)
+{
+    static const char *const texts[] = {
+        "dp = 1 cm\nend_time = 1e-4\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n",
+        "dp = 1 cm\nend_time = 1e-4\n[solid a]\nshape = box 0, 0, 0.1, 0.05\ndensity = 1000\n"
+        "young = 1e6\npoisson = 0.3\n"};
+    for (int k = 0; k < 2; k++) {
+        struct sphfsi_options o = {.case_text = texts[k], .threads = 1, .message = keep_note};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(SPHFSI_OK, sphfsi_explain_json(&o), sphfsi_error());
+        const bool found = strstr(explained, "\"solid_time_step\"") != NULL;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(k == 1, found, explained);
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(explained, "\"time_step_bound\""), explained);
+    }
 }
 
 /* Nothing is made of a case that cannot be read. */
@@ -388,6 +412,7 @@ int main(void)
     RUN_TEST(rates_are_up_to_date);
     RUN_TEST(force_on_solids_is_the_present_one);
     RUN_TEST(what_is_not_there_has_no_nearest);
+    RUN_TEST(lone_bodies_are_explained);
     RUN_TEST(a_refinement_of_a_wrong_case);
     RUN_TEST(an_unknown_field_names_the_nearest);
     RUN_TEST(wrong_input_makes_nothing);

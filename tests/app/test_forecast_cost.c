@@ -141,8 +141,8 @@ static void test_costs_belong_to_a_processor(void)
     model = NULL;
 }
 
-/* Steps are repeated for 5 ms each time, here by a clock that goes on by 0.1 ms each time it is read. A repeat
- * reads the clock of the processor twice. */
+/* Steps are repeated for 5 ms each time, here by a clock that goes on by 0.1 ms each time it is read. A
+ * repeat reads the clock of the processor twice. */
 static void test_steps_are_measured_in_repeats(void)
 {
     setenv("XDG_CACHE_HOME", "/dev/null", 1);

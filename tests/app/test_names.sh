@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# What a run, a drawing and the next command are called without a name given, and explanations of scenes that
+# lack what others have.
+set -u
+program=$(realpath "$SPHFSI")
+work=$(mktemp -d) || exit 1
+trap 'rm -rf "$work"' EXIT
+fail() { echo "$1"; exit 1; }
+export OMP_NUM_THREADS=1 XDG_CACHE_HOME=$work/cache
+cp tests/fault/tiny.cfg "$work/tiny"
+cp tests/fault/tiny.cfg "$work/tank.cfg"
+cp "$program" "$work/sphfsi"
+cd "$work" || exit 1
+
+# A case with and without its ending.
+./sphfsi tiny --quiet --until 1e-4 >said 2>&1 || fail "$(cat said)"
+[ -s runs/tiny/summary.json ] || fail "no runs/tiny"
+./sphfsi tiny --quiet --set numerics.fixed_step=4ms --set output.probe_interval=20ms --set end_time=1 \
+    --out far >said 2>&1 && fail "no guard"
+grep -q '^to go on: ./sphfsi tiny --fork far/step-[0-9]*.ckpt .* --out far-2' said || fail "$(cat said)"
+./sphfsi tank.cfg --quiet --until 1e-4 >said 2>&1 || fail "$(cat said)"
+[ -s runs/tank/summary.json ] || fail "no runs/tank"
+./sphfsi tank.cfg --quiet --until 1e-4 --fork runs/tiny --set gate.young=2e6 >said 2>&1 || fail "$(cat said)"
+[ -s runs/tank-fork/summary.json ] || fail "no runs/tank-fork"
+for case in tiny tank.cfg; do
+    ./sphfsi --preview "$case" >said 2>&1 || fail "$(cat said)"
+    [ -s "preview-${case%.cfg}.svg" ] || fail "no preview of $case"
+done
+for time in "90  s" "1 min"; do
+    ./sphfsi --budget "$time" tiny >said 2>&1 || fail "$(cat said)"
+done
+for ratio in 9 x 1; do
+    ./sphfsi --refine 3 --ratio "$ratio" tiny >said 2>&1 && fail "--ratio $ratio was accepted"
+    grep -q 'give a number from 1.1 to 4' said || fail "$(cat said)"
+done
+sed -i '1i source = By hand, 2026' tiny
+./sphfsi --cite tiny | grep -q '^The scene: By hand, 2026' || fail "no source"
+
+# Solids in contact, a structure without sub-steps.
+cat >solid.cfg <<'END'
+dp = 1 cm
+end_time = 1e-4
+[solid a]
+shape = box 0, 0, 0.2, 0.05
+density = 1000
+young = 1e6
+poisson = 0.3
+[solid b]
+like = a
+shape = box 0.22, 0, 0.3, 0.05
+[contact all]
+END
+./sphfsi --explain solid.cfg --set output.snapshot_compression=0 >said 2>&1 || fail "$(cat said)"
+grep -q '(no compression)' said || fail "$(cat said)"
+./sphfsi --explain tank.cfg --set numerics.multirate=off --set end_time=1e-4 >said 2>&1 || fail "$(cat said)"
+exit 0
