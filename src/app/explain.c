@@ -41,10 +41,7 @@ static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
                     s->lattice.angle * degrees);
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_lattice *const l = &s->solid_lattice[k];
-        int64_t n = 0;
-        for (int64_t i = 0; i < s->points[KIND_SOLID].n; i++)
-            n += s->points[KIND_SOLID].body[i] == k;
-        const double off = (double)n * square(l->dp) / l->area - 1;
+        const double off = fabs(l->area_error) < 5e-5 ? 0 : l->area_error;
         if (l->angle == 0 && !l->fitted && is_shifted(s, l))
             session_say(o,
                         "  [solid %s] has a lattice of its own, which begins at its corner (%.6g, "

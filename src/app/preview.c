@@ -322,9 +322,9 @@ static int describe(const struct scene *s, enum kind kind, int body, char *text,
     if (clamped) snprintf(clamps, sizeof clamps, "%lld clamped (hatched)", (long long)clamped);
     if (m->joined[0]) snprintf(bond, sizeof bond, "bonded to %s", m->joined);
     const char *const held = clamped || m->joined[0] ? "" : "nothing clamped";
-    const double off = (double)n * square(l->dp) / l->area - 1;
     char area[32] = "";
-    if (fabs(off) >= 5e-5) snprintf(area, sizeof area, "; area %+.2f %%", 100 * off);
+    if (fabs(l->area_error) >= 5e-5)
+        snprintf(area, sizeof area, "; area %+.2f %%", 100 * l->area_error);
     return snprintf(rest + written, left - (size_t)written, "%s%s%s%s%s", held, clamps,
                     clamped && m->joined[0] ? ", " : "", bond, area);
 }

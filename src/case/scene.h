@@ -253,7 +253,8 @@ struct scene_lattice {
     double spacing[2]; /* m */
     double dp;         /* m: the root of a cell's area, which is the volume of a particle */
     bool fitted;       /* to edges that are not a whole number of dp apart */
-    double area;       /* of the shapes, m^2; solids */
+    double area;       /* of the shapes of a solid where no clamp holds it, m^2 */
+    double area_error; /* of the particles there, relative to it */
 };
 
 /* A position in the axes of a lattice; and the inverse. */

@@ -84,27 +84,44 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
     }
 }
 
+/* The area of a solid where no clamp holds it; the whole if clamps cover all of its particles. */
+static enum err free_area(struct sampler *g, const struct region *region, double *area)
+{
+    const struct outlines *const minus = &region->minus, *const clamps = &region->clamps;
+    const bool part = region->n_clamped > 0 && region->n_clamped < region->n;
+    struct outlines cut = {.n = minus->n + (part ? clamps->n : 0)};
+    cut.item = arena_alloc(&g->temp, (size_t)cut.n, sizeof *cut.item, "shapes", g->diag);
+    if (!cut.item) return ERR_MEMORY;
+    for (int k = 0; k < cut.n; k++)
+        cut.item[k] = k < minus->n ? minus->item[k] : clamps->item[k - minus->n];
+    return outlines_area(&region->add, &cut, 0.25 * region->lattice.spacing[1], area, &g->temp,
+                         g->diag);
+}
+
 /* The bending stiffness of a thin body is proportional to the third power of its thickness, hence
- * of its area. */
+ * of its area. What a clamp holds does not bend. */
 static enum err check_area(struct sampler *g, const struct region *region)
 {
     static const double tolerance = 0.005;
     const struct scene_lattice *const l = &region->lattice;
+    const bool part = region->n_clamped > 0 && region->n_clamped < region->n;
+    const int64_t n = region->n - (part ? region->n_clamped : 0);
     double area;
-    TRY(outlines_area(&region->add, &region->minus, 0.25 * l->spacing[1], &area, &g->temp,
-                      g->diag));
+    TRY(free_area(g, region, &area));
+    const double ratio = (double)n * square(l->dp) / area, stiff = ratio * square(ratio);
     g->scene->solid_lattice[region->body].area = area;
-    const double ratio = (double)region->n * square(l->dp) / area, stiff = ratio * square(ratio);
+    g->scene->solid_lattice[region->body].area_error = ratio - 1;
     if (fabs(ratio - 1) <= tolerance) return ERR_OK;
     g->scene->off_lattice = true;
     char place[LOCATION_TEXT];
     scene_location(g->scene, region->line, place);
     diag_warn(
         g->diag,
-        "%s: the %lld particles of [solid %s] cover %.2g %% %s than its area of %.4g m^2, so a "
+        "%s: the %lld particles of [solid %s]%s cover %.2g %% %s than its area of %.4g m^2%s, so a "
         "thin body is about %.2g %% too %s in bending; a finer dp or another lattice_angle helps",
-        place, (long long)region->n, region->name, 100 * fabs(ratio - 1),
-        ratio > 1 ? "more" : "less", area, 100 * fabs(stiff - 1), ratio > 1 ? "stiff" : "soft");
+        place, (long long)n, region->name, part ? " that no clamp holds" : "",
+        100 * fabs(ratio - 1), ratio > 1 ? "more" : "less", area, part ? " there" : "",
+        100 * fabs(stiff - 1), ratio > 1 ? "stiff" : "soft");
     return ERR_OK;
 }
 

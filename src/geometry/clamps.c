@@ -16,26 +16,26 @@ static enum err fail_empty(struct sampler *g, const struct region *region, int c
         clamp + 1, region->name);
 }
 
-enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,
-                        struct samples *p)
+enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
 {
     const struct shape_list *const clamps = &g->scene->solid[region->body].clamp;
     const double *const spacing = region->lattice.spacing;
-    struct outlines o;
-    TRY(outlines_of(&o, g->scene, clamps, &g->temp, g->diag));
-    TRY(outlines_turn(&o, region->lattice.angle, &g->temp, g->diag));
+    struct outlines *const o = &region->clamps;
+    TRY(outlines_of(o, g->scene, clamps, &g->temp, g->diag));
+    TRY(outlines_turn(o, region->lattice.angle, &g->temp, g->diag));
     int64_t *held = arena_alloc(&g->temp, (size_t)clamps->n, sizeof *held, "clamps", g->diag);
     if (!held) return ERR_MEMORY;
     for (int64_t k = from; k < p->n; k++) {
         double at[2];
         lattice_place(&region->lattice, p->x[k], p->y[k], at);
-        for (int c = 0; c < o.n; c++) {
-            if (!outline_contains(&o.item[c], at[0] + NUDGE_X * spacing[0],
+        for (int c = 0; c < o->n; c++) {
+            if (!outline_contains(&o->item[c], at[0] + NUDGE_X * spacing[0],
                                   at[1] + NUDGE_Y * spacing[1], g->scratch))
                 continue;
             p->clamped[k] = 1;
-            held[o.shape[c]]++;
+            held[o->shape[c]]++;
         }
+        region->n_clamped += p->clamped[k];
     }
     for (int c = 0; c < clamps->n; c++)
         if (!held[c]) return fail_empty(g, region, c);

@@ -306,7 +306,7 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
     p->clamped = arena_alloc(&g->temp, (size_t)total, 1, "sampling", g->diag);
     if (!p->x || !p->y || !p->region || !p->clamped) return ERR_MEMORY;
     for (int k = 0; k < g->n_regions; k++) {
-        const struct region *region = &g->regions[k];
+        struct region *region = &g->regions[k];
         const int64_t from = p->n;
         const bool upright = region->kind == KIND_SOLID && region->count[1] > region->count[0];
         TRY(append_points(g, region, upright, p));

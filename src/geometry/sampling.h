@@ -23,7 +23,8 @@ struct region {
     struct scene_lattice lattice;
     double low[2], high[2];     /* bounding box of the shapes */
     int64_t first[2], count[2]; /* lattice points within the box */
-    int64_t n;                  /* points inside */
+    int64_t n, n_clamped;       /* points inside, and those that a clamp holds */
+    struct outlines clamps;     /* of a solid */
     bool *layered,
         has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
     int64_t n_layered;
@@ -54,8 +55,8 @@ enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
 
 /* Marks the particles of a solid, from index `from` on, that its clamps hold. */
-enum err geometry_clamp(struct sampler *g, const struct region *region, int64_t from,
-                        struct samples *p) SPHFSI_CHECKED;
+enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
+    SPHFSI_CHECKED;
 
 /* Edges off the lattice, thin walls and bodies, gaps too narrow for a particle. */
 enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;
