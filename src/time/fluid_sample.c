@@ -12,7 +12,7 @@
 /* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1
 
-/* Called for particle i of a kind at distance r from the sampled point. */
+/* Called for particle i of a kind at distance r from the sampled point, within reach. */
 typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
 
 static void each_within(const struct simulation *s, enum kind kind, double x, double y,
@@ -39,7 +39,8 @@ static void each_within(const struct simulation *s, enum kind kind, double x, do
             const int64_t i = list->order ? list->order[k] : k;
             const double dx = cells_minimum_image(c, 0, p->x[i] - x);
             const double dy = cells_minimum_image(c, 1, p->y[i] - y);
-            visit(s, kind, i, elementary_hypot(dx, dy), sums);
+            const double r2 = square(dx) + square(dy);
+            if (r2 < square(distance)) visit(s, kind, i, sqrt(r2), sums);
         }
     }
 }
