@@ -4,6 +4,8 @@
 #include "app/evidence.h"
 #include "base/files.h"
 #include "case/params.h"
+#include "output/probes.h"
+#include "output/series.h"
 #include "time/timestep.h"
 
 #include <fcntl.h>
@@ -18,7 +20,7 @@
 #define SPHFSI_VERSION "(unversioned build)"
 #endif
 
-enum { CACHE_BYTES = 1 << 20, FIRST_STEPS = 20 };
+enum { CACHE_BYTES = 1 << 20, FIRST_STEPS = 20, ROWS_MEASURED = 5 };
 /* Assumed parallel efficiency of each further thread; docs/accuracy.md compares it with measurements. */
 static const double thread_efficiency = 0.93;
 /* Repeats are short, so that other work on the machine does not disturb all of them. */
@@ -238,10 +240,35 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
     return ERR_OK;
 }
 
+/* The time of all rows of the run by what one takes now, the least of several. The first row may evaluate the
+ * rates anew, which is counted with the steps. */
+static enum err measure_rows(struct unit_costs *c, struct simulation *s, struct diag *d)
+{
+    const double end = s->scene->top.end_time;
+    struct probes probes;
+    TRY(probes_create(&probes, s, &s->arena, d));
+    for (int file = -1; file < probes.n_files; file++) {
+        double least = HUGE_VAL, row[SERIES_MAX_COLUMNS];
+        for (int k = 0; k < ROWS_MEASURED; k++) {
+            const double begin = wall_clock();
+            if (file < 0)
+                simulation_ledger(s);
+            else
+                probes_sample(&probes, s, file, row);
+            least = min2(least, wall_clock() - begin);
+        }
+        const double interval =
+            file < 0 ? s->scene->output.ledger_interval : probes.file[file].interval;
+        c->rows += max2(0, least) * end / interval;
+    }
+    return ERR_OK;
+}
+
 enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
 {
     *c = (struct unit_costs){0};
-    return calibrate(c, s, d);
+    TRY(calibrate(c, s, d));
+    return measure_rows(c, s, d);
 }
 
 enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *threads,
@@ -327,6 +354,7 @@ struct forecast forecast_run(const struct unit_costs *c, const struct simulation
     f.seconds =
         (f.evaluations + ledger_evaluations) * n_fluid * c->fluid + f.substeps * n_solid * c->solid;
     f.seconds /= 1 + thread_efficiency * (threads - 1);
+    f.seconds += c->rows; /* by one thread */
     /* The session has the memory of one thread. */
     const double shared = (double)(s->arena.bytes + s->scene->arena.bytes - s->fluid.thread_bytes);
     f.memory = shared / (scale * scale) + threads * (double)s->fluid.thread_bytes;

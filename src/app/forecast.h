@@ -12,6 +12,7 @@ struct unit_costs {
     double solid;                       /* per solid particle and step */
     double evaluations;                 /* of the fluid per step */
     double phase_fraction[PHASE_COUNT]; /* of the time of a step */
+    double rows;                        /* of probes and ledger over the whole run, s */
     bool cached;                        /* from an earlier calibration */
 };
 
@@ -31,9 +32,9 @@ enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *t
                        struct diag *d) SPHFSI_CHECKED;
 void forecast_close(struct session *x, int threads);
 
-/* Measures about a second of the scene's first steps, and takes the least of several repeats. Costs of scenes
- * of the same kind come from a cache below $XDG_CACHE_HOME or ~/.cache, if it can be read. Advances the
- * simulation by some steps. */
+/* Measures about a second of the scene's first steps, and takes the least of several repeats. Costs of steps
+ * come from a cache below $XDG_CACHE_HOME or ~/.cache, if it has a scene of the same kind; those of rows are
+ * always measured. Advances the simulation by some steps. */
 enum err forecast_calibrate(struct unit_costs *c, struct simulation *s, struct diag *d)
     SPHFSI_CHECKED;
 

@@ -42,6 +42,15 @@ static void test_threads_share_the_work(void)
                               of(2, 1).memory - one.memory);
 }
 
+/* Rows of probes and ledger are written by one thread, as many at any spacing. */
+static void test_rows(void)
+{
+    struct unit_costs with = costs;
+    with.rows = 3;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 3 + of(4, 2).seconds,
+                              forecast_run(&with, &rig.sim, 4, 2).seconds);
+}
+
 /* Twice the spacing: a quarter of the particles, fewer steps unless outputs end them. */
 static void test_spacing(void)
 {
@@ -100,6 +109,16 @@ enum err __wrap_simulation_step(struct simulation *s, double limit, struct diag 
 {
     steps++;
     return __real_simulation_step(s, limit, d);
+}
+
+/* By a clock of 1 ms a reading each row takes 1 ms: 20 of the ledger, 200 of the probes. */
+static void test_rows_are_measured(void)
+{
+    struct unit_costs c;
+    clock_step = 1e-3;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, forecast_calibrate(&c, &rig.sim, &rig.diag));
+    clock_step = 0;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, 220e-3, c.rows);
 }
 
 /* Whether costs were kept for this machine, program and scene. */
@@ -198,6 +217,8 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_threads_share_the_work);
+    RUN_TEST(test_rows);
+    RUN_TEST(test_rows_are_measured);
     RUN_TEST(test_spacing);
     RUN_TEST(test_bytes_of_the_files);
     RUN_TEST(test_costs_belong_to_a_processor);
