@@ -252,6 +252,8 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c, int
     text_of_seconds(least_of_forecast * f.seconds, least);
     text_of_seconds(most_of_forecast * f.seconds, most);
     session_say(o, "  nine of ten runs take %s to %s; on a busy machine it is longer", least, most);
+    if (s->effects & FX_RELAX)
+        session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
 
 static enum err say_trial(struct simulation *s, int threads, const struct sphfsi_options *o,

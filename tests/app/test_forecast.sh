@@ -12,6 +12,9 @@ explain | grep -q 'measured in one second of trial steps' || fail "no calibratio
 [ -s "$work/cache/sphfsi/costs" ] || fail "nothing was kept"
 explain | grep -q 'nine of ten runs take .* s to .* s;' || fail "no band of the time"
 explain | grep -q 'from an earlier calibration' || fail "what was kept is not used"
+explain | grep -q 'its time is not included' && fail "time of a search for rest that is not asked for"
+"$SPHFSI" --explain "${still[@]}" --set relax.tolerance=0.02 2>/dev/null |
+    grep -q '\[relax\].* its time is not included' || fail "the search for rest is counted in silence"
 first=$(cat "$work/cache/sphfsi/costs")
 sed -i 's/ .*/ 1e-9 nonsense/' "$work/cache/sphfsi/costs"
 explain | grep -q 'measured in one second of trial steps' || fail "a broken line is believed"
