@@ -167,7 +167,14 @@ static double work_clock(void)
 struct least {
     double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
+    int64_t n_start; /* fluid particles */
 };
+
+/* Whether half of the fluid of the start is still there: what falls out of the domain costs nothing. */
+static bool has_fluid_of_start(const struct simulation *s, int64_t n_start)
+{
+    return 2 * s->kind[KIND_FLUID].n >= n_start;
+}
 
 static enum err take_steps(struct least *least, struct simulation *s, struct diag *d)
 {
@@ -178,7 +185,8 @@ static enum err take_steps(struct least *least, struct simulation *s, struct dia
     memcpy(phase, s->phase_seconds, sizeof phase);
     do {
         TRY(simulation_step(s, end, d));
-    } while (s->state.time < end && wall_clock() - begin < repeat_seconds);
+    } while (s->state.time < end && wall_clock() - begin < repeat_seconds &&
+             has_fluid_of_start(s, least->n_start));
     const double steps = (double)(s->state.steps - before.steps);
     const double each = (work_clock() - work) / steps;
     least->step = least->steps ? min2(least->step, each) : each;
@@ -216,13 +224,14 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
 {
     const uint64_t key = cache_key(s);
     const double end = s->scene->top.end_time;
-    struct least least = {.steps = 0};
+    struct least least = {.n_start = s->kind[KIND_FLUID].n};
     /* The first step is not measured: it includes the first touch of memory and the first sort. It also finds
      * the bounds of the time step. */
     TRY(simulation_step(s, end, d));
     /* A guard that stops the run in these steps is reported. */
     const double start = wall_clock();
-    for (int k = 0; k < FIRST_STEPS && s->state.time < end; k++) {
+    for (int k = 0; k < FIRST_STEPS && s->state.time < end && has_fluid_of_start(s, least.n_start);
+         k++) {
         if (wall_clock() - start > 0.5 * calibration_seconds) break;
         TRY(simulation_step(s, end, d));
     }
@@ -231,7 +240,8 @@ static enum err calibrate(struct unit_costs *c, struct simulation *s, struct dia
     /* A guard that stops the run later is not: the run will report it. */
     struct diag ignored = {.code = ERR_OK};
     enum err e = ERR_OK;
-    while (!e && s->state.time < end && wall_clock() - begin < calibration_seconds)
+    while (!e && s->state.time < end && wall_clock() - begin < calibration_seconds &&
+           has_fluid_of_start(s, least.n_start))
         e = take_steps(&least, s, &ignored);
     if (e && e != ERR_GUARD) return diag_fail(d, e, "%s", ignored.text);
     if (least.steps == 0) return ERR_OK;

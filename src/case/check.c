@@ -52,8 +52,8 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
         warn(r, line,
-             "[fluid %s] has a `surface`, but gravity has no vertical component, so the initial "
-             "pressure is zero",
+             "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so the "
+             "initial pressure is zero",
              f->common.name);
     return ERR_OK;
 }

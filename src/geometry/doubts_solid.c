@@ -8,6 +8,7 @@
 #include "case/effects.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Contact that a scene may need and that is not simulated. */
 static void warn_of_contact(struct sampler *g)
@@ -135,20 +136,25 @@ static bool clamped_to(const struct scene *s, int body, int wall)
     return false;
 }
 
-/* A tank that moves while the clamp of a body in it stays at rest. */
-static void warn_of_resting_clamps(struct sampler *g)
+/* A tank that moves and the clamp of a body in it that does not, or not in the same way. */
+static void warn_of_other_motions(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     for (int body = 0; body < s->n_solid; body++) {
         const struct scene_solid *const b = &s->solid[body];
-        for (int wall = 0; wall < s->n_wall && !b->clamp_motion[0]; wall++) {
-            if (!s->wall[wall].motion[0] || !clamped_to(s, body, wall)) continue;
+        for (int wall = 0; wall < s->n_wall; wall++) {
+            const struct scene_wall *const w = &s->wall[wall];
+            if (strcmp(b->clamp_motion, w->motion) == 0 || !clamped_to(s, body, wall)) continue;
             char place[LOCATION_TEXT];
             scene_location(s, b->common.line, place);
             diag_warn(g->diag,
-                      "%s: the clamp of [solid %s] is at rest but touches [wall %s], which moves, "
-                      "so the wall will pass through the body; `clamp_motion = %s` moves both",
-                      place, b->common.name, s->wall[wall].common.name, s->wall[wall].motion);
+                      "%s: the clamp of [solid %s] %s%s but touches [wall %s], which %s%s, so "
+                      "the two will overlap or part; `%s = %s` moves both",
+                      place, b->common.name, b->clamp_motion[0] ? "has the motion " : "is at rest",
+                      b->clamp_motion, w->common.name, w->motion[0] ? "moves" : "is at rest",
+                      w->motion[0] && b->clamp_motion[0] ? " otherwise" : "",
+                      w->motion[0] ? "clamp_motion" : "motion",
+                      w->motion[0] ? w->motion : b->clamp_motion);
         }
     }
 }
@@ -160,5 +166,5 @@ void geometry_warn_of_bodies(struct sampler *g)
     warn_of_light_bodies(g);
     warn_of_soft_bodies(g);
     warn_of_full_clamps(g);
-    warn_of_resting_clamps(g);
+    warn_of_other_motions(g);
 }

@@ -175,7 +175,7 @@ static void test_a_clamp_that_covers_the_body(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
-static void test_a_clamp_that_stays_while_its_wall_moves(void)
+static void test_a_clamp_and_a_wall_that_move_differently(void)
 {
     static const char scene_text[] =
         HEAD "[wall floor]\nshape = box -0.05, -0.02, 0.07, 0\nmotion = shake\n"
@@ -187,6 +187,21 @@ static void test_a_clamp_that_stays_while_its_wall_moves(void)
     snprintf(text, sizeof text, "%sclamp_motion = shake\n", scene_text);
     read(text);
     TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* The clamp moves alone, and both move in different ways. */
+    read(HEAD "[wall floor]\nshape = box -0.05, -0.02, 0.07, 0\n"
+              "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
+              "[solid post]\nshape = box 0, 0, 0.02, 0.1\nclamp = box 0, 0, 0.02, 0.02\n"
+              "clamp_motion = shake\n" POST);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "which is at rest, so the two will overlap or part; "
+                                        "`motion = shake` moves both"),
+                                 warnings);
+    snprintf(text, sizeof text, "%sclamp_motion = sway\n[motion sway]\nvelocity = 0.1, 0\n",
+             scene_text);
+    read(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "has the motion sway but touches [wall floor], "
+                                                  "which moves otherwise"),
+                                 warnings);
     /* A wall that does not touch the clamp may move alone. */
     read(HEAD "[wall lid]\nshape = box -0.05, 0.2, 0.07, 0.22\nmotion = shake\n"
               "[motion shake]\nkind = sine\namplitude = 0.01, 0\nperiod = 1\n"
@@ -335,7 +350,7 @@ int main(void)
     RUN_TEST(test_a_body_that_nothing_holds);
     RUN_TEST(test_a_speed_of_sound_that_is_too_low);
     RUN_TEST(test_a_clamp_that_covers_the_body);
-    RUN_TEST(test_a_clamp_that_stays_while_its_wall_moves);
+    RUN_TEST(test_a_clamp_and_a_wall_that_move_differently);
     RUN_TEST(test_a_pressure_probe_in_a_wall_or_in_the_air);
     RUN_TEST(test_a_gap_of_one_particle);
     RUN_TEST(test_a_gap_within_one_wall);
