@@ -349,7 +349,7 @@ def report(results, seconds):
     text = [
         "# What the tests find", "",
         f"Of {real} small faults put into the sources, the tests find {found}: {share}. This includes tests "
-        f"written for faults that had not been found; of {at_first[1]} faults drawn anew last, before that, "
+        f"written for faults that had not been found. Of {at_first[1]} faults drawn anew last, before that, "
         f"they found {at_first[2]}. "
         f"{cover['tests']} of {cover['of']} tests run "
         f"{100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
@@ -359,10 +359,9 @@ def report(results, seconds):
         f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} give the "
         f"same object code, {len(own)} are explained below. {count['does not compile']} do not compile. "
         f"{count['line deleted']} stood on lines that have since been changed or deleted. "
-        f"{sanitized} are found with the build of `make test-sanitize` only. A fault counts as "
-        "not found if the tests that run its line, the shortest first, have not found it within "
-        f"{seconds:.0f} s of the processor; tests of more than {LONGEST} s were run with faults only if "
-        "named by hand. So the "
+        f"{sanitized} are found with the build of `make test-sanitize` only. The tests that run "
+        f"its line, the shortest first, have {seconds:.0f} s of the processor to find a fault. Tests of more "
+        f"than {LONGEST} s were run with faults only if named by hand. So the "
         "share is a lower bound, and faults that are equivalent for a reason nobody has written down count "
         "as not found.", "",
         "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "

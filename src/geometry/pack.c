@@ -166,13 +166,13 @@ static enum err refill(struct packing *p, const struct cut_cells *c, struct scen
         to->y[to->n] = from->y[k];
         to->body[to->n++] = from->body[k];
     }
-    double owed = 0;
+    double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
         const double *const centre = c->grid.pt[k];
         TRY(grid_add(&p->cells, p->g, centre[0], centre[1]));
-        owed += c->share[k];
-        if (owed < 0.5) continue;
-        owed--;
+        excess += c->share[k];
+        if (excess < 0.5) continue;
+        excess--;
         double at[2];
         place_of_lattice(l, l->origin[0] + c->middle[k][0] * l->spacing[0],
                          l->origin[1] + c->middle[k][1] * l->spacing[1], at);

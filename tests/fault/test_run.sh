@@ -13,6 +13,7 @@ expect 1 'unknown option -x' "$case" -x
 expect 1 '--out needs a value' "$case" --out
 expect 1 'from 1 to 4096' "$case" --threads 0
 expect 1 'from 1 to 4096' "$case" --threads many
+expect 1 'a whole number from 1 to 4096' "$case" --threads 4.5
 expect 1 'above 0' "$case" --until -1
 expect 1 'key=value' "$case" --set dp
 expect 1 'takes no value' "$case" --quiet=yes

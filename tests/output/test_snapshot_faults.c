@@ -125,14 +125,14 @@ static enum err write_one(double time)
     return e ? e : snapshots_wait(&writer, &diag);
 }
 
-/* Reads all of a dataset, at most `room` items. */
-static hsize_t read_all(const char *name, double *values, size_t room)
+/* Reads all of a dataset, at most `most` items. */
+static hsize_t read_all(const char *name, double *values, size_t most)
 {
     const hid_t file = H5Fopen(writer.path, H5F_ACC_RDONLY, H5P_DEFAULT);
     TEST_ASSERT_TRUE_MESSAGE(file >= 0, message);
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(set);
     const hssize_t n = H5Sget_simple_extent_npoints(space);
-    TEST_ASSERT_TRUE_MESSAGE(n >= 0 && (size_t)n <= room, message);
+    TEST_ASSERT_TRUE_MESSAGE(n >= 0 && (size_t)n <= most, message);
     TEST_ASSERT_TRUE_MESSAGE(H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                                      values) >= 0,
                              message);
@@ -195,7 +195,7 @@ static enum err go_on(const char *folder)
     return snapshots_resume(&writer, folder, &scene, "1.2.3", 0.5, &last, &diag);
 }
 
-/* With so many snapshots in the file, calls of the next one fail in turn, or of a restart. */
+/* With so many snapshots in the file, each call of the next one fails once, or each of a restart. */
 static void calls_fail(hsize_t before, bool restart, int stride)
 {
     static const double times[] = {0, 1, 2, 3};
