@@ -28,11 +28,11 @@ static void warn_slit(struct sampler *g, const struct region *a, const struct sh
         char place[LOCATION_TEXT];
         scene_location(g->scene, q->line, place);
         diag_warn(g->diag,
-                  "%s: the gap between [%s %s] and [%s %s] is %g m, %s dp = %g m, so %s; use a "
-                  "smaller dp or close the gap",
+                  "%s: the gap between [%s %s] and [%s %s] is %g m, %s dp = %g m, so %s; use dp "
+                  "= %.2g m or less, or close the gap",
                   place, kind_names[a->kind], a->name, kind_names[b->kind], b->name, slit,
                   closed ? "narrower than" : "no wider than", dp,
-                  closed ? "no fluid passes" : "hardly any fluid passes");
+                  closed ? "no fluid passes" : "hardly any fluid passes", 0.5 * slit);
         return;
     }
 }
@@ -293,24 +293,95 @@ static void warn_of_gap(struct pair_visitor *v, int64_t k, int64_t m)
     name_gap(v->g, f, k, m, place, between);
     diag_warn(v->g->diag,
               "%s: the gap %s at (%.4g, %.4g) m is no wider than dp = %g m, so hardly any fluid "
-              "passes; use a smaller dp or close the gap",
-              place, between, at[0], at[1], dp);
+              "passes; use dp = %.2g m or less, or close the gap",
+              place, between, at[0], at[1], dp, 0.5 * (r - dp));
 }
 
-/* Whether the drawn shapes leave open more than a quarter of the way from one particle to the other. */
-static bool is_open(const struct sampler *g, const struct faces *f, int64_t k, int64_t m)
+/* Whether a wall or solid covers the point as drawn. */
+static bool is_drawn(const struct sampler *g, double x, double y)
 {
-    enum { POINTS = 40 };
-    int open = 0;
+    for (int r = 0; r < g->n_regions; r++)
+        if (g->regions[r].kind != KIND_FLUID && geometry_covers(g, &g->regions[r], x, y))
+            return true;
+    return false;
+}
+
+/* How wide the drawn shapes leave a line through the point open, up to 2 `most`; moves the point to the
+ * middle. */
+static double open_width(const struct sampler *g, double at[2], const double across[2], double most)
+{
+    const double step = 0.02 * g->scene->top.dp;
+    double end[2];
+    if (is_drawn(g, at[0], at[1])) return 0;
+    for (int way = 0; way < 2; way++) {
+        const double sign = way ? 1 : -1;
+        end[way] = 0.5 * step;
+        while (end[way] < most && !is_drawn(g, at[0] + sign * end[way] * across[0],
+                                            at[1] + sign * end[way] * across[1]))
+            end[way] += step;
+    }
+    for (int c = 0; c < 2; c++) at[c] += 0.5 * (end[1] - end[0]) * across[c];
+    return end[0] + end[1];
+}
+
+/* The narrowest width of an opening around the point, and the direction across. */
+static double narrowest(const struct sampler *g, double at[2], double across[2])
+{
+    enum { DIRECTIONS = 24 };
+    const double from[2] = {at[0], at[1]};
+    double least = HUGE_VAL;
+    for (int k = 0; k < DIRECTIONS; k++) {
+        const double way[2] = {elementary_cos(k * PI / DIRECTIONS),
+                               elementary_sin(k * PI / DIRECTIONS)};
+        double middle[2] = {from[0], from[1]};
+        const double width = open_width(g, middle, way, g->scene->top.dp);
+        if (width >= least) continue;
+        least = width;
+        for (int c = 0; c < 2; c++) at[c] = middle[c], across[c] = way[c];
+    }
+    return least;
+}
+
+/* Whether a gap goes on as drawn, both ways from the point, to where it is wider than dp. A wedge
+ * between a circle and the floor that it touches does not. */
+static bool is_drawn_passage(const struct sampler *g, const struct faces *f, const double from[2],
+                             const double across[2])
+{
+    const double dp = g->scene->top.dp, step = 0.1 * dp;
+    for (int way = -1; way <= 1; way += 2) {
+        double at[2] = {from[0], from[1]}, width = 0;
+        int64_t steps = 20 * f->n; /* a ring has no end */
+        for (; width <= dp * one_wide && steps > 0; steps--) {
+            at[0] -= way * step * across[1];
+            at[1] += way * step * across[0];
+            width = open_width(g, at, across, dp);
+            if (width == 0) return false;
+        }
+        if (steps == 0) return false;
+    }
+    return true;
+}
+
+/* The middle of the longest stretch between two particles that their own shapes leave open. */
+static bool find_opening(const struct pair_visitor *v, int64_t k, int64_t m, double at[2])
+{
+    enum { POINTS = 80 };
+    const struct faces *const f = v->f;
+    const struct region *const a = &v->g->regions[region_of(v->g, section_of(v->g->scene, f, k))],
+                               *const b =
+                                   &v->g->regions[region_of(v->g, section_of(v->g->scene, f, m))];
+    int longest = 0, now = 0;
     for (int n = 0; n < POINTS; n++) {
         const double t = (n + 0.5) / POINTS, x = f->x[k] + t * (f->x[m] - f->x[k]),
                      y = f->y[k] + t * (f->y[m] - f->y[k]);
-        bool covered = false;
-        for (int r = 0; r < g->n_regions && !covered; r++)
-            covered = g->regions[r].kind != KIND_FLUID && geometry_covers(g, &g->regions[r], x, y);
-        open += !covered;
+        now = geometry_covers(v->g, a, x, y) || geometry_covers(v->g, b, x, y) ? 0 : now + 1;
+        if (now <= longest) continue;
+        longest = now;
+        const double middle = (n + 1 - 0.5 * now) / POINTS;
+        at[0] = f->x[k] + middle * (f->x[m] - f->x[k]);
+        at[1] = f->y[k] + middle * (f->y[m] - f->y[k]);
     }
-    return open > POINTS / 4;
+    return longest > 2;
 }
 
 /* Whether the shapes of two particles are settled; NULL: nothing is known of them. */
@@ -321,27 +392,23 @@ static bool *mark_of_parts(const struct pair_visitor *v, int64_t k, int64_t m)
     return &v->settled[(size_t)(a < b ? a : b) * (size_t)v->f->n_parts + (size_t)(a < b ? b : a)];
 }
 
-/* Settles the shapes of two particles that touch as drawn. */
-static void mark_touching(struct pair_visitor *v, int64_t k, int64_t m)
-{
-    bool *const mark = mark_of_parts(v, k, m);
-    if (mark && !*mark) *mark = !is_open(v->g, v->f, k, m);
-}
-
-/* Warns of particles that touch and whose shapes touch nowhere as drawn. */
+/* Warns of particles that leave no space for one between them, and whose shapes do as drawn. */
 static void warn_of_closed(struct pair_visitor *v, int64_t k, int64_t m)
 {
     const struct faces *const f = v->f;
     bool *const mark = mark_of_parts(v, k, m);
-    if (!mark || *mark || is_slit(v->g, f, k, m)) return;
+    double at[2] = {0}, across[2];
+    if (!mark || *mark || is_slit(v->g, f, k, m) || !find_opening(v, k, m, at)) return;
+    const double width = narrowest(v->g, at, across);
+    if (width == 0 || !is_drawn_passage(v->g, f, at, across)) return;
     *mark = true;
     char place[LOCATION_TEXT], between[BETWEEN_TEXT];
     name_gap(v->g, f, k, m, place, between);
     diag_warn(v->g->diag,
-              "%s: the gap %s at (%.4g, %.4g) m is narrower than dp = %g m and closed by sampling, "
-              "so no fluid passes; use a smaller dp or close the gap",
-              place, between, 0.5 * (f->x[k] + f->x[m]), 0.5 * (f->y[k] + f->y[m]),
-              v->g->scene->top.dp);
+              "%s: the gap %s at (%.4g, %.4g) m is about %.2g m wide, narrower than dp = %g m, and "
+              "closed "
+              "by sampling, so no fluid passes; use dp = %.1g m or less, or close the gap",
+              place, between, at[0], at[1], width, v->g->scene->top.dp, 0.5 * width);
 }
 
 static enum err warn_of_gaps(struct sampler *g)
@@ -358,8 +425,7 @@ static enum err warn_of_gaps(struct sampler *g)
     closed.settled = arena_alloc(&g->temp, parts * parts, sizeof *closed.settled, "gaps", g->diag);
     if (!narrow.settled || !closed.settled) return ERR_MEMORY;
     for (int64_t k = 0; k < f.n; k++) visit_pairs(&narrow, k, (1 + one_wide) * dp, warn_of_gap);
-    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.2 * dp, mark_touching);
-    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.2 * dp, warn_of_closed);
+    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.5 * dp, warn_of_closed);
     return ERR_OK;
 }
 

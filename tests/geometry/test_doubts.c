@@ -290,15 +290,16 @@ static void test_a_gap_that_sampling_closes(void)
 {
     read(HEAD SHORT TANK "[wall post]\nshape = polygon 0.05, 0.002; 0.07, 0.002; 0.07, 0.08; "
                          "0.05, 0.08\n");
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "the gap between [wall tank] and [wall post] at "
-                                                  "(0.0525, 0) m is narrower than dp = 0.005 m and "
-                                                  "closed by sampling"),
-                                 warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(
+        strstr(warnings, "the gap between [wall tank] and [wall post] at (0.051, 0.001) m is about "
+                         "0.0021 m wide, narrower than dp = 0.005 m, and closed by sampling, "
+                         "so no fluid passes; use dp = 0.001 m or less"),
+        warnings);
     /* Between shapes of one section. */
     read(HEAD SHORT TANK "shape = polygon 0.05, 0.002; 0.07, 0.002; 0.07, 0.08; 0.05, 0.08\n");
     TEST_ASSERT_NOT_NULL_MESSAGE(
         strstr(warnings, "doubts.cfg:10: the gap in [wall tank] at "
-                         "(0.0525, 0) m is narrower than dp = 0.005 m and closed by"),
+                         "(0.051, 0.001) m is about 0.0021 m wide, narrower than dp"),
         warnings);
     TEST_ASSERT_NULL(strstr(strstr(warnings, ": the gap") + 1, ": the gap")); /* one warning */
     /* Shapes that overlap, that share an edge, or that touch a third one only. */
@@ -310,6 +311,24 @@ static void test_a_gap_that_sampling_closes(void)
     read(HEAD SHORT TANK "[solid a]\nshape = circle 0.06, 0.01, 0.01\n" POST
                          "[solid b]\nshape = circle 0.08, 0.01, 0.01\n" POST);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the gap"), warnings);
+    /* Under a body whose lattice is fitted, and which the tank holds elsewhere. */
+    read(HEAD SHORT TANK "shape = box 0.05, 0.08, 0.1, 0.1\n"
+                         "[solid gate]\nshape = box 0.05, 0.002, 0.07, 0.08\n"
+                         "clamp = box 0.05, 0.06, 0.07, 0.08\ndensity = 1100\nyoung = 5 MPa\n"
+                         "poisson = 0.4\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings,
+                                        "the gap between [wall tank] and [solid gate] at"),
+                                 warnings);
+    /* Between two bodies. */
+    read(HEAD SHORT TANK
+         "[solid a]\nshape = polygon 0.04, 0; 0.06, 0; 0.06, 0.04; 0.04, 0.04\n" POST
+         "[solid b]\nshape = polygon 0.062, 0; 0.08, 0; 0.08, 0.04; 0.062, 0.04\n" POST);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the gap"), warnings); /* it ends at the floor */
+    read(HEAD SHORT TANK
+         "[solid a]\nshape = polygon 0.04, 0.02; 0.06, 0.02; 0.06, 0.06; 0.04, 0.06\n" POST
+         "[solid b]\nshape = polygon 0.062, 0.02; 0.08, 0.02; 0.08, 0.06; 0.062, 0.06\n" POST);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "the gap between [solid a] and [solid b] at"),
+                                 warnings);
 }
 
 static void test_an_opening_that_sampling_closes(void)
