@@ -362,7 +362,8 @@ static bool is_drawn_passage(const struct sampler *g, const struct faces *f, con
     return true;
 }
 
-/* The middle of the longest stretch between two particles that their own shapes leave open. */
+/* The middle of the longest stretch between two particles that their own shapes leave open. A slit of less
+ * than a fortieth of their distance is meant as a joint. */
 static bool find_opening(const struct pair_visitor *v, int64_t k, int64_t m, double at[2])
 {
     enum { POINTS = 80 };

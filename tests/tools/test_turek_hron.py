@@ -42,6 +42,16 @@ def test_what_rests():
     assert found["state"] == "steady" and abs(found["mean"] + 66.1) < 0.01, found
 
 
+def test_a_target_is_met_missed_or_not_shown():
+    swing = {"state": "periodic", "mean": 1.3, "amplitude": 81.6 * 1.02, "frequency": 1.93 * 1.05}
+    run = {"case": "fsi2", "cpu_seconds": 3600 * 2.5, "series": {"uy": swing}}
+    assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 % | 3 % | met"
+    assert turek_hron.judged(run, "uy", "frequency", 2) == "+5.0 % | 2 % | **missed**"
+    assert turek_hron.judged(run, "run", "cost", 2) == "2.5 core-hours | 2 core-hours | **missed**"
+    swing["state"] = "neither steady nor periodic yet"
+    assert turek_hron.judged(run, "uy", "amplitude", 3).endswith("not shown")
+
+
 def test_every_reference_has_its_case():
     for name in turek_hron.REFERENCE:
         assert (turek_hron.CASES / f"{name}.cfg").is_file(), name
