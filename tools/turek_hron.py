@@ -262,8 +262,9 @@ def headline(kept):
 def report():
     kept = json.loads(KEPT.read_text())
     text = ["# The benchmark of Turek and Hron", "",
-            "Written by `tools/turek_hron.py report` from `docs/turek_hron.json`. The first table holds "
-            "the finest run of each case. Errors are those against the finest reference.", "", *headline(kept), "",
+            "Written by `tools/turek_hron.py report` from `docs/turek_hron.json`. The first table holds the "
+            "finest run of each case. Errors are those against the finest reference.", "",
+            *headline(kept), "",
             (ROOT / "docs" / "turek_hron_notes.md").read_text().strip(), "",
             "## Every run", "",
             "| case | across | version | simulated s | end | particles (fluid, solid) | CPU s | "
