@@ -21,6 +21,8 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
 ROOT = Path(__file__).resolve().parent.parent
 CASES = ROOT / "cases" / "turek_hron"
 KEPT = ROOT / "docs" / "turek_hron.json"
@@ -62,11 +64,11 @@ TARGETS = [
     ("fsi2", "uy", "amplitude", 3), ("fsi2", "uy", "frequency", 2), ("fsi2", "run", "cost", 2),
     ("fsi3", "uy", "amplitude", 5), ("fsi3", "uy", "frequency", 2), ("fsi3", "run", "cost", 4),
 ]
-PERIODS = 6      # at the end that mean and amplitude are taken of
-SAME = 0.05      # their first and second halves agree to this, in length and in size
-ALIKE = 0.2      # and each of them differs from their mean by no more than this
-SMOOTH = 0.1     # of a period: forces are averaged over this before their largest values are taken
-REST = 0.02      # a series whose means of two sixths agree to this, of its size, rests
+PERIODS = 6      # at the end that mean and amplitude are taken of, at least
+HARMONICS = 4    # that make up a period
+SAME = 0.05      # of the size of a period: its trend over half of the periods, and its standard error
+REST = 0.02      # of the mean of a series at rest: its trend over a quarter of the run, and its error
+PARTS = 12       # of the last half of a run, whose means judge whether it rests
 
 
 def columns(folder):
@@ -74,99 +76,124 @@ def columns(folder):
     path = Path(folder) / "probes.csv"
     with open(path, encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    names, values = rows[0], [[float(v) for v in row] for row in rows[1:]]
+    names, values = rows[0], np.array([[float(v) for v in row] for row in rows[1:]])
 
     def column(name):
-        return [row[names.index(name)] for row in values] if name in names else None
+        return values[:, names.index(name)]
 
     series = {}
-    if column("A_dx_m"):
-        series["ux"] = [1e3 * v for v in column("A_dx_m")]
-        series["uy"] = [1e3 * v for v in column("A_dy_m")]
-    if column("cylinder_fx_N_per_m"):
+    if "A_dx_m" in names:
+        series["ux"], series["uy"] = 1e3 * column("A_dx_m"), 1e3 * column("A_dy_m")
+    if "cylinder_fx_N_per_m" in names:
         for name, axis in (("drag", "x"), ("lift", "y")):
-            series[name] = [a + b for a, b in zip(column(f"cylinder_f{axis}_N_per_m"),
-                                                  column(f"bar_f{axis}_N_per_m"))]
+            series[name] = column(f"cylinder_f{axis}_N_per_m") + column(f"bar_f{axis}_N_per_m")
     return column("time_s"), series
 
 
-def mean(values):
-    return sum(values) / len(values)
+def fit(times, values, frequency):
+    """Least squares of a mean and the harmonics of a frequency: coefficients and mean square left."""
+    angle = 2 * np.pi * frequency * times[:, None] * np.arange(1, HARMONICS + 1)
+    base = np.hstack([np.ones((len(times), 1)), np.cos(angle), np.sin(angle)])
+    found, *_ = np.linalg.lstsq(base, values, rcond=None)
+    return found, float(np.mean((base @ found - values) ** 2))
 
 
-def crossings(times, values, middle, margin):
-    """Times at which the values pass the middle upwards, having been below it by a margin."""
-    found, below = [], False
-    for k in range(1, len(values)):
-        if values[k] < middle - margin:
-            below = True
-        if below and values[k - 1] <= middle < values[k]:
-            part = (middle - values[k - 1]) / (values[k] - values[k - 1])
-            found.append(times[k - 1] + part * (times[k] - times[k - 1]))
-            below = False
-    return found
+def frequency_of(times, values):
+    """The frequency whose harmonics leave least of a series: near the highest line of its spectrum."""
+    length, step = times[-1] - times[0], (times[-1] - times[0]) / (len(times) - 1)
+    drift = np.polyval(np.polyfit(times, values, 1), times)
+    lines = np.abs(np.fft.rfft((values - drift) * np.hanning(len(values)), 8 * len(values)))
+    best, width = np.argmax(lines) / (8 * len(values) * step), 0.5 / length
+    if best <= width or 4 * HARMONICS * best * step > 1:
+        return None  # it does not swing, or is not sampled finely enough
+    for _ in range(12):  # five trials, each time in half of the width
+        trial = best + width * np.linspace(-1, 1, 5)
+        best = trial[np.argmin([fit(times, values, f)[1] for f in trial])]
+        width *= 0.5
+    return best
 
 
-def periods(times, values):
-    """The last periods as (begin, end), or none where they do not agree."""
-    half = [v for t, v in zip(times, values) if t >= 0.5 * times[-1]]
-    middle, size = 0.5 * (max(half) + min(half)), 0.5 * (max(half) - min(half))
-    up = crossings(times, values, middle, 0.3 * size)[-PERIODS - 1:]
-    if size == 0 or len(up) < PERIODS + 1:
-        return []
-    spans = list(zip(up[:-1], up[1:]))
-    sizes = []
-    for begin, end in spans:
-        inside = [v for t, v in zip(times, values) if begin <= t <= end]
-        sizes.append(max(inside) - min(inside))
-    lengths = [end - begin for begin, end in spans]
-    for agree in (lengths, sizes):
-        whole, half = mean(agree), PERIODS // 2
-        if abs(mean(agree[:half]) - mean(agree[half:])) > SAME * whole:
-            return []
-        if max(abs(v - whole) for v in agree) > ALIKE * whole:
-            return []
-    return spans
+def windows(times, frequency, count):
+    """The last periods of a series, as slices of it."""
+    edges = np.searchsorted(times, times[-1] - np.arange(count, -1, -1) / frequency)
+    return [slice(a, b) for a, b in zip(edges[:-1], edges[1:])]
 
 
-def smooth(times, values, width):
-    """Running means over a width: forces have the noise of sound in them."""
-    step = (times[-1] - times[0]) / (len(times) - 1)
-    reach = int(0.5 * width / step)
-    return [mean(values[max(0, k - reach):k + reach + 1]) for k in range(len(values))]
+def settled(sizes, same):
+    """Whether sizes of one sign show no trend: over half of them it is below a share of their mean, or
+    over all of them not larger than twice the error that their scatter gives it. The standard error of
+    their mean must not exceed that share either."""
+    count, whole = len(sizes), abs(np.mean(sizes))
+    order = np.arange(count) - 0.5 * (count - 1)
+    slope = float(order @ sizes / (order @ order))
+    scatter = math.sqrt(np.sum((sizes - np.mean(sizes) - slope * order) ** 2) / (count - 2))
+    error = scatter / math.sqrt(order @ order)
+    return (min(sizes) * max(sizes) > 0 and scatter / math.sqrt(count) <= same * whole
+            and count * abs(slope) <= max(2 * same * whole, 2 * count * error))
 
 
-def summary(times, values, spans):
-    """Mean, amplitude (of the largest and least values) and frequency over periods; None: not periodic."""
-    if spans:
-        most, least = [], []
-        for begin, end in spans:
-            inside = [v for t, v in zip(times, values) if begin <= t <= end]
-            most.append(max(inside))
-            least.append(min(inside))
-        high, low = mean(most), mean(least)
-        return {"state": "periodic", "mean": 0.5 * (high + low), "amplitude": 0.5 * (high - low),
-                "frequency": len(spans) / (spans[-1][1] - spans[0][0])}
-    end = times[-1]
-    sixth = [[v for t, v in zip(times, values) if end * (6 - k) / 6 <= t <= end * (7 - k) / 6]
-             for k in (1, 2)]
-    last, before = mean(sixth[0]), mean(sixth[1])
-    scatter = math.sqrt(mean([(v - last) ** 2 for v in sixth[0]]))
-    steady = abs(last - before) <= REST * max(abs(last), scatter)
-    return {"state": "steady" if steady else "neither steady nor periodic yet", "mean": last,
-            "amplitude": scatter, "frequency": None}
+def sizes_of(times, values, frequency, count):
+    """The first harmonic of each of the last periods, in phase with that of all of them together. So
+    noise makes it neither larger nor smaller on average."""
+    late = times >= times[-1] - count / frequency
+    whole = first(fit(times[late], values[late], frequency)[0])
+    own = [first(fit(times[s], values[s], frequency)[0]) for s in windows(times, frequency, count)]
+    return np.array([(c * whole.conjugate()).real / abs(whole) for c in own])
 
 
-def smoothed(name, times, values, spans):
-    if name not in ("drag", "lift") or not spans:
-        return values
-    return smooth(times, values, SMOOTH * (spans[-1][1] - spans[-1][0]))
+def first(coefficients):
+    """The first harmonic as a complex number."""
+    return complex(coefficients[1], -coefficients[1 + HARMONICS])
+
+
+def period(times, values):
+    """Frequency and number of the periods at the end that repeat themselves, or none: as many as there
+    are in the last half of the run, or fewer, but six at least."""
+    late = times >= 0.5 * times[-1]
+    frequency = frequency_of(times[late], values[late])
+    if not frequency:
+        return None
+    count = max(PERIODS, int(0.5 * times[-1] * frequency))
+    while count >= PERIODS:
+        late = times >= times[-1] - count / frequency
+        own = frequency_of(times[late], values[late])
+        if own and (count + 1) / own <= times[-1] and settled(sizes_of(times, values, own, count), SAME):
+            return own, count
+        count = count * 3 // 4
+    return None
+
+
+def middle_and_size(coefficients):
+    """Middle and half the distance of the largest and least values of a mean with harmonics."""
+    angle = np.linspace(0, 2 * np.pi, 361)[:, None] * np.arange(1, HARMONICS + 1)
+    values = coefficients[0] + np.hstack([np.cos(angle), np.sin(angle)]) @ coefficients[1:]
+    return 0.5 * (values.max() + values.min()), 0.5 * (values.max() - values.min())
+
+
+def summary(times, values, found):
+    """Mean, amplitude (of the largest and least values of the mean period), their standard errors and the
+    frequency; without a period: the mean and the scatter of the last half."""
+    if found:
+        frequency, count = found
+        own = np.array([fit(times[s], values[s], frequency)[0] for s in windows(times, frequency, count)])
+        middle, size = middle_and_size(own.mean(axis=0))
+        # Jackknife: how the result moves as one period after the other is left out.
+        left = np.array([middle_and_size(np.delete(own, k, axis=0).mean(axis=0)) for k in range(count)])
+        errors = np.sqrt((count - 1) * left.var(axis=0))
+        strongest = np.argmax(np.hypot(*own.mean(axis=0)[1:].reshape(2, HARMONICS))) + 1
+        return {"state": "periodic", "mean": middle, "amplitude": size, "mean_error": errors[0],
+                "amplitude_error": errors[1], "frequency": float(strongest * frequency), "periods": count}
+    late = values[times >= 0.5 * times[-1]]
+    parts = np.array([part.mean() for part in np.array_split(late, PARTS)])
+    return {"state": "steady" if settled(parts, REST) else "neither steady nor periodic yet",
+            "mean": float(parts.mean()), "amplitude": float(np.std(late)), "frequency": None,
+            "mean_error": float(np.std(parts, ddof=1) / math.sqrt(PARTS))}
 
 
 def read(folder):
     folder = Path(folder)
     times, series = columns(folder)
-    spans = periods(times, series["uy"] if "uy" in series else series["lift"])
+    found = period(times, series["uy"] if "uy" in series else series["lift"])
     with open(folder / "summary.json", encoding="utf-8") as file:
         run = json.load(file)
     cost = json.loads((folder / "cost.json").read_text()) if (folder / "cost.json").exists() else {}
@@ -174,19 +201,22 @@ def read(folder):
     return {"case": name, "across": int(across), "time": times[-1], "exit": run["exit_reason"],
             "particles": run["particles"], "steps": run["steps"], "version": run["version"],
             "cpu_seconds": cost.get("cpu_seconds"), "settings": cost.get("settings", []),
-            "series": {k: summary(times, smoothed(k, times, v, spans), spans)
-                       for k, v in series.items()}}
+            "series": {k: summary(times, v, found) for k, v in series.items()}}
 
 
-def error(found, wanted):
-    return "" if not wanted else f" ({100 * (found / wanted - 1):+.1f} %)"
+def error(found, wanted, scatter=None):
+    """Of a value, in per cent of the one wanted, with the standard error of the value."""
+    if not wanted:
+        return ""
+    known = f" ± {100 * abs(scatter / wanted):.1f}" if scatter else ""
+    return f" ({100 * (found / wanted - 1):+.1f}{known} %)"
 
 
 def show(quantity, found, wanted):
-    text = f"{found['mean']:.4g}{error(found['mean'], wanted[0])}"
+    text = f"{found['mean']:.4g}{error(found['mean'], wanted[0], found.get('mean_error'))}"
     if found["state"] == "periodic":
-        text += f" ± {found['amplitude']:.4g}{error(found['amplitude'], wanted[1])} {UNIT[quantity]}"
-        text += f", {found['frequency']:.4g} Hz"
+        size = error(found["amplitude"], wanted[1], found.get("amplitude_error"))
+        text += f" ± {found['amplitude']:.4g}{size} {UNIT[quantity]}, {found['frequency']:.4g} Hz"
         if wanted[2]:
             own = found["frequency"] * round(wanted[2] / found["frequency"])
             text += error(own, wanted[2]) if own else ""
@@ -239,8 +269,11 @@ def judged(best, quantity, part, limit):
         return f"{used:.2g} core-hours | {limit} core-hours | {'met' if used <= limit else '**missed**'}"
     found, wanted = best["series"][quantity], REFERENCE[best["case"]][quantity]
     if found["state"] == "periodic" or found["state"] == "steady" and part == "mean":
-        off = 100 * (found[part] / wanted[("mean", "amplitude", "frequency").index(part)] - 1)
-        return f"{off:+.1f} % | {limit} % | {'met' if abs(off) <= limit else '**missed**'}"
+        size = wanted[("mean", "amplitude", "frequency").index(part)]
+        off, known = 100 * (found[part] / size - 1), 200 * abs(found.get(f"{part}_error", 0) / size)
+        word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit else
+                "not shown: noise")
+        return f"{off:+.1f}{f' ± {0.5 * known:.1f}' if known else ''} % | {limit} % | {word}"
     return f"{found['state']} | {limit} % | not shown"
 
 

@@ -2,43 +2,82 @@
 # SPDX-License-Identifier: MIT
 """The reader of the Turek-Hron benchmark: periods, mean and amplitude of series of known answer."""
 
-import math
 import sys
 from pathlib import Path
+
+import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tools"))
 import turek_hron
 
 
 def series(function, end=10.0, step=0.005):
-    times = [k * step for k in range(int(end / step) + 1)]
-    return times, [function(t) for t in times]
+    times = np.arange(0, end + 0.5 * step, step)
+    return times, function(times)
+
+
+def swing(times):
+    """From rest to a swing of 1.9 Hz about 1.3, with a part of three times the frequency."""
+    return 1.3 + np.minimum(1, times / 4) * (
+        80 * np.sin(2 * np.pi * 1.9 * times) + 5 * np.sin(6 * np.pi * 1.9 * times))
+
+
+def read(function, end=10.0):
+    times, values = series(function, end)
+    return turek_hron.summary(times, values, turek_hron.period(times, values))
 
 
 def test_a_swing_that_repeats_itself():
-    """From rest to a swing of 1.9 Hz about 1.3, with a part of three times the frequency."""
-    times, values = series(lambda t: 1.3 + min(1, t / 4) * (
-        80 * math.sin(2 * math.pi * 1.9 * t) + 5 * math.sin(6 * math.pi * 1.9 * t)))
-    spans = turek_hron.periods(times, values)
-    assert len(spans) == turek_hron.PERIODS
-    found = turek_hron.summary(times, values, spans)
-    assert found["state"] == "periodic"
-    assert abs(found["frequency"] - 1.9) < 0.01, found
-    assert abs(found["mean"] - 1.3) < 0.5, found
-    top = max(values[len(values) // 2:])
-    assert abs(found["amplitude"] - (top - 1.3)) < 0.5, found
+    found = read(swing)
+    assert found["state"] == "periodic" and found["periods"] >= turek_hron.PERIODS, found
+    top = max(swing(np.linspace(8, 10, 4001)))
+    assert abs(found["frequency"] - 1.9) < 1e-4, found
+    assert abs(found["mean"] - 1.3) < 1e-3, found
+    assert abs(found["amplitude"] - (top - 1.3)) < 0.01, found
+    assert found["amplitude_error"] < 0.01, found
+
+
+def test_noise_hides_neither_the_size_nor_its_error():
+    """Noise that is half as large as the swing: 40 trials with seeds of their own. The amplitude has no
+    bias, and its standard error is the scatter of the trials."""
+    trials = []
+    for seed in range(40):
+        noise = np.random.default_rng(seed)
+        found = read(lambda t, n=noise: swing(t) + n.normal(0, 40, len(t)))
+        if found["state"] == "periodic":
+            trials.append((found["amplitude"], found["amplitude_error"], found["frequency"]))
+    assert len(trials) >= 36, len(trials)  # one in twenty scatters beyond twice its error
+    sizes, errors, frequencies = np.array(trials).T
+    top = max(swing(np.linspace(8, 10, 4001))) - 1.3
+    assert abs(np.mean(sizes) - top) < 3 * np.std(sizes) / np.sqrt(len(sizes)) + 0.01 * top, np.mean(sizes)
+    assert 0.6 < np.sqrt(np.mean(errors ** 2)) / np.std(sizes) < 1.7, (errors, np.std(sizes))
+    assert np.max(abs(frequencies - 1.9)) < 0.01
+
+
+def test_noise_alone_has_no_period():
+    for seed in range(100):
+        noise = np.random.default_rng(seed)
+        times, values = series(lambda t, n=noise: n.normal(0, 1, len(t)))
+        assert turek_hron.period(times, values) is None, seed
+
+
+def test_the_second_harmonic_has_its_own_frequency():
+    """Drag and ux repeat themselves twice in a period of lift and uy."""
+    times, values = series(swing)
+    drag = 439 + 5.6 * np.cos(4 * np.pi * 1.9 * times)
+    found = turek_hron.summary(times, drag, turek_hron.period(times, values))
+    assert abs(found["frequency"] - 3.8) < 1e-3 and abs(found["amplitude"] - 5.6) < 0.01, found
 
 
 def test_a_swing_that_still_grows():
-    times, values = series(lambda t: math.exp(0.4 * t) * math.sin(2 * math.pi * 0.5 * t))
-    spans = turek_hron.periods(times, values)
-    assert spans == []
-    assert turek_hron.summary(times, values, spans)["state"] == "neither steady nor periodic yet"
+    """By a tenth and more from the first to the last of six periods."""
+    for rate, frequency in ((0.4, 0.5), (0.4, 1.9), (0.1, 1.9)):
+        found = read(lambda t, r=rate, f=frequency: np.exp(r * t) * np.sin(2 * np.pi * f * t))
+        assert found["state"] == "neither steady nor periodic yet", (rate, frequency, found)
 
 
 def test_what_rests():
-    times, values = series(lambda t: -66.1 * (1 - math.exp(-2 * t)))
-    found = turek_hron.summary(times, values, turek_hron.periods(times, values))
+    found = read(lambda t: -66.1 * (1 - np.exp(-2 * t)))
     assert found["state"] == "steady" and abs(found["mean"] + 66.1) < 0.01, found
 
 
@@ -48,6 +87,10 @@ def test_a_target_is_met_missed_or_not_shown():
     assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 % | 3 % | met"
     assert turek_hron.judged(run, "uy", "frequency", 2) == "+5.0 % | 2 % | **missed**"
     assert turek_hron.judged(run, "run", "cost", 2) == "2.5 core-hours | 2 core-hours | **missed**"
+    swing["amplitude_error"] = 81.6 * 0.004
+    assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 ± 0.4 % | 3 % | met"
+    swing["amplitude_error"] = 81.6 * 0.006
+    assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 ± 0.6 % | 3 % | not shown: noise"
     swing["state"] = "neither steady nor periodic yet"
     assert turek_hron.judged(run, "uy", "amplitude", 3).endswith("not shown")
 
