@@ -184,10 +184,10 @@ def summary(times, values, found):
         return {"state": "periodic", "mean": middle, "amplitude": size, "mean_error": errors[0],
                 "amplitude_error": errors[1], "frequency": float(strongest * frequency), "periods": count}
     late = values[times >= 0.5 * times[-1]]
-    parts = np.array([part.mean() for part in np.array_split(late, PARTS)])
+    parts = np.array([part.mean() for part in np.array_split(late, min(PARTS, len(late)))])
     return {"state": "steady" if settled(parts, REST) else "neither steady nor periodic yet",
             "mean": float(parts.mean()), "amplitude": float(np.std(late)), "frequency": None,
-            "mean_error": float(np.std(parts, ddof=1) / math.sqrt(PARTS))}
+            "mean_error": float(np.std(parts, ddof=1) / math.sqrt(len(parts)))}
 
 
 def read(folder):
@@ -208,7 +208,8 @@ def error(found, wanted, scatter=None):
     """Of a value, in per cent of the one wanted, with the standard error of the value."""
     if not wanted:
         return ""
-    known = f" ± {100 * abs(scatter / wanted):.1f}" if scatter else ""
+    share = 100 * abs((scatter or 0) / wanted)
+    known = f" ± {share:.1f}" if share >= 0.05 else ""
     return f" ({100 * (found / wanted - 1):+.1f}{known} %)"
 
 
@@ -272,7 +273,7 @@ def judged(best, quantity, part, limit):
         size = wanted[("mean", "amplitude", "frequency").index(part)]
         off, known = 100 * (found[part] / size - 1), 200 * abs(found.get(f"{part}_error", 0) / size)
         word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit else
-                "not shown: noise")
+                "undecided: noise")
         return f"{off:+.1f}{f' ± {0.5 * known:.1f}' if known else ''} % | {limit} % | {word}"
     return f"{found['state']} | {limit} % | not shown"
 
