@@ -50,6 +50,7 @@ struct case_section {
     int line;
     int index;       /* its number among the sections of its kind */
     bool incomplete; /* a line of it is invalid, or the section of its `like` is unknown */
+    bool invalid;    /* so is one of its keys or values */
 };
 
 struct constant {
@@ -91,6 +92,9 @@ enum err bad_entry(struct reader *r, const struct entry *e, const char *format, 
 /* Stores "FILE:LINE: key = value: ...". */
 enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
+
+/* Warns: "FILE:LINE: ...". */
+void case_warn(const struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
 
 /* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
@@ -136,8 +140,15 @@ void case_apply_presets(struct reader *r);
 
 /* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
 enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
-/* case/check.c: checks that involve several values. */
+/* case/check.c: checks that involve several values. Those whose values depend on a problem already
+ * stored are left out. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
+/* Whether all lines, keys and values of a section are valid, or it is not given. */
+bool case_sound(const struct reader *r, enum section_id id, int index);
+/* The same for all sections of a kind. */
+bool case_all_sound(const struct reader *r, enum section_id id);
+/* case/check_motion.c */
+enum err case_check_motion(struct reader *r, const struct scene_motion *m) SPHFSI_CHECKED;
 /* case/open.c */
 enum err case_check_open(struct reader *r) SPHFSI_CHECKED;
 /* case/check_output.c */

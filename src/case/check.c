@@ -7,21 +7,8 @@
 #include "case/expr.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-
-static void warn(struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
-static void warn(struct reader *r, int line, const char *format, ...)
-{
-    char text[600], place[LOCATION_TEXT];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    scene_location(r->scene, line, place);
-    diag_warn(r->diag, "%s: %s", place, text);
-}
 
 /* --- fluid --- */
 
@@ -42,19 +29,21 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         "1e7; reduce `max_speed` or `max_pressure`",
                         f->common.name, *c0);
     if (*c0 < least * (1 - 1e-9))
-        warn(r, line,
-             "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary "
-             "by "
-             "more than 1 %%",
-             f->common.name, *c0, least);
+        case_warn(
+            r, line,
+            "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary "
+            "by "
+            "more than 1 %%",
+            f->common.name, *c0, least);
     if (f->pressure.e[0] && !isnan(f->surface))
         return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; leave one out",
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
-        warn(r, line,
-             "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so the "
-             "initial pressure is zero",
-             f->common.name);
+        case_warn(
+            r, line,
+            "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so the "
+            "initial pressure is zero",
+            f->common.name);
     return ERR_OK;
 }
 
@@ -64,16 +53,17 @@ static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
     const int line = f->common.line;
     if (f->shifting_speed != SHIFTING_LARGEST) return;
     if (gravity[0] != 0 || gravity[1] != 0)
-        warn(r, line,
-             "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
-             "energy, in proportion to `shifting`; if the fluid has a free surface, use "
-             "shifting_speed = own",
-             f->common.name);
+        case_warn(r, line,
+                  "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
+                  "energy, in proportion to `shifting`; if the fluid has a free surface, use "
+                  "shifting_speed = own",
+                  f->common.name);
     if (f->shifting * cfl > 5 * (1 + 1e-9))
-        warn(r, line,
-             "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
-             "shifting_speed = largest; reduce one of them",
-             f->common.name, f->shifting, cfl);
+        case_warn(
+            r, line,
+            "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
+            "shifting_speed = largest; reduce one of them",
+            f->common.name, f->shifting, cfl);
 }
 
 /* L-10 is for fluid without a free surface that sticks to walls. */
@@ -166,121 +156,52 @@ static enum err check_fluids(struct reader *r)
 
 /* --- references between sections --- */
 
-static enum err no_such(struct reader *r, int line, const char *what, const char *given,
-                        enum section_id kind)
+bool case_sound(const struct reader *r, enum section_id id, int index)
 {
-    struct nearest near = {0};
+    for (int k = 0; k < r->n_sections; k++)
+        if (r->sections[k].id == (int)id && r->sections[k].index == index)
+            return !r->sections[k].invalid;
+    return true;
+}
+
+bool case_all_sound(const struct reader *r, enum section_id id)
+{
+    for (int k = 0; k < section_count(r->scene, id); k++)
+        if (!case_sound(r, id, k)) return false;
+    return true;
+}
+
+/* The line of a key; without it, that of its section. */
+static int line_of(const struct reader *r, enum section_id id, int index, const char *key)
+{
+    const struct scene_given *const given = scene_given(r->scene, id, index, key);
+    const struct scene_section_common *const common = section_at(r->scene, id, index);
+    return given ? given->line : common->line;
+}
+
+static void offer_names(const struct reader *r, enum section_id kind, const char *given,
+                        struct nearest *near)
+{
     for (int k = 0; k < section_count(r->scene, kind); k++) {
         const struct scene_section_common *c = section_at(r->scene, kind, k);
-        nearest_offer(&near, given, c->name);
+        nearest_offer(near, given, c->name);
     }
-    const char *word = section_table[kind].word;
+}
+
+/* `also`: another kind of section that may be meant; the same kind: none. */
+static enum err no_such(struct reader *r, int line, const char *what, const char *given,
+                        enum section_id kind, enum section_id also)
+{
+    struct nearest near = {0};
+    offer_names(r, kind, given, &near);
+    offer_names(r, also, given, &near);
+    char word[2 * SCENE_NAME];
+    snprintf(word, sizeof word, also == kind ? "%s" : "%s] or [%s", section_table[kind].word,
+             section_table[also].word);
     if (near.name)
         return bad_line(r, line, "%s = %.60s: there is no [%s] of that name; did you mean `%s`?",
                         what, given, word, near.name);
     return bad_line(r, line, "%s = %.60s: there is no [%s] of that name", what, given, word);
-}
-
-/* A key that applies to some kinds of motion only. */
-static enum err check_motion_keys(struct reader *r, const struct scene_motion *m)
-{
-#define KIND(kind) (1u << MOTION_##kind)
-    static const struct {
-        const char *key, *kinds;
-        unsigned of;
-    } owned[] = {
-        {"velocity", "velocity", KIND(VELOCITY)},
-        {"poly_x", "polynomial", KIND(POLYNOMIAL)},
-        {"poly_y", "polynomial", KIND(POLYNOMIAL)},
-        {"amplitude", "sine", KIND(SINE)},
-        {"period", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
-        {"phase", "sine and rotation", KIND(SINE) | KIND(ROTATION)},
-        {"centre", "rotation and expression", KIND(ROTATION) | KIND(EXPRESSION)},
-        {"angle", "rotation", KIND(ROTATION)},
-        {"angle_amplitude", "rotation", KIND(ROTATION)},
-        {"file", "table and rotation", KIND(TABLE) | KIND(ROTATION)},
-        {"x", "expression", KIND(EXPRESSION)},
-        {"y", "expression", KIND(EXPRESSION)},
-        {"turn", "expression", KIND(EXPRESSION)},
-    };
-#undef KIND
-    for (size_t k = 0; k < COUNT_OF(owned); k++) {
-        const struct param *const p = param_find(SECTION_motion, owned[k].key);
-        if (owned[k].of & (1u << m->kind) || param_is_default(p, m)) continue;
-        char name[SCENE_NAME];
-        param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
-        const struct scene_given *const given =
-            scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), owned[k].key);
-        return bad_line(
-            r, given ? given->line : m->common.line,
-            "[motion %s] `%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
-            m->common.name, owned[k].key, owned[k].kinds, name);
-    }
-    return ERR_OK;
-}
-
-enum { MOTION_TIMES = 1000 };
-
-/* A jump would move a body without a velocity. */
-static enum err check_motion_jumps(struct reader *r, const struct scene_motion *m, const char *key,
-                                   const struct expr *e, double length)
-{
-    const struct scene_given *const given =
-        scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), key);
-    const int line = given ? given->line : m->common.line;
-    if (expr_steps(e))
-        return bad_line(r, line,
-                        "[motion %s] %s = %.200s jumps in time, because it rounds a term with t, "
-                        "so the velocity is undefined; use a continuous expression",
-                        m->common.name, key, expr_source(e));
-    double size = 0, at;
-    for (int n = 0; n <= MOTION_TIMES; n++)
-        size = max2(size, 1e-6 * fabs(expr_jet_at(e, length * n / MOTION_TIMES).value));
-    for (int n = 0; n < MOTION_TIMES; n++)
-        if (expr_jumps(e, length * n / MOTION_TIMES, length * (n + 1) / MOTION_TIMES, size, &at))
-            return bad_line(r, line,
-                            "[motion %s] %s = %.200s jumps or is not finite %g s after `start`, so "
-                            "the velocity is undefined; use a continuous expression",
-                            m->common.name, key, expr_source(e), at);
-    return ERR_OK;
-}
-
-static double motion_length(const struct reader *r, const struct scene_motion *m)
-{
-    return fmax(fmin(r->scene->top.end_time, m->stop) - m->start, 0);
-}
-
-/* Finite with its derivatives at the start and at a thousand times until the end. */
-static enum err check_motion_finite(struct reader *r, const struct scene_motion *m,
-                                    const struct expr *e)
-{
-    for (int n = 0; e && n <= MOTION_TIMES; n++) {
-        const double t = motion_length(r, m) * n / MOTION_TIMES;
-        const struct expr_jet at = expr_jet_at(e, t);
-        if (!isfinite(at.value) || !isfinite(at.d1) || !isfinite(at.d2))
-            return bad_line(r, m->common.line,
-                            "[motion %s] %.200s: displacement, velocity or acceleration is not "
-                            "finite %g s after `start`; change the expression",
-                            m->common.name, expr_source(e), t);
-    }
-    return ERR_OK;
-}
-
-/* Finite, and no jumps in between. */
-static enum err check_motion_expressions(struct reader *r, const struct scene_motion *m)
-{
-    const struct scene_expr *const each[] = {&m->x, &m->y, &m->turn};
-    static const char *const keys[] = {"x", "y", "turn"};
-    if (!m->x.e[0] && !m->y.e[0] && !m->turn.e[0])
-        return bad_line(r, m->common.line,
-                        "[motion %s] kind = expression needs `x`, `y` or `turn`, expressions in t",
-                        m->common.name);
-    for (size_t k = 0; k < COUNT_OF(each); k++) {
-        TRY(check_motion_finite(r, m, each[k]->e[0]));
-        if (each[k]->e[0])
-            TRY(check_motion_jumps(r, m, keys[k], each[k]->e[0], motion_length(r, m)));
-    }
-    return ERR_OK;
 }
 
 /* The sections that name a motion. */
@@ -288,59 +209,22 @@ static enum err check_moved(struct reader *r)
 {
     const struct scene *s = r->scene;
     for (int k = 0; k < s->n_wall; k++)
-        if (*s->wall[k].motion && scene_find_motion(s, s->wall[k].motion) < 0)
-            TRY(case_go_on(r, no_such(r, s->wall[k].common.line, "motion", s->wall[k].motion,
-                                      SECTION_motion)));
+        if (case_sound(r, SECTION_wall, k) && *s->wall[k].motion &&
+            scene_find_motion(s, s->wall[k].motion) < 0)
+            TRY(case_go_on(r, no_such(r, line_of(r, SECTION_wall, k, "motion"), "motion",
+                                      s->wall[k].motion, SECTION_motion, SECTION_motion)));
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *b = &s->solid[k];
-        if (!*b->clamp_motion) continue;
+        if (!*b->clamp_motion || !case_sound(r, SECTION_solid, k)) continue;
         if (scene_find_motion(s, b->clamp_motion) < 0)
-            TRY(case_go_on(r, no_such(r, b->common.line, "clamp_motion", b->clamp_motion,
-                                      SECTION_motion)));
+            TRY(case_go_on(r,
+                           no_such(r, line_of(r, SECTION_solid, k, "clamp_motion"), "clamp_motion",
+                                   b->clamp_motion, SECTION_motion, SECTION_motion)));
         else if (b->clamp.n == 0)
             TRY(case_go_on(r, bad_line(r, b->common.line,
                                        "[solid %s] has a `clamp_motion` but no `clamp`",
                                        b->common.name)));
     }
-    return ERR_OK;
-}
-
-static bool is_used(const struct scene *s, const char *motion)
-{
-    for (int k = 0; k < s->n_wall; k++)
-        if (strcmp(s->wall[k].motion, motion) == 0) return true;
-    for (int k = 0; k < s->n_solid; k++)
-        if (strcmp(s->solid[k].clamp_motion, motion) == 0) return true;
-    return false;
-}
-
-static enum err check_motion(struct reader *r, const struct scene_motion *m)
-{
-    const int line = m->common.line;
-    if (!is_used(r->scene, m->common.name))
-        warn(r, line,
-             "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
-             "[solid]",
-             m->common.name);
-    if (!(m->start < m->stop))
-        return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
-                        m->common.name, m->start, m->stop);
-    TRY(check_motion_keys(r, m));
-    if (m->kind == MOTION_EXPRESSION) TRY(check_motion_expressions(r, m));
-    for (int c = 0; c < 2; c++) TRY(check_motion_finite(r, m, m->velocity_in_time.e[c]));
-    if (m->kind == MOTION_SINE && m->period == 0)
-        return bad_line(r, line, "[motion %s] kind = sine needs `period`", m->common.name);
-    if (m->kind == MOTION_ROTATION && m->angle_amplitude != 0 && m->period == 0)
-        return bad_line(r, line, "[motion %s] angle_amplitude needs `period`", m->common.name);
-    if (m->kind == MOTION_ROTATION && m->angle_amplitude == 0 && m->angle.n == 0 && !*m->file)
-        return bad_line(r, line,
-                        "[motion %s] kind = rotation needs `angle`, `angle_amplitude` or `file`",
-                        m->common.name);
-    if (m->kind == MOTION_TABLE && !*m->file)
-        return bad_line(r, line, "[motion %s] kind = table needs `file`", m->common.name);
-    if (m->kind == MOTION_POLYNOMIAL && m->poly_x.n + m->poly_y.n == 0)
-        return bad_line(r, line, "[motion %s] kind = polynomial needs `poly_x` or `poly_y`",
-                        m->common.name);
     return ERR_OK;
 }
 
@@ -386,7 +270,9 @@ static enum err check_joined(struct reader *r, int solid)
     TRY(check_spacing(r, solid));
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(s, a->joined);
-    if (other < 0) return no_such(r, a->common.line, "joined", a->joined, SECTION_solid);
+    if (other < 0)
+        return no_such(r, line_of(r, SECTION_solid, solid, "joined"), "joined", a->joined,
+                       SECTION_solid, SECTION_solid);
     if (other == solid)
         return bad_line(r, a->common.line,
                         "[solid %s] joined = %s: a body cannot be joined to itself; name another",
@@ -411,11 +297,12 @@ static enum err check_gap(struct reader *r, const struct scene_contact *c)
 static enum err check_contact(struct reader *r, const struct scene_contact *c)
 {
     const struct scene *s = r->scene;
-    const int line = c->common.line;
     char name[2][SCENE_TEXT];
-    if (s->n_solid == 0) return bad_line(r, line, "[contact %s] needs a [solid]", c->common.name);
-    TRY(check_gap(r, c));
+    if (s->n_solid == 0)
+        return bad_line(r, c->common.line, "[contact %s] needs a [solid]", c->common.name);
+    if (case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_solid)) TRY(check_gap(r, c));
     if (!*c->between) return ERR_OK;
+    const int line = line_of(r, SECTION_contact, (int)(c - s->contact), "between");
     if (!scene_pair(c->between, name))
         return bad_line(r, line, "between = %.100s: two names are expected, separated by a comma",
                         c->between);
@@ -423,7 +310,7 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
     for (int j = 0; j < 2; j++) {
         solid |= scene_find_solid(s, name[j]) >= 0;
         if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
-            return no_such(r, line, "between", name[j], SECTION_solid);
+            return no_such(r, line, "between", name[j], SECTION_solid, SECTION_wall);
     }
     if (!solid)
         return bad_line(
@@ -439,7 +326,8 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
     if (!*l->body)
         return bad_line(r, line, "[load %s] needs `body`, the solid it acts on", l->common.name);
     if (scene_find_solid(r->scene, l->body) < 0)
-        return no_such(r, line, "body", l->body, SECTION_solid);
+        return no_such(r, line_of(r, SECTION_load, (int)(l - r->scene->load), "body"), "body",
+                       l->body, SECTION_solid, SECTION_solid);
     if (l->shape.n == 0)
         return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
                         l->common.name);
@@ -455,6 +343,7 @@ static enum err check_reference(struct reader *r, const struct scene_reference *
     const struct scene *s = r->scene;
     const int line = ref->common.line;
     const bool formula = ref->formula.e[0] != NULL;
+    const int column = line_of(r, SECTION_reference, (int)(ref - s->reference), "probe");
     if (!*ref->probe || (!*ref->file && !formula))
         return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
                         *ref->probe ? "file` or `formula" : "probe");
@@ -469,7 +358,7 @@ static enum err check_reference(struct reader *r, const struct scene_reference *
         const size_t length = strlen(name);
         if (strncmp(ref->probe, name, length) == 0 && ref->probe[length] == '_') return ERR_OK;
     }
-    return bad_line(r, line,
+    return bad_line(r, column,
                     "[reference %s] probe = %.80s: no probe has such a column; a column is "
                     "PROBE_QUANTITY_UNIT, such as M1_dx_m",
                     ref->common.name, ref->probe);
@@ -523,28 +412,46 @@ static enum err check_solid_h(struct reader *r)
                     value);
 }
 
+/* What sections say of each other, for each that is valid itself. */
+static enum err check_sections(struct reader *r)
+{
+    const struct scene *const s = r->scene;
+    const bool top = case_sound(r, SECTION_top, 0);
+    TRY(check_moved(r));
+    for (int k = 0; k < s->n_motion; k++)
+        if (top && case_sound(r, SECTION_motion, k))
+            TRY(case_go_on(r, case_check_motion(r, &s->motion[k])));
+    for (int k = 0; k < s->n_solid; k++)
+        if (top && case_all_sound(r, SECTION_solid)) TRY(case_go_on(r, check_joined(r, k)));
+    if (top && case_all_sound(r, SECTION_inflow) && case_all_sound(r, SECTION_outflow) &&
+        case_all_sound(r, SECTION_fluid))
+        TRY(case_go_on(r, case_check_open(r)));
+    if (case_sound(r, SECTION_output, 0)) TRY(case_go_on(r, case_check_output(r)));
+    TRY(case_check_probes(r));
+    for (int k = 0; k < s->n_contact; k++)
+        if (case_sound(r, SECTION_contact, k)) TRY(case_go_on(r, check_contact(r, &s->contact[k])));
+    for (int k = 0; k < s->n_load; k++)
+        if (case_sound(r, SECTION_load, k)) TRY(case_go_on(r, check_load(r, &s->load[k])));
+    for (int k = 0; k < s->n_reference; k++)
+        if (case_sound(r, SECTION_reference, k))
+            TRY(case_go_on(r, check_reference(r, &s->reference[k])));
+    return ERR_OK;
+}
+
 enum err case_check(struct reader *r)
 {
     struct scene *const s = r->scene;
+    const bool valid = r->n_problems == 0;
     if (s->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
         s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
-    TRY(check_solid_h(r));
-    if (s->n_fluid == 0 && s->n_solid == 0)
+    if (valid && s->n_fluid == 0 && s->n_solid == 0)
         return bad_line(r, 1,
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");
-    TRY(case_go_on(r, check_gravity(r)));
-    TRY(case_go_on(r, check_relax(r)));
-    TRY(case_go_on(r, check_fluids(r)));
-    TRY(check_moved(r));
-    for (int k = 0; k < s->n_motion; k++) TRY(case_go_on(r, check_motion(r, &s->motion[k])));
-    for (int k = 0; k < s->n_solid; k++) TRY(case_go_on(r, check_joined(r, k)));
-    TRY(case_go_on(r, case_check_open(r)));
-    TRY(case_go_on(r, case_check_output(r)));
-    TRY(case_check_probes(r));
-    for (int k = 0; k < s->n_contact; k++) TRY(case_go_on(r, check_contact(r, &s->contact[k])));
-    for (int k = 0; k < s->n_load; k++) TRY(case_go_on(r, check_load(r, &s->load[k])));
-    for (int k = 0; k < s->n_reference; k++)
-        TRY(case_go_on(r, check_reference(r, &s->reference[k])));
-    return case_check_effects(r);
+    if (case_sound(r, SECTION_numerics, 0)) TRY(case_go_on(r, check_solid_h(r)));
+    if (case_sound(r, SECTION_top, 0)) TRY(case_go_on(r, check_gravity(r)));
+    if (valid) TRY(case_go_on(r, check_relax(r)));
+    if (valid) TRY(case_go_on(r, check_fluids(r)));
+    TRY(check_sections(r));
+    return valid ? case_check_effects(r) : ERR_OK;
 }

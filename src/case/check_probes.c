@@ -14,8 +14,11 @@ static enum err no_section(struct reader *r, const struct scene_probe *p, const 
         nearest_offer(&near, name, r->scene->solid[k].common.name);
     for (int k = 0; walls_too && k < r->scene->n_wall; k++)
         nearest_offer(&near, name, r->scene->wall[k].common.name);
-    return bad_line(r, p->common.line, "%s = %.60s: there is no [solid]%s of that name%s%s%s", key,
-                    name, walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
+    const struct scene_given *const given =
+        scene_given(r->scene, SECTION_probe, (int)(p - r->scene->probe), key);
+    return bad_line(r, given ? given->line : p->common.line,
+                    "%s = %.60s: there is no [solid]%s of that name%s%s%s", key, name,
+                    walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
                     near.name ? near.name : "", near.name ? "`?" : "");
 }
 
@@ -67,6 +70,7 @@ static enum err check_on(struct reader *r, const struct scene_probe *p)
 static enum err check_average(struct reader *r, const struct scene_probe *p)
 {
     const struct scene_output *const out = &r->scene->output;
+    if (!case_sound(r, SECTION_top, 0) || !case_sound(r, SECTION_output, 0)) return ERR_OK;
     const double common =
         out->probe_interval > 0 ? out->probe_interval : 1e-3 * r->scene->top.end_time;
     const double interval = p->interval > 0 ? p->interval : common;
@@ -79,8 +83,9 @@ static enum err check_average(struct reader *r, const struct scene_probe *p)
 
 static enum err check_clamp(struct reader *r, const struct scene_probe *p)
 {
-    if (p->quantity != PROBE_REACTION) return ERR_OK;
-    if (r->scene->solid[scene_find_solid(r->scene, p->body)].clamp.n > 0) return ERR_OK;
+    const int body = scene_find_solid(r->scene, p->body);
+    if (p->quantity != PROBE_REACTION || !case_sound(r, SECTION_solid, body)) return ERR_OK;
+    if (r->scene->solid[body].clamp.n > 0) return ERR_OK;
     return bad_line(r, p->common.line,
                     "[probe %s] measures the force of the clamps of [solid %s], which has none; "
                     "give the solid a `clamp`",
@@ -107,8 +112,26 @@ static enum err check_fluid(struct reader *r, const struct scene_probe *p)
     return ERR_OK;
 }
 
+/* Without it, a place would be the origin. For forces it is, since they need no place. */
+static enum err check_place(struct reader *r, const struct scene_probe *p, const char *key)
+{
+    const enum probe_target target = scene_probe_target(p);
+    const bool line = target == TARGET_FLUID_LINE;
+    if (scene_given(r->scene, SECTION_probe, (int)(p - r->scene->probe), key)) return ERR_OK;
+    if (!line &&
+        (strcmp(key, "to") == 0 || (target != TARGET_FLUID_POINT && target != TARGET_SOLID_POINT)))
+        return ERR_OK;
+    char quantity[SCENE_NAME];
+    param_choice_name(param_find(SECTION_probe, "quantity"), p->quantity, quantity);
+    return bad_line(r, p->common.line, "[probe %s] lacks `%s`: quantity = %s needs %s, in metres",
+                    p->common.name, key, quantity,
+                    line ? "both ends of its line, `point` and `to`" : "the place, two numbers");
+}
+
 static enum err check_probe(struct reader *r, const struct scene_probe *p)
 {
+    TRY(case_go_on(r, check_place(r, p, "point")));
+    TRY(case_go_on(r, check_place(r, p, "to")));
     TRY(check_on(r, p));
     TRY(check_average(r, p));
     switch (scene_probe_target(p)) {
@@ -122,6 +145,7 @@ static enum err check_probe(struct reader *r, const struct scene_probe *p)
 enum err case_check_probes(struct reader *r)
 {
     for (int k = 0; k < r->scene->n_probe; k++)
-        TRY(case_go_on(r, check_probe(r, &r->scene->probe[k])));
+        if (case_sound(r, SECTION_probe, k))
+            TRY(case_go_on(r, check_probe(r, &r->scene->probe[k])));
     return ERR_OK;
 }

@@ -26,12 +26,31 @@ void scene_gravity_at(const struct scene *s, double t, double g[2])
     g[1] += table->y[k] + u * (table->y[k + 1] - table->y[k]);
 }
 
+/* A record of a shaken tank usually ends at zero; one that does not goes on as a constant. */
+static void warn_of_end(const struct scene *s, int line, struct diag *d)
+{
+    const struct scene_table *const table = &s->gravity_data;
+    const int last = table->n - 1;
+    const bool acts = table->x[last] != 0 || table->y[last] != 0;
+    if (!acts || table->t[last] >= s->top.end_time * (1 - 1e-9)) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, line, place);
+    diag_warn(d,
+              "%s: gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
+              "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add a "
+              "row of zeros, or use end_time = %.6g s",
+              place, s->top.gravity_file, table->t[last], s->top.end_time, table->x[last],
+              table->y[last], table->t[last]);
+}
+
 enum err gravity_load(struct scene *s, struct diag *d)
 {
     static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
                                            false};
     const struct scene_given *const given = scene_given(s, SECTION_top, 0, "gravity_file");
     if (!*s->top.gravity_file) return ERR_OK;
-    return table_load(s, &s->gravity_data, &kind, s->top.gravity_file, given ? given->line : 0,
-                      "gravity_file", d);
+    const int line = given ? given->line : 0;
+    TRY(table_load(s, &s->gravity_data, &kind, s->top.gravity_file, line, "gravity_file", d));
+    warn_of_end(s, line, d);
+    return ERR_OK;
 }

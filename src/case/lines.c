@@ -127,7 +127,7 @@ static enum err add_section(struct reader *r, int line, int id, const char *name
     if (index == SCENE_MAX_SECTIONS)
         return bad_line(r, line, "more than %d [%s] sections are given; merge some of them",
                         SCENE_MAX_SECTIONS, word);
-    r->sections[r->n_sections++] = (struct case_section){id, name, line, index, false};
+    r->sections[r->n_sections++] = (struct case_section){id, name, line, index, false, false};
     return ERR_OK;
 }
 
@@ -205,7 +205,7 @@ enum err case_split(struct reader *r, const char *text)
     if (!r->entries || !r->sections || !copy) return ERR_MEMORY;
     memcpy(copy, text, bytes);
     if (strncmp(copy, "\xEF\xBB\xBF", 3) == 0) copy += 3; /* a byte-order mark */
-    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0, false};
+    r->sections[r->n_sections++] = (struct case_section){SECTION_top, "", 1, 0, false, false};
     int line = 1;
     for (char *next; copy; copy = next, line++) {
         next = strchr(copy, '\n');

@@ -47,13 +47,19 @@ void scene_open_velocity(const struct scene_open *o, const double x[2], double t
 
 static const char *word_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
 
-static enum err check_given(struct reader *r, const struct scene_open *o)
+/* `index`: its number among those of its kind. */
+static enum err check_given(struct reader *r, const struct scene_open *o, int index)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
     const char *const word = word_of(o), *const name = o->common->name;
     const int line = o->common->line;
     const double *const g = r->scene->top.gravity;
-    if (!(o->length > 0))
+    static const char *const ends[] = {"from", "to"};
+    bool both = o->length > 0;
+    for (int k = 0; k < 2; k++)
+        both &= scene_given(r->scene, o->inflow ? SECTION_inflow : SECTION_outflow, index,
+                            ends[k]) != NULL;
+    if (!both)
         return bad_line(r, line,
                         "[%s %s] needs `from` and `to`, the two ends of the line through which the "
                         "fluid passes",
@@ -140,7 +146,7 @@ enum err case_check_open(struct reader *r)
     }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
         const struct scene_open o = scene_open_at(s, k);
-        TRY(check_given(r, &o));
+        TRY(check_given(r, &o, o.inflow ? k : k - s->n_inflow));
         TRY(check_profile(r, &o));
     }
     return ERR_OK;

@@ -170,7 +170,7 @@ static enum err read_section(struct reader *r, int section)
     if (cs->id == SECTION_constants) return ERR_OK;
     const enum err inherited_well = inherit(r, section);
     TRY(case_go_on(r, inherited_well));
-    if (inherited_well) r->sections[section].incomplete = true;
+    if (inherited_well) r->sections[section].incomplete = r->sections[section].invalid = true;
     drop_rivals(r, section);
     const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
     void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
@@ -181,12 +181,13 @@ static enum err read_section(struct reader *r, int section)
         const struct param *p = param_find((enum section_id)cs->id, e->key);
         if (!p && note_retired(r, e, cs->id)) continue;
         if (!p) {
-            r->sections[section].incomplete = true;
+            r->sections[section].incomplete = r->sections[section].invalid = true;
             TRY(case_go_on(r, unknown_key(r, e, cs->id)));
             continue;
         }
         const struct entry **before = &given[p - param_table];
         if (*before && p->type != PARAM_SHAPES) {
+            r->sections[section].invalid = true;
             TRY(case_go_on(r,
                            bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
                                      e->key, (*before)->line)));
@@ -196,7 +197,9 @@ static enum err read_section(struct reader *r, int section)
         r->scene->given[r->scene->n_given++] =
             (struct scene_given){cs->id, cs->index, p->key, e->line};
         if (inherited && strcmp(e->key, "like") == 0) continue;
-        TRY(case_go_on(r, case_value(r, e, p, target)));
+        const enum err read = case_value(r, e, p, target);
+        if (read) r->sections[section].invalid = true;
+        TRY(case_go_on(r, read));
     }
     const struct param *const like = param_find((enum section_id)cs->id, "like");
     if (like) warn_of_lost_clamp(r, section, given[like - param_table]);
@@ -230,6 +233,7 @@ static enum err check_needed(struct reader *r)
             if (!isnan(value) || cs->incomplete ||
                 scene_given(r->scene, (enum section_id)cs->id, cs->index, p->key))
                 continue;
+            r->sections[k].invalid = true;
             TRY(case_go_on(r, lacks(r, cs, p)));
         }
     }
@@ -249,8 +253,8 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     if (!r->scene->given) return ERR_MEMORY;
     for (int k = 0; k < r->n_sections; k++) TRY(case_go_on(r, read_section(r, k)));
     TRY(check_needed(r));
-    /* Checks of several values are done only if each of them is valid. */
-    if (r->n_problems > 0) return ERR_INPUT;
+    /* A name that is not found may be in an invalid line. */
+    if (r->lost) return ERR_INPUT;
     TRY(case_check(r));
     if (r->n_problems > 0) return ERR_INPUT;
     TRY(gravity_load(r->scene, r->diag));

@@ -82,9 +82,33 @@ static enum err warn_of_missing_floor(struct sampler *g)
     return ERR_OK;
 }
 
+/* The component along y, averaged over the run, by the midpoint rule. */
+static double mean_gravity(const struct scene *s)
+{
+    enum { TIMES = 1000 };
+    double sum = 0, gravity[2];
+    if (!scene_gravity_varies(s)) return s->top.gravity[1];
+    for (int n = 0; n < TIMES; n++) {
+        scene_gravity_at(s, s->top.end_time * (n + 0.5) / TIMES, gravity);
+        sum += gravity[1];
+    }
+    return sum / TIMES;
+}
+
+/* Where gravity varies, a moment of upward gravity is no doubt: a tank may be shaken. */
 static void warn_of_upward_gravity(struct sampler *g, const struct scene_fluid *fluid)
 {
     char place[LOCATION_TEXT];
+    const double mean = mean_gravity(g->scene);
+    if (g->scene->top.gravity[1] <= 0 && mean > 0) {
+        scene_location(g->scene, fluid->common.line, place);
+        diag_warn(
+            g->diag,
+            "%s: `surface`, but gravity points upwards on average, by %.3g m/s^2 over the run: "
+            "the water will rise from its tank; gravity that points down has a negative "
+            "second component",
+            place, mean);
+    }
     if (!(g->scene->top.gravity[1] > 0)) return;
     scene_location(g->scene, fluid->common.line, place);
     diag_warn(g->diag,

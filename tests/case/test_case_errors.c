@@ -290,7 +290,7 @@ static const struct {
     {TOP FLUID "surface = 20 mm\npressure = 0\n", NULL,
      "bad.cfg:3: [fluid w] has both `surface` and `pressure`; leave one out"},
     {TOP FLUID "[wall w]\nmotion = lift\nshape = box 0, -5 mm, 20 mm, 0\n", NULL,
-     "bad.cfg:6: motion = lift: there is no [motion] of that name"},
+     "bad.cfg:7: motion = lift: there is no [motion] of that name"},
     {TOP FLUID "[motion lift]\nkind = table\n", NULL,
      "bad.cfg:6: [motion lift] kind = table needs `file`"},
     {TOP FLUID "[motion lift]\nkind = table\nfile = none/such.txt\n", NULL,
@@ -310,21 +310,21 @@ static const struct {
      "Allowed: all, or any of velocity density pressure kind id body stress von_mises displacement "
      "det_F"},
     {TOP SOLID "[probe F]\nquantity = force\nbody = aa\n", NULL,
-     "bad.cfg:8: body = aa: there is no [solid] or [wall] of that name"},
+     "bad.cfg:10: body = aa: there is no [solid] or [wall] of that name"},
     {TOP FLUID "[probe F]\nquantity = front\nbody = aa\n", NULL,
      "bad.cfg:6: [probe F] measures front of the fluid, at a fixed point; leave `body` out"},
     {TOP FLUID "density = 1000 kg/m3\n", NULL,
      "bad.cfg:6: density = 1000 kg/m3: unknown name `m3`; did you mean the unit `m^3`?"},
-    {TOP FLUID "[probe S]\nquantity = surface_pressure\n", NULL,
+    {TOP FLUID "[probe S]\nquantity = surface_pressure\npoint = 0, 0\nto = 0, 0\n", NULL,
      "bad.cfg:6: [probe S] measures the pressure on the line from `point` to `to`; the two points "
      "must differ"},
-    {TOP FLUID "[probe Q]\nquantity = flux\n", NULL,
+    {TOP FLUID "[probe Q]\nquantity = flux\npoint = 0, 0\nto = 0, 0\n", NULL,
      "bad.cfg:6: [probe Q] measures the flux through the line from `point` to `to`; the two points "
      "must differ"},
     {TOP SOLID "[probe M1]\npoint = 0, 0\n", NULL,
      "bad.cfg:8: [probe M1] needs `body`, the solid that is measured"},
     {TOP SOLID "[probe M1]\nbody = aa\npoint = 0, 0\n", NULL,
-     "bad.cfg:8: body = aa: there is no [solid] of that name"},
+     "bad.cfg:9: body = aa: there is no [solid] of that name"},
     {TOP SOLID "[probe M1]\nbody = a\npoint = 0, 1\n", NULL,
      "bad.cfg:8: [probe M1] point (0, 1) lies about 0.98 m outside of [solid a]"},
     {TOP SOLID "[probe M1]\nquantity = pressure\npoint = 0, 1\n", NULL,
@@ -333,7 +333,7 @@ static const struct {
      "bad.cfg:6: [probe M1] point (0, 1) lies outside of the domain, (-0.0045, -0.0045) to "
      "(0.0245, 0.0435) m"},
     {TOP SOLID "[reference r]\nprobe = M1_dx_m\nfile = a.csv\n", NULL,
-     "bad.cfg:8: [reference r] probe = M1_dx_m: no probe has such a column; a column is "
+     "bad.cfg:9: [reference r] probe = M1_dx_m: no probe has such a column; a column is "
      "PROBE_QUANTITY_UNIT, such as M1_dx_m"},
     {TOP SOLID "[reference r]\nprobe = M1_dx_m\n", NULL,
      "bad.cfg:8: [reference r] needs `file` or `formula`"},
@@ -525,8 +525,10 @@ static void test_checks_go_on_after_the_first(void)
     refuses_all(TOP SOLID "joined = zz\n[probe p]\nbody = zz\n[load l]\nbody = a\n"
                           "[motion m]\nkind = sine\n[contact c]\n[reference r]\n",
                 0, NULL,
-                "bad.cfg:3: joined = zz: there is no [solid] of that name\n"
-                "bad.cfg:9: body = zz: there is no [solid] of that name\n"
+                "bad.cfg:8: joined = zz: there is no [solid] of that name\n"
+                "bad.cfg:9: [probe p] lacks `point`: quantity = displacement needs the place, two "
+                "numbers, in metres\n"
+                "bad.cfg:10: body = zz: there is no [solid] of that name\n"
                 "bad.cfg:11: [load l] needs a `shape`, the region it acts on\n"
                 "bad.cfg:13: [motion m] kind = sine needs `period`\n"
                 "bad.cfg:16: [reference r] needs `probe`\n");

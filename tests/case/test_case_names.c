@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT
+ * Names of other sections are checked in the same run as values, and places of probes are needed. */
+#include "case/scene.h"
+#include "geometry/load.h"
+#include "unity.h"
+
+#include <stdio.h>
+
+#define TOP "dp = 1 mm\nend_time = 1 s\n"
+#define FLUID "[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\nsound_speed = 20\n"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void refuses_all(const char *text, const char *want)
+{
+    char said[4000];
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d));
+    snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
+    TEST_ASSERT_EQUAL_STRING(want, said);
+}
+
+/* Names and values in one run, and nothing that follows from a wrong value: [solid a] may have a clamp,
+ * and its motion may be any. */
+static void test_names_are_checked_beside_wrong_values(void)
+{
+    refuses_all(TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\nyoung = 1 Mpa\nclamp = bix 0\n"
+                    "clamp_motion = m\n[wall w]\nmotion = mm\n[motion m]\nkind = sine\n"
+                    "[probe p]\nquantity = reaction\nbody = a\n[probe q]\nbody = b\n"
+                    "point = 0, 0\n[load l]\nbody = aa\n[contact c]\nbetween = a, v\n",
+                "bad.cfg:3: [solid a] lacks `density`: reference density (kg/m^3)\n"
+                "bad.cfg:3: [solid a] lacks `poisson`: Poisson ratio nu\n"
+                "bad.cfg:5: young = 1 Mpa: `Mpa` after 1 is not a unit; did you mean `MPa`?\n"
+                "bad.cfg:6: clamp = bix 0: `bix` is not a shape; known: box X0, Y0, X1, Y1; "
+                "circle X, Y, R; polygon X, Y; ...; polyline thickness T: X, Y; ...\n"
+                "bad.cfg:9: motion = mm: there is no [motion] of that name\n"
+                "bad.cfg:10: [motion m] kind = sine needs `period`\n"
+                "bad.cfg:16: body = b: there is no [solid] of that name\n"
+                "bad.cfg:19: body = aa: there is no [solid] of that name\n"
+                "bad.cfg:21: between = v: there is no [solid] or [wall] of that name\n");
+}
+
+/* Without them, a line or a place would be at the origin. */
+static void test_a_probe_needs_its_place(void)
+{
+    refuses_all(TOP FLUID "[probe p]\nquantity = flux\npoint = 1 mm, 0\n[probe q]\n"
+                          "quantity = surface_pressure\nto = 0, 1 mm\n[probe r]\n"
+                          "quantity = level\n[probe s]\nquantity = front\n",
+                "bad.cfg:6: [probe p] lacks `to`: quantity = flux needs both ends of its line, "
+                "`point` and `to`, in metres\n"
+                "bad.cfg:9: [probe q] lacks `point`: quantity = surface_pressure needs both ends "
+                "of its line, `point` and `to`, in metres\n"
+                "bad.cfg:12: [probe r] lacks `point`: quantity = level needs the place, two "
+                "numbers, in metres\n");
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_names_are_checked_beside_wrong_values);
+    RUN_TEST(test_a_probe_needs_its_place);
+    return UNITY_END();
+}
