@@ -187,7 +187,7 @@ static int read_number(const char *option, const char *text, double low, double 
     if (end != text && *end == '\0' && *value >= low && *value <= high &&
         (!count || *value == floor(*value)))
         return 0;
-    return complain(strcmp(option, "--threads") == 0  ? "%s %s: give a whole number from 1 to 4096"
+    return complain(strcmp(option, "--threads") == 0  ? "%s %s: give a whole number from 1 to 1000000"
                     : strcmp(option, "--refine") == 0 ? "%s %s: give a whole number from 3 to 6"
                     : strcmp(option, "--ratio") == 0  ? "%s %s: give a number from 1.1 to 4"
                                                       : "%s %s: give a time in seconds, above 0",
@@ -226,7 +226,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
     } else if (strcmp(name, "--threads") == 0) {
-        if (read_number(name, word, 1, 4096, &number)) return 1;
+        if (read_number(name, word, 1, 1000000, &number)) return 1;
         o->threads = (int)number;
     } else if (strcmp(name, "--until") == 0) {
         if (read_number(name, word, 1e-300, 1e9, &number)) return 1;
@@ -262,9 +262,12 @@ static const struct option *find_option(const char *argument, const char **opera
 static int unknown_option(const char *argument)
 {
     const char *names[OPTION_COUNT];
-    for (int k = 0; k < OPTION_COUNT; k++) names[k] = options[k].name;
-    const char *near = sphfsi_nearest(argument, names, OPTION_COUNT);
-    return near ? complain("unknown option %s; the nearest one is %s", argument, near)
+    char word[64];
+    for (int k = 0; k < OPTION_COUNT; k++)
+        names[k] = options[k].name + strspn(options[k].name, "-");
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(argument, "="), argument);
+    const char *near = sphfsi_nearest(word + strspn(word, "-"), names, OPTION_COUNT);
+    return near ? complain("unknown option %s; the nearest one is --%s", argument, near)
                 : complain("unknown option %s%s", argument, "");
 }
 

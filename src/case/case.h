@@ -98,6 +98,10 @@ void case_warn(const struct reader *r, int line, const char *format, ...) SPHFSI
 
 /* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
+/* Whether all lines, keys and values of a section are valid, or it is not given. */
+bool case_sound(const struct reader *r, enum section_id id, int index);
+/* The same for all sections of a kind. */
+bool case_all_sound(const struct reader *r, enum section_id id);
 /* The problems stored so far, sorted by line, as the failure in the diag; ERR_OK: there are
  * none. */
 enum err case_report(struct reader *r) SPHFSI_CHECKED;
@@ -143,10 +147,6 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: checks that involve several values. Those whose values depend on a problem already
  * stored are left out. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
-/* Whether all lines, keys and values of a section are valid, or it is not given. */
-bool case_sound(const struct reader *r, enum section_id id, int index);
-/* The same for all sections of a kind. */
-bool case_all_sound(const struct reader *r, enum section_id id);
 /* case/check_motion.c */
 enum err case_check_motion(struct reader *r, const struct scene_motion *m) SPHFSI_CHECKED;
 /* case/open.c */

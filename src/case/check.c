@@ -156,21 +156,6 @@ static enum err check_fluids(struct reader *r)
 
 /* --- references between sections --- */
 
-bool case_sound(const struct reader *r, enum section_id id, int index)
-{
-    for (int k = 0; k < r->n_sections; k++)
-        if (r->sections[k].id == (int)id && r->sections[k].index == index)
-            return !r->sections[k].invalid;
-    return true;
-}
-
-bool case_all_sound(const struct reader *r, enum section_id id)
-{
-    for (int k = 0; k < section_count(r->scene, id); k++)
-        if (!case_sound(r, id, k)) return false;
-    return true;
-}
-
 /* The line of a key; without it, that of its section. */
 static int line_of(const struct reader *r, enum section_id id, int index, const char *key)
 {

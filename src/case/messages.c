@@ -72,6 +72,21 @@ enum err case_go_on(const struct reader *r, enum err e)
     return e == ERR_INPUT && r->n_problems > 0 && r->n_problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
 }
 
+bool case_sound(const struct reader *r, enum section_id id, int index)
+{
+    for (int k = 0; k < r->n_sections; k++)
+        if (r->sections[k].id == (int)id && r->sections[k].index == index)
+            return !r->sections[k].invalid;
+    return true;
+}
+
+bool case_all_sound(const struct reader *r, enum section_id id)
+{
+    for (int k = 0; k < section_count(r->scene, id); k++)
+        if (!case_sound(r, id, k)) return false;
+    return true;
+}
+
 /* By line; problems of the same line stay in the order in which they were found. */
 static void sort_problems(struct reader *r, int n)
 {

@@ -158,6 +158,13 @@ bool param_meant(enum section_id section, const char *word, char text[PARAM_MEAN
     return text[0] != '\0';
 }
 
+const struct param *param_called(const char *word)
+{
+    for (int k = 0; k < PARAM_COUNT; k++)
+        if (is_called(param_table[k].key, word)) return &param_table[k];
+    return NULL;
+}
+
 const char *param_retired(enum section_id section, const char *key)
 {
     static const struct {

@@ -94,6 +94,8 @@ const struct param *param_find(enum section_id section, const char *key);
  * viscosity in artificial_viscosity, or with that textbook name; false: none. */
 enum { PARAM_MEANT = 200 };
 bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT]);
+/* The first parameter of any section that other programs call by this word, or NULL. */
+const struct param *param_called(const char *word);
 
 /* Why a key of an older release has no effect any more; NULL: it is not such a key. */
 const char *param_retired(enum section_id section, const char *key);

@@ -107,6 +107,12 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     char meant[PARAM_MEANT];
     if (param_meant((enum section_id)id, e->key, meant))
         return bad_entry(r, e, "unknown key `%s` %s; did you mean %s?", e->key, place, meant);
+    const struct param *const called = param_called(e->key);
+    if (called)
+        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s` %s%s%s?", e->key, place,
+                         called->key, called->section == SECTION_top ? "at the top" : "in [",
+                         called->section == SECTION_top ? "" : section_table[called->section].word,
+                         called->section == SECTION_top ? "" : "]");
     if (near.name)
         return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
     for (int k = 0; k < PARAM_COUNT; k++)

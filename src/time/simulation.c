@@ -82,6 +82,18 @@ static void start_solid(struct simulation *s)
     }
 }
 
+/* What makes the steps of fluid and solid so different, and its remedy. */
+static const char *remedy_of_substeps(const struct simulation *s)
+{
+    const double free = solid_step_of(square(s->solid.omega_max), 0);
+    bool damped = false;
+    for (int k = 0; k < s->scene->n_solid; k++) damped |= s->scene->solid[k].damping_time > 0;
+    if (s->scene->numerics.fixed_step > 0) return "reduce fixed_step, or leave it out";
+    if (damped && s->solid.stable_step < 0.5 * free)
+        return "reduce the damping_time of the [solid]";
+    return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
+}
+
 /* Sub-steps help where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
@@ -91,8 +103,8 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
         return diag_fail(
             d, ERR_INPUT,
             "the solid's stable step of %.3g s needs %.3g sub-steps per fluid step, more than the "
-            "limit of %d; lower its young, or raise its density or the fluid's sound_speed",
-            s->dt_solid, ratio, SUBSTEPS_MOST);
+            "limit of %d; %s",
+            s->dt_solid, ratio, SUBSTEPS_MOST, remedy_of_substeps(s));
     const int wish = s->scene->numerics.multirate;
     const bool binds = s->dt_solid < timestep_fluid_limit(s);
     if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) s->effects |= FX_MULTIRATE;

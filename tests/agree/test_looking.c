@@ -7,6 +7,7 @@
 #include "geometry/load.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void setUp(void) {}
@@ -85,24 +86,35 @@ static void test_walls_forget_the_fluid(void)
     rig_close(&rig);
 }
 
-/* A step of the solid that would go a million times into the fluid's is refused, not counted in an int. */
-static void test_absurd_ratio_of_steps_is_refused(void)
+/* A step of the solid that would go thousands of times into the fluid's is refused, not counted in an int.
+ * The remedy names what causes it. */
+static void refuses_ratio(const char *young, const char *more, const char *remedy)
 {
-    static const char plate[] =
-        "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\n"
-        "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
-        "[solid plate]\nshape = box 0, -0.04, 0.2, 0\nclamp = box 0, -0.04, 0.02, 0\n"
-        "density = 1000\nyoung = 1e15 Pa\npoisson = 0.3\n";
+    char text[600];
+    snprintf(text, sizeof text,
+             "dp = 1 cm\nend_time = 1\ngravity = 0, -9.81 m/s^2\n"
+             "[fluid water]\nshape = box 0, 0, 0.2, 0.1\nsound_speed = 20\n"
+             "[solid plate]\nshape = box 0, -0.04, 0.2, 0\nclamp = box 0, -0.04, 0.02, 0\n"
+             "density = 1000\npoisson = 0.3\nyoung = %s\n%s",
+             young, more);
     struct scene scene;
     struct simulation sim;
     struct diag d = {0};
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, plate, "plate.cfg", 0, NULL, &d),
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, "plate.cfg", 0, NULL, &d),
                                   d.text);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, simulation_create(&sim, &scene, &d));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text,
                                         "sub-steps per fluid step, more than the limit of 10000"),
                                  d.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(d.text, remedy), d.text);
     scene_free(&scene);
+}
+
+static void test_absurd_ratio_of_steps_is_refused(void)
+{
+    refuses_ratio("1e15 Pa", "", "; reduce young of the [solid]");
+    refuses_ratio("1 MPa", "[numerics]\nfixed_step = 10\n", "; reduce fixed_step");
+    refuses_ratio("1 MPa", "damping_time = 10\n", "; reduce the damping_time");
 }
 
 int main(void)

@@ -66,7 +66,8 @@ static const char *companion(const struct param *p)
         return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
     if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
-    if (is(p, "probe", "point") || is(p, "probe", "to")) return "probe more.quantity=flux";
+    if (is(p, "probe", "point")) return "probe more.quantity=pressure";
+    if (is(p, "probe", "to")) return "probe more.quantity=flux";
     if (is(p, "probe", "on")) return "probe more.quantity=pressure";
     if (is(p, "probe", "average")) return "probe more.interval=0.01";
     if (is(p, "motion", "poly_x") || is(p, "motion", "poly_y"))

@@ -56,10 +56,30 @@ static void test_a_probe_needs_its_place(void)
                 "numbers, in metres\n");
 }
 
+/* What other programs call a key of another section; it is not `dp`. */
+static void test_a_key_by_the_name_of_other_programs(void)
+{
+    refuses_all("dp = 1 mm\nend_time = 1 s\ndt = 1 us\nrho = 1000\n" FLUID,
+                "bad.cfg:3: unknown key `dt` at the top of the file; did you mean `fixed_step` in "
+                "[numerics]?\n"
+                "bad.cfg:4: unknown key `rho` at the top of the file; did you mean `density` in "
+                "[fluid]?\n");
+}
+
+static void test_a_folder_is_no_file(void)
+{
+    struct scene s;
+    struct diag d = {0};
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load(&s, ".", 0, NULL, &d));
+    TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_names_are_checked_beside_wrong_values);
     RUN_TEST(test_a_probe_needs_its_place);
+    RUN_TEST(test_a_key_by_the_name_of_other_programs);
+    RUN_TEST(test_a_folder_is_no_file);
     return UNITY_END();
 }

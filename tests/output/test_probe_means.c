@@ -127,8 +127,9 @@ static void mean_after_a_restart(void)
 static void refused_probes(void)
 {
     static const char *const wrong[][2] = {
-        {"[probe Z]\nquantity = pressure\non = gat\n", "on = gat: there is no [solid] or [wall]"},
-        {"[probe Z]\nquantity = flux\non = gate\nto = 1, 0\n",
+        {"[probe Z]\nquantity = pressure\npoint = 0, 0\non = gat\n",
+         "on = gat: there is no [solid] or [wall]"},
+        {"[probe Z]\nquantity = flux\non = gate\npoint = 0, 0\nto = 1, 0\n",
          "only for pressure, level and velocity"},
         {"[probe Z]\nbody = gate\npoint = 0.13, 0\naverage = 1 ms\n", "`interval` to 0.001 s"},
         {"[probe Z]\nquantity = force\nbody = gate, tan\n", "body = tan: there is no"},
