@@ -187,7 +187,8 @@ static int read_number(const char *option, const char *text, double low, double 
     if (end != text && *end == '\0' && *value >= low && *value <= high &&
         (!count || *value == floor(*value)))
         return 0;
-    return complain(strcmp(option, "--threads") == 0  ? "%s %s: give a whole number from 1 to 1000000"
+    return complain(strcmp(option, "--threads") == 0
+                        ? "%s %s: give a whole number from 1 to 1000000"
                     : strcmp(option, "--refine") == 0 ? "%s %s: give a whole number from 3 to 6"
                     : strcmp(option, "--ratio") == 0  ? "%s %s: give a number from 1.1 to 4"
                                                       : "%s %s: give a time in seconds, above 0",

@@ -459,7 +459,8 @@ static void test_bad_input(void)
     BLOCKS "shape = box 0.05, 0, 0.09, 0.04\n[wall w]\nshape = box 0, -0.1, 0.1, -0.05\n" \
            "[wall v]\nshape = box 0.2, -0.1, 0.3, -0.05\n[contact c]\n"
     rig_refuses(TWO "between = a\n", "two names");
-    rig_refuses(TWO "between = a, bb\n", "between = bb: there is no [solid] or [wall] of that name");
+    rig_refuses(TWO "between = a, bb\n",
+                "between = bb: there is no [solid] or [wall] of that name");
     rig_refuses(TWO "between = w, v\n", "one of the two must be a [solid]");
     rig_refuses(TWO "stiffness = 0\n", "stiffness");
     rig_refuses("dp = 1 cm\nend_time = 1\n[fluid f]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 10\n"
