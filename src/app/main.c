@@ -347,12 +347,16 @@ static enum sphfsi_status carry_out(struct command *c)
     return SPHFSI_OK;
 }
 
-/* Whether all of a report has reached the standard output. */
-static int report_is_out(void)
+/* Whether all of the output has reached the standard output. The results of a run are in its files, so what
+ * it lost is only said. */
+static int output_is_out(int run)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return 1;
-    fprintf(stderr,
-            "sphfsi: the output is not complete, because the standard output cannot be written\n");
+    fputs(
+        run ? "warning: lines of this run are lost, because the standard output cannot be written; "
+              "summary.json holds its results\n"
+            : "sphfsi: the output is not complete, because the standard output cannot be written\n",
+        stderr);
     return 0;
 }
 
@@ -374,8 +378,8 @@ static int execute(struct command *c)
     const enum sphfsi_status status = carry_out(c);
     clear_line(c);
     if (status) print_errors();
-    const int report = c->mode != RUN && c->mode != REFINE;
-    if (!status && report && !report_is_out()) return 2;
+    const int run = c->mode == RUN || c->mode == REFINE;
+    if (!status && !output_is_out(run) && !run) return 2;
     return sphfsi_exit_status(status, requests.stop);
 }
 

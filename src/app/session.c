@@ -2,6 +2,7 @@
 #include "app/session.h"
 #include "base/threads.h"
 #include "geometry/load.h"
+#include "time/timestep.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -187,18 +188,39 @@ enum err session_read(struct session *x, const struct sphfsi_options *o, struct 
     return e;
 }
 
+void session_close(struct session *x)
+{
+    simulation_free(&x->simulation);
+    scene_free(&x->scene);
+}
+
+/* The same limit for steps that the program chooses. */
+static enum err check_steps(const struct session *x, struct diag *d)
+{
+    const struct simulation *const s = &x->simulation;
+    const double step = s->effects & FX_FLUID ? timestep_fluid_limit(s) : s->dt_solid;
+    const double end = x->scene.top.end_time, n = end / step;
+    if (n <= most_counts) return ERR_OK;
+    char place[LOCATION_TEXT];
+    const struct scene_given *const given = scene_given(&x->scene, SECTION_top, 0, "end_time");
+    scene_location(&x->scene, given ? given->line : 1, place);
+    return diag_fail(d, ERR_INPUT,
+                     "%s: the run needs about %.3g steps of %.3g s until end_time = %g s, more "
+                     "than the limit of %g; choose at most %.3g s",
+                     place, n, step, end, most_counts, most_counts * step);
+}
+
 enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
     const int offered = thread_count();
     TRY(session_read(x, o, d));
     thread_use(session_threads(&x->scene, o, offered, d));
     const enum err e = simulation_create(&x->simulation, &x->scene, d);
-    if (e) scene_free(&x->scene);
-    return e;
-}
-
-void session_close(struct session *x)
-{
-    simulation_free(&x->simulation);
-    scene_free(&x->scene);
+    if (e) {
+        scene_free(&x->scene);
+        return e;
+    }
+    const enum err counted = check_steps(x, d);
+    if (counted) session_close(x);
+    return counted;
 }

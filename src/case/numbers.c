@@ -205,7 +205,9 @@ enum err case_bad_expression(struct reader *r, const struct entry *e, const char
 {
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
     char unit[300];
-    return bad_value(r, e, "%s%s", why, unit_left_out(r, unit));
+    const bool slashes = strstr(e->value, "//") && !strstr(why, "comment");
+    return bad_value(r, e, "%s%s%s", why, unit_left_out(r, unit),
+                     slashes ? "; `//` begins no comment here, # does" : "");
 }
 
 enum err case_all_constants(struct reader *r)

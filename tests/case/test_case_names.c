@@ -66,6 +66,14 @@ static void test_a_key_by_the_name_of_other_programs(void)
                 "[fluid]?\n");
 }
 
+/* A wrong unit does not hide the wrong comment behind it. */
+static void test_a_comment_of_other_languages_behind_a_wrong_unit(void)
+{
+    refuses_all("dp = 2 kpa // two\nend_time = 1 s\n" FLUID,
+                "bad.cfg:1: dp = 2 kpa // two: `kpa` after 2 is not a unit; did you mean `kPa`?; "
+                "`//` begins no comment here, # does\n");
+}
+
 static void test_a_folder_is_no_file(void)
 {
     struct scene s;
@@ -80,6 +88,7 @@ int main(void)
     RUN_TEST(test_names_are_checked_beside_wrong_values);
     RUN_TEST(test_a_probe_needs_its_place);
     RUN_TEST(test_a_key_by_the_name_of_other_programs);
+    RUN_TEST(test_a_comment_of_other_languages_behind_a_wrong_unit);
     RUN_TEST(test_a_folder_is_no_file);
     return UNITY_END();
 }

@@ -76,6 +76,9 @@ if [ -c /dev/full ]; then
         "$sphfsi" $report >/dev/full 2>err
         [ $? = 2 ] && [ "$(wc -l <err)" = 1 ] || fail "$report to a full device: $(cat err)"
     done
+    "$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out unsaid >/dev/full 2>err ||
+        fail "a run whose messages cannot be written"
+    grep -q "lines of this run are lost" err || fail "messages of a run to a full device: $(cat err)"
 fi
 
 # Closed standard streams: no result file takes their numbers, so no message lands in one.

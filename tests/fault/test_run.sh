@@ -11,9 +11,9 @@ expect 1 'no case is given'
 expect 1 'nearest one is --threads' "$case" --thread 2
 expect 1 'unknown option -x' "$case" -x
 expect 1 '--out needs a value' "$case" --out
-expect 1 'from 1 to 4096' "$case" --threads 0
-expect 1 'from 1 to 4096' "$case" --threads many
-expect 1 'a whole number from 1 to 4096' "$case" --threads 4.5
+expect 1 'from 1 to 1000000' "$case" --threads 0
+expect 1 'from 1 to 1000000' "$case" --threads many
+expect 1 'a whole number from 1 to 1000000' "$case" --threads 4.5
 expect 1 'above 0' "$case" --until -1
 expect 1 'key=value' "$case" --set dp
 expect 1 'takes no value' "$case" --quiet=yes
@@ -27,6 +27,9 @@ expect 1 'ledger_interval = 1e-12 s gives 2e+10 rows' "$case" --out "$dir/none" 
     --set output.ledger_interval=1e-12
 expect 1 'ledger_interval = 1e-11 s gives 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
     --set output.ledger_interval=1e-11 --until 1000
+expect 1 'the run needs about 3.* steps of .* until end_time = 1e.09 s, more than the limit of 1e.10' \
+    "$case" --out "$dir/none" --set end_time=1e9 --set output.ledger_interval=1 \
+    --set output.probe_interval=1 --set output.snapshot_interval=1e6
 [ ! -e "$dir/none" ] || fail "wrong input made a folder"
 
 # --- explaining writes nothing ---
