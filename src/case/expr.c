@@ -468,6 +468,36 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
     return ERR_OK;
 }
 
+enum err expr_room(struct expr **room, const struct expr *e, struct arena *a, struct diag *d)
+{
+    *room = arena_alloc(a, 1, sizeof **room, "expression", d);
+    if (!*room) return ERR_MEMORY;
+    **room = *e;
+    (*room)->op = arena_alloc(a, (size_t)e->n, sizeof *e->op, "expression", d);
+    return (*room)->op ? ERR_OK : ERR_MEMORY;
+}
+
+void expr_fix_time(struct expr *fixed, const struct expr *e, double t)
+{
+    struct op *const op = fixed->op;
+    int n = 0;
+    for (int k = 0; k < e->n; k++) {
+        const enum op_code code = e->op[k].code;
+        const bool leaf = code == OP_NUMBER || code == OP_X || code == OP_Y || code == OP_T;
+        const int operands = leaf ? 0 : is_binary(code) ? 2 : 1;
+        bool number = operands > 0;
+        for (int j = 1; j <= operands; j++) number &= op[n - j].code == OP_NUMBER;
+        if (!number) {
+            op[n++] = code == OP_T ? (struct op){OP_NUMBER, t} : e->op[k];
+            continue;
+        }
+        n -= operands - 1;
+        op[n - 1].value = operands == 2 ? run_binary(code, op[n - 1].value, op[n].value)
+                                        : run_unary(code, op[n - 1].value);
+    }
+    fixed->n = n;
+}
+
 bool expr_varies(const struct expr *e)
 {
     for (int k = 0; k < e->n; k++)

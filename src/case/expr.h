@@ -84,6 +84,12 @@ bool expr_jumps(const struct expr *e, double from, double to, double size, doubl
 /* Whether the value of one in x, y and t depends on t. */
 bool expr_varies(const struct expr *e);
 
+/* Memory for an expression that has no more operations than e. */
+enum err expr_room(struct expr **room, const struct expr *e, struct arena *a, struct diag *d)
+    SPHFSI_CHECKED;
+/* What remains of e at a time: parts without x and y become numbers, by the same operations. */
+void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
+
 /* Whether it is a constant number. */
 bool expr_is_number(const struct expr *e);
 

@@ -38,9 +38,10 @@ struct scene_open scene_open_at(const struct scene *s, int k)
 
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2])
 {
+    const double along = o->speed ? o->sense * scene_expr_at_time(o->speed, x[0], x[1], time) : 0;
     for (int c = 0; c < 2; c++)
-        v[c] = o->speed ? o->sense * scene_expr_at_time(o->speed, x[0], x[1], time) * o->inward[c]
-                        : scene_expr_at_time(o->velocity[c], x[0], x[1], time);
+        v[c] =
+            o->speed ? along * o->inward[c] : scene_expr_at_time(o->velocity[c], x[0], x[1], time);
 }
 
 /* --- checks --- */

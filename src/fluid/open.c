@@ -2,6 +2,7 @@
 #include "fluid/open.h"
 
 #include "base/hash.h"
+#include "case/expr.h"
 #include "fluid/eos.h"
 #include "particles/kernel.h"
 
@@ -21,6 +22,37 @@ int64_t open_places(const struct scene *s)
     return n + n / 8 + (int64_t)min2(1e9, max2(0, places - taken));
 }
 
+/* Boundary n at each time, with memory for what remains of its expressions then. */
+static enum err copy_boundary(struct open *o, int n, struct arena *a, struct diag *d)
+{
+    const struct scene_open *const b = &o->boundary[n];
+    for (int m = 0; m < OPEN_TIMES; m++) {
+        struct open_moment *const at = &o->at[n][m];
+        *at = (struct open_moment){.boundary = *b};
+        if (b->speed) TRY(expr_room(&at->speed, b->speed, a, d));
+        for (int c = 0; c < 2 && b->velocity[c]; c++)
+            TRY(expr_room(&at->velocity[c], b->velocity[c], a, d));
+        at->boundary.speed = at->speed;
+        for (int c = 0; c < 2; c++) at->boundary.velocity[c] = at->velocity[c];
+    }
+    return ERR_OK;
+}
+
+/* Functions of time alone are then evaluated once a step instead of once a particle. */
+static void fix_times(struct open *o, const struct fluid_constants *k, double time)
+{
+    const double before = max2(0, time - 0.5 * k->h / k->c0);
+    const double t[OPEN_TIMES] = {before, before + k->h / k->c0, time};
+    for (int n = 0; n < o->n; n++)
+        for (int m = 0; m < OPEN_TIMES; m++) {
+            const struct scene_open *const b = &o->boundary[n];
+            struct open_moment *const at = &o->at[n][m];
+            if (b->speed) expr_fix_time(at->speed, b->speed, t[m]);
+            for (int c = 0; c < 2 && b->velocity[c]; c++)
+                expr_fix_time(at->velocity[c], b->velocity[c], t[m]);
+        }
+}
+
 enum err open_create(struct open *o, struct arena *a, const struct scene *s, int64_t next_id,
                      struct diag *d)
 {
@@ -32,6 +64,7 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
     o->next_id = next_id;
     o->capacity = 4 * members + 64;
     o->boundary = arena_alloc(a, n, sizeof *o->boundary, "open boundaries", d);
+    o->at = arena_alloc(a, n, sizeof *o->at, "open boundaries", d);
     o->sum = arena_alloc(a, n, sizeof *o->sum, "open boundaries", d);
     o->count = arena_alloc(a, n, sizeof *o->count, "open boundaries", d);
     o->rate = arena_alloc(a, n, sizeof *o->rate, "open boundaries", d);
@@ -41,11 +74,12 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
     o->mirror_u = arena_alloc(a, most, sizeof *o->mirror_u, "open boundaries", d);
     o->mirror_v = arena_alloc(a, most, sizeof *o->mirror_v, "open boundaries", d);
     o->flow = arena_alloc(a, most, sizeof *o->flow, "open boundaries", d);
-    if (!o->flow || !o->boundary || !o->sum || !o->count || !o->rate || !o->member ||
+    if (!o->flow || !o->boundary || !o->at || !o->sum || !o->count || !o->rate || !o->member ||
         !o->mirror_p || !o->mirror_u || !o->mirror_v)
         return ERR_MEMORY;
     for (int k = 0; k < o->n; k++) {
         o->boundary[k] = scene_open_at(s, k);
+        TRY(copy_boundary(o, k, a, d));
         o->sum[k][OPEN_MEAN_FLOW] = (double)NAN;
     }
     return ERR_OK;
@@ -128,13 +162,14 @@ static double linear_value(const struct across *s, double mean, double with_x, d
 /* --- fields of the buffers --- */
 
 /* Rate of the given velocity at a point of the line, over the time in which sound crosses h. */
-static void given_acceleration(const struct scene_open *b, const struct fluid_constants *k,
-                               const double x[2], double time, double a[2])
+static void given_acceleration(const struct open_moment at[OPEN_TIMES],
+                               const struct fluid_constants *k, const double x[2], double time,
+                               double a[2])
 {
     const double from = max2(0, time - 0.5 * k->h / k->c0), to = from + k->h / k->c0;
     double v[2];
-    scene_open_velocity(b, x, from, v);
-    scene_open_velocity(b, x, to, a);
+    scene_open_velocity(&at[OPEN_BEFORE].boundary, x, from, v);
+    scene_open_velocity(&at[OPEN_AFTER].boundary, x, to, a);
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (to - from);
 }
 
@@ -167,7 +202,7 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
         o->mirror_v[m] = normal * b->inward[1];
         return;
     }
-    given_acceleration(b, k, foot, time, a);
+    given_acceleration(o->at[p->open[i] - 1], k, foot, time, a);
     const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
     o->mirror_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
                                        (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
@@ -260,7 +295,7 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
             given += k->rho0 * k->c0 * (o->rate[number].flow - o->sum[number][OPEN_MEAN_FLOW]);
         pressure = odd_pressure(b, given, pressure);
     } else {
-        scene_open_velocity(b, foot, time, v);
+        scene_open_velocity(&o->at[number][OPEN_NOW].boundary, foot, time, v);
     }
     p->vx[i] = v[0];
     p->vy[i] = v[1];
@@ -279,6 +314,7 @@ static void set_particle(struct open *o, int64_t m, const struct fluid_constants
 void open_set(struct open *o, const struct fluid_constants *k, struct particles *p,
               const struct cells *c, double time, bool book)
 {
+    fix_times(o, k, time);
 #pragma omp parallel for schedule(static)
     for (int64_t m = 0; m < o->n_members; m++) see(o, m, k, p, c, time);
     find_flow(o, k, p, c);

@@ -23,9 +23,19 @@ struct open_rate {
     double flow;     /* mean velocity out of the fluid, m/s */
 };
 
+/* Half the time in which sound crosses h before and after that of an evaluation, and that time. */
+enum open_time { OPEN_BEFORE, OPEN_AFTER, OPEN_NOW, OPEN_TIMES };
+
+/* A boundary at a time: its velocities are expressions in x and y alone. */
+struct open_moment {
+    struct scene_open boundary;
+    struct expr *speed, *velocity[2]; /* those of the boundary; NULL: not given */
+};
+
 struct open {
     int n;
     struct scene_open *boundary;
+    struct open_moment (*at)[OPEN_TIMES]; /* [n] */
     double (*sum)[OPEN_SUMS];
     int64_t (*count)[OPEN_COUNTS];
     int64_t next_id;

@@ -198,6 +198,40 @@ static void test_length_and_depth_are_bounded(void)
         "the expression has more than 1024 operations; use [constants] for parts of it", why);
 }
 
+/* With its time fixed an expression has the same bits everywhere; what has no x or y is a number. */
+static void test_at_a_fixed_time(void)
+{
+    static const char *const texts[] = {"x + y*t",
+                                        "2",
+                                        "t",
+                                        "sin(3*t)^2*x",
+                                        "1.5*y*(0.4 - y)*(1 - cos(pi*min(t/0.3, 1)))/0.04",
+                                        "max(x, t) - -abs(t - 1)*y^2 + exp(-t)/(1 + t)",
+                                        "min(t, y) + (t + (t + x))"};
+    const struct expr_names both = {NULL, find, EXPR_IN_BOTH};
+    struct arena a = {0};
+    struct diag d = {0};
+    for (size_t k = 0; k < COUNT_OF(texts); k++) {
+        struct expr *e, *fixed;
+        struct dim dim = {0};
+        const struct slice text = {texts[k], strlen(texts[k])};
+        TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, expr_compile(&e, text, &both, &dim, &a, why, &d),
+                                      why);
+        TEST_ASSERT_EQUAL_INT(ERR_OK, expr_room(&fixed, e, &a, &d));
+        for (int n = 0; n < 60; n++) {
+            const double x = 0.1 * (n % 5), y = 0.07 * (n % 7) - 0.1, t = 0.031 * n;
+            expr_fix_time(fixed, e, t);
+            TEST_ASSERT_FALSE(expr_varies(fixed));
+            const double want = scene_expr_at_time(e, x, y, t);
+            const double got = scene_expr_at_time(fixed, x, y, 1e9);
+            TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&want, &got, sizeof want, texts[k]);
+        }
+        const bool local = strchr(texts[k], 'y') || (strchr(texts[k], 'x') && k > 0);
+        TEST_ASSERT_EQUAL_INT_MESSAGE(!local, expr_is_number(fixed), texts[k]);
+    }
+    arena_free(&a);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -209,5 +243,6 @@ int main(void)
     RUN_TEST(test_what_makes_no_sense);
     RUN_TEST(test_fields);
     RUN_TEST(test_length_and_depth_are_bounded);
+    RUN_TEST(test_at_a_fixed_time);
     return UNITY_END();
 }
