@@ -225,6 +225,17 @@ static double since(double *mark)
     return now - *mark;
 }
 
+/* While rest is sought no simulated time passes. */
+static void show_search(struct run *r)
+{
+    enum { EVERY = 10 }; /* s of wall time */
+    char text[RELAX_TEXT];
+    if (since(&r->wall_progress) < EVERY) return;
+    r->wall_progress = wall_clock();
+    relax_progress(r->s, text);
+    session_say(r->options, "%s", text);
+}
+
 static void show_progress(struct run *r, bool finished)
 {
     const struct sphfsi_options *o = r->options;
@@ -265,7 +276,10 @@ static enum err between_steps(struct run *r)
         TRY(write_checkpoint(r));
         r->s->phase_seconds[PHASE_output] += wall_clock() - begin;
     }
-    show_progress(r, false);
+    if (relax_due(r->s))
+        show_search(r);
+    else
+        show_progress(r, false);
     if (!request || !request->stop) return ERR_OK;
     TRY(write_checkpoint(r));
     return diag_fail(r->diag, ERR_INTERRUPT,

@@ -99,6 +99,44 @@ static void judge(struct simulation *s, double elapsed)
     if (never || (st->relax_swings > 0 && still > 2 * st->relax_longest)) begin_run(s);
 }
 
+/* The largest distance between walls and bodies at the start, m. */
+static double extent(const struct simulation *s)
+{
+    const struct particles *const w = &s->kind[KIND_WALL], *const p = &s->kind[KIND_SOLID];
+    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+    for (int64_t i = 0; i < w->n + p->n; i++) {
+        const double x = i < w->n ? w->x[i] : p->X[i - w->n];
+        const double y = i < w->n ? w->y[i] : p->Y[i - w->n];
+        low[0] = min2(low[0], x), high[0] = max2(high[0], x);
+        low[1] = min2(low[1], y), high[1] = max2(high[1], y);
+    }
+    return sqrt(square(high[0] - low[0]) + square(high[1] - low[1]));
+}
+
+/* A body whose particles have all moved further than that will meet nothing that could hold it. */
+static enum err check_fall(const struct simulation *s, struct diag *d)
+{
+    const struct particles *const p = &s->kind[KIND_SOLID];
+    double least[SCENE_MAX_SECTIONS];
+    for (int b = 0; b < s->scene->n_solid; b++) least[b] = HUGE_VAL;
+    for (int64_t i = 0; i < p->n; i++) {
+        double *const of_body = &least[p->body[i]];
+        *of_body = min2(*of_body, square(p->ux[i]) + square(p->uy[i]));
+    }
+    for (int b = 0; b < s->scene->n_solid; b++) {
+        const struct scene_solid *const body = &s->scene->solid[b];
+        char place[LOCATION_TEXT];
+        if (!(least[b] > 0 && isfinite(least[b]) && least[b] > square(extent(s)))) continue;
+        scene_location(s->scene, body->common.line, place);
+        return diag_fail(d, ERR_GUARD,
+                         "%s: [relax]: [solid %s] has moved by %.3g m as a whole, further than the "
+                         "scene is large (%.3g m): nothing holds it, so there is no state of rest; "
+                         "give it a `clamp`, put a [wall] below it, or leave [relax] out",
+                         place, body->common.name, sqrt(least[b]), extent(s));
+    }
+    return ERR_OK;
+}
+
 enum err relax_step(struct simulation *s, struct diag *d)
 {
     enum { BATCH = 16 }; /* steps of a solid alone in a call */
@@ -115,6 +153,7 @@ enum err relax_step(struct simulation *s, struct diag *d)
     st->substeps_needed = max2(st->substeps_needed, 0);
     st->gain_since = max2(st->gain_since, 0);
     TRY(e);
+    TRY(check_fall(s, d));
     judge(s, elapsed);
     const double longest = st->relax_longest, most = s->scene->relax.limit * longest;
     if (st->relaxed || st->relax_swings == 0 || st->relax_time < most) return ERR_OK;
@@ -134,6 +173,16 @@ enum err relax_to_rest(struct simulation *s, struct diag *d)
 {
     while (relax_due(s)) TRY(relax_step(s, d));
     return ERR_OK;
+}
+
+void relax_progress(const struct simulation *s, char text[RELAX_TEXT])
+{
+    const struct state *const st = &s->state;
+    const double share = st->relax_most > 0 ? sqrt(st->relax_energy / st->relax_most) : 0;
+    snprintf(text, RELAX_TEXT,
+             "seeking rest: after %.3g s and %lld stops the speed is %.2g of its largest value, "
+             "tolerance = %g",
+             st->relax_time, (long long)st->relax_swings, share, s->scene->relax.tolerance);
 }
 
 void relax_text(const struct simulation *s, char text[RELAX_TEXT])

@@ -15,8 +15,10 @@ enum err relax_step(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 /* All steps of the search. */
 enum err relax_to_rest(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
-/* Says what was found and by which criterion. */
 enum { RELAX_TEXT = 240 };
+/* Says how far the search has come. */
+void relax_progress(const struct simulation *s, char text[RELAX_TEXT]);
+/* Says what was found and by which criterion. */
 void relax_text(const struct simulation *s, char text[RELAX_TEXT]);
 
 #endif

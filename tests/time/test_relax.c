@@ -148,6 +148,21 @@ static void test_no_rest_is_said(void)
                 "has no effect without RELAX");
 }
 
+/* A body that nothing holds is told of when it has fallen as far as the scene is large. */
+static void test_a_body_that_falls_has_no_rest(void)
+{
+    char text[RELAX_TEXT];
+    rig_open(&rig,
+             HEAD "gravity = 0, -9.81\n[solid b]\nshape = box 0, 0, 0.06, 0.04\n" BODY "[relax]\n",
+             NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "[solid b] has moved by 0.0"),
+                                 rig.diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, "nothing holds it"), rig.diag.text);
+    relax_progress(&rig.sim, text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "and 0 stops the speed is 1 of its largest"), text);
+}
+
 /* What is said of a search, and that the first velocities of the two-step scheme are those of rest: the bar
  * stays where it was found. */
 static void test_verlet_and_what_is_said(void)
@@ -187,6 +202,7 @@ int main(void)
     RUN_TEST(test_forces_are_those_at_the_start);
     RUN_TEST(test_a_search_can_be_continued);
     RUN_TEST(test_no_rest_is_said);
+    RUN_TEST(test_a_body_that_falls_has_no_rest);
     RUN_TEST(test_verlet_and_what_is_said);
     return UNITY_END();
 }
