@@ -102,6 +102,26 @@ static void warn_of_soft_bodies(struct sampler *g)
     }
 }
 
+/* Whether a free particle of a body lies beside a clamped one. */
+static bool beside_clamp(const struct scene_points *p, int64_t free, double dp)
+{
+    for (int64_t k = 0; k < p->n; k++)
+        if (p->body[k] == p->body[free] && p->clamped[k] &&
+            square(p->x[k] - p->x[free]) + square(p->y[k] - p->y[free]) < square(1.5 * dp))
+            return true;
+    return false;
+}
+
+/* Whether all that a clamp leaves free is a rim of one particle. */
+static bool is_rim(const struct scene *s, int body)
+{
+    const struct scene_points *const p = &s->points[KIND_SOLID];
+    for (int64_t k = 0; k < p->n; k++)
+        if (p->body[k] == body && !p->clamped[k] && !beside_clamp(p, k, scene_solid_dp(s, body)))
+            return false;
+    return true;
+}
+
 static void warn_of_full_clamps(struct sampler *g)
 {
     const struct scene *const s = g->scene;
@@ -112,9 +132,18 @@ static void warn_of_full_clamps(struct sampler *g)
             all += p->body[k] == body;
             clamped += p->body[k] == body && p->clamped[k];
         }
-        if (all == 0 || clamped < all) continue;
+        if (all == 0 || clamped == 0 || !is_rim(s, body)) continue;
         char place[LOCATION_TEXT];
         scene_location(s, s->solid[body].common.line, place);
+        if (clamped < all) {
+            diag_warn(g->diag,
+                      "%s: `clamp` leaves only %lld of %lld particles of [solid %s] free, all of "
+                      "them beside clamped ones: they move, but the body can neither bend nor "
+                      "stretch as drawn; make the clamp smaller, or use a finer dp",
+                      place, (long long)(all - clamped), (long long)all,
+                      s->solid[body].common.name);
+            continue;
+        }
         diag_warn(g->diag,
                   "%s: `clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
                   "the clamp smaller, or use a [wall], which is faster",

@@ -175,6 +175,14 @@ static void test_a_clamp_that_covers_the_body(void)
     read(text);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "covers all 80 particles of [solid post]"),
                                  warnings);
+    /* All but the four particles of the upper row, and all but those of the upper two. */
+    snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.095\n", post);
+    read(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "leaves only 4 of 80 particles of [solid post]"),
+                                 warnings);
+    snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.09\n", post);
+    read(text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "leaves only"), warnings);
     snprintf(text, sizeof text, "%sclamp = box 0, 0, 0.02, 0.02\n", post);
     read(text);
     TEST_ASSERT_EQUAL_STRING("", warnings);
