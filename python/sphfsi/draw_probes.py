@@ -121,7 +121,10 @@ def column_words(column, size):
     """Words for the axis, factor and name of the unit of a column <probe>_<quantity>_<unit>."""
     parts = re.fullmatch(rf"(.+?)_({'|'.join(WORDS)})_([^_]+(?:_per_[^_]+)?)", column)
     scale, unit = scaled_unit(parts[3] if parts else "", size)
-    words = f"{parts[1]} {WORDS[parts[2]]}" if parts else column
+    words = column
+    if parts:  # a probe that is named after its quantity says it once
+        named = parts[1].lower().replace("_", " ").endswith(WORDS[parts[2]].lower())
+        words = parts[1] if named else f"{parts[1]} {WORDS[parts[2]]}"
     unit = UNITS.get(unit or "SI", unit)
     return f"{words} ({unit})", scale, unit
 

@@ -243,6 +243,8 @@ def test_rates(tmp):
     from sphfsi.draw_probes import column_words
     assert column_words("a_b_mz_Nm_per_m", 1.0) == ("a_b moment (N m/m)", 1.0, "N m/m")
     assert column_words("gauge_level_m", 0.1)[0] == "gauge water level (mm)"
+    assert column_words("front_front_m", 1.0)[0] == "front (m)"
+    assert column_words("far_front_front_m", 1.0)[0] == "far_front (m)"
     assert column_words("Q_q_m2_per_s", 1.0)[2] == "m²/s"
 
 
