@@ -286,7 +286,7 @@ enum err forecast_open(struct session *x, const struct sphfsi_options *o, int *t
 {
     struct sphfsi_options one = *o;
     const int offered = thread_count();
-    if (o->threads >= 0 && o->threads <= 1000000) one.threads = 1;
+    if (o->threads >= 0) one.threads = 1;
     TRY(session_open(x, &one, d));
     *threads = session_threads(&x->scene, o, offered, d);
     return ERR_OK;

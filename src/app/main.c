@@ -3,6 +3,7 @@
 #include "sphfsi.h"
 
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -188,7 +189,7 @@ static int read_number(const char *option, const char *text, double low, double 
         (!count || *value == floor(*value)))
         return 0;
     return complain(strcmp(option, "--threads") == 0
-                        ? "%s %s: give a whole number from 1 to 1000000"
+                        ? "%s %s: give a whole number from 1 to 2147483647"
                     : strcmp(option, "--refine") == 0 ? "%s %s: give a whole number from 3 to 6"
                     : strcmp(option, "--ratio") == 0  ? "%s %s: give a number from 1.1 to 4"
                                                       : "%s %s: give a time in seconds, above 0",
@@ -227,7 +228,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
     } else if (strcmp(name, "--threads") == 0) {
-        if (read_number(name, word, 1, 1000000, &number)) return 1;
+        if (read_number(name, word, 1, INT_MAX, &number)) return 1;
         o->threads = (int)number;
     } else if (strcmp(name, "--until") == 0) {
         if (read_number(name, word, 1e-300, 1e9, &number)) return 1;
@@ -268,8 +269,10 @@ static int unknown_option(const char *argument)
         names[k] = options[k].name + strspn(options[k].name, "-");
     snprintf(word, sizeof word, "%.*s", (int)strcspn(argument, "="), argument);
     const char *near = sphfsi_nearest(word + strspn(word, "-"), names, OPTION_COUNT);
-    return near ? complain("unknown option %s; the nearest one is --%s", argument, near)
-                : complain("unknown option %s%s", argument, "");
+    for (int k = 0; near && k < OPTION_COUNT; k++)
+        if (names[k] == near)
+            return complain("unknown option %s; the nearest one is %s", argument, options[k].name);
+    return complain("unknown option %s%s", argument, "");
 }
 
 /* Whether the word after an option with an optional operand is its operand. After --restart it is the

@@ -111,10 +111,9 @@ static enum err check_options(const struct sphfsi_options *o, struct diag *d)
 {
     if (!o->case_path && !o->case_text)
         return diag_fail(d, ERR_INPUT, "options: set case_path or case_text");
-    if (o->threads < 0 || o->threads > 1000000)
+    if (o->threads < 0)
         return diag_fail(d, ERR_INPUT,
-                         "threads = %d: use 1 to 1000000, or 0 for as many as are useful",
-                         o->threads);
+                         "threads = %d: use 1 or more, or 0 for as many as are useful", o->threads);
     if (!(o->until >= 0 && o->until <= 1e9))
         return diag_fail(d, ERR_INPUT, "until = %g must be above 0 and at most 1e9 seconds",
                          o->until);

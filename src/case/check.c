@@ -397,6 +397,26 @@ static enum err check_solid_h(struct reader *r)
                     value);
 }
 
+/* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
+static void warn_of_sliding(struct reader *r)
+{
+    const struct scene *const s = r->scene;
+    if (s->numerics.sides != SIDES_ONE || s->n_fluid == 0) return;
+    for (int k = 0; k < s->n_solid + s->n_wall; k++) {
+        const bool solid = k < s->n_solid;
+        const struct scene_section_common *const c =
+            solid ? &s->solid[k].common : &s->wall[k - s->n_solid].common;
+        const int slip = solid ? s->solid[k].slip : s->wall[k - s->n_solid].slip;
+        const bool moves = solid || *s->wall[k - s->n_solid].motion;
+        if (slip != SLIP_FREE || !moves) continue;
+        case_warn(r, line_of(r, SECTION_numerics, 0, "sides"),
+                  "sides = one drags the fluid that slides along [%s %s], as if the body were "
+                  "larger by a spacing all round: the added mass of a cylinder of 10 spacings is "
+                  "40 %% too large; use sides = both, or slip = none",
+                  solid ? "solid" : "wall", c->name);
+    }
+}
+
 /* What sections say of each other, for each that is valid itself. */
 static enum err check_sections(struct reader *r)
 {
@@ -437,6 +457,7 @@ enum err case_check(struct reader *r)
     if (case_sound(r, SECTION_top, 0)) TRY(case_go_on(r, check_gravity(r)));
     if (valid) TRY(case_go_on(r, check_relax(r)));
     if (valid) TRY(case_go_on(r, check_fluids(r)));
+    if (valid) warn_of_sliding(r);
     TRY(check_sections(r));
     return valid ? case_check_effects(r) : ERR_OK;
 }

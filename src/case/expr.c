@@ -468,13 +468,15 @@ enum err expr_compile(struct expr **result, struct slice text, const struct expr
     return ERR_OK;
 }
 
-enum err expr_room(struct expr **room, const struct expr *e, struct arena *a, struct diag *d)
+enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, struct diag *d)
 {
-    *room = arena_alloc(a, 1, sizeof **room, "expression", d);
-    if (!*room) return ERR_MEMORY;
-    **room = *e;
-    (*room)->op = arena_alloc(a, (size_t)e->n, sizeof *e->op, "expression", d);
-    return (*room)->op ? ERR_OK : ERR_MEMORY;
+    *copy = arena_alloc(a, 1, sizeof **copy, "expression", d);
+    if (!*copy) return ERR_MEMORY;
+    **copy = *e;
+    (*copy)->op = arena_alloc(a, (size_t)e->n, sizeof *e->op, "expression", d);
+    if (!(*copy)->op) return ERR_MEMORY;
+    memcpy((*copy)->op, e->op, (size_t)e->n * sizeof *e->op);
+    return ERR_OK;
 }
 
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t)

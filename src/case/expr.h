@@ -84,10 +84,11 @@ bool expr_jumps(const struct expr *e, double from, double to, double size, doubl
 /* Whether the value of one in x, y and t depends on t. */
 bool expr_varies(const struct expr *e);
 
-/* Memory for an expression that has no more operations than e. */
-enum err expr_room(struct expr **room, const struct expr *e, struct arena *a, struct diag *d)
+/* A copy with operations of its own. */
+enum err expr_copy(struct expr **copy, const struct expr *e, struct arena *a, struct diag *d)
     SPHFSI_CHECKED;
-/* What remains of e at a time: parts without x and y become numbers, by the same operations. */
+/* What is left of e at a time, into a copy of it: parts without x and y become numbers, by the same
+ * operations. */
 void expr_fix_time(struct expr *fixed, const struct expr *e, double t);
 
 /* Whether it is a constant number. */

@@ -22,27 +22,36 @@ int64_t open_places(const struct scene *s)
     return n + n / 8 + (int64_t)min2(1e9, max2(0, places - taken));
 }
 
-/* Boundary n at each time, with memory for what remains of its expressions then. */
+/* Boundary n at each time, with expressions of its own. */
 static enum err copy_boundary(struct open *o, int n, struct arena *a, struct diag *d)
 {
     const struct scene_open *const b = &o->boundary[n];
     for (int m = 0; m < OPEN_TIMES; m++) {
         struct open_moment *const at = &o->at[n][m];
         *at = (struct open_moment){.boundary = *b};
-        if (b->speed) TRY(expr_room(&at->speed, b->speed, a, d));
+        if (b->speed) TRY(expr_copy(&at->speed, b->speed, a, d));
         for (int c = 0; c < 2 && b->velocity[c]; c++)
-            TRY(expr_room(&at->velocity[c], b->velocity[c], a, d));
+            TRY(expr_copy(&at->velocity[c], b->velocity[c], a, d));
         at->boundary.speed = at->speed;
         for (int c = 0; c < 2; c++) at->boundary.velocity[c] = at->velocity[c];
     }
     return ERR_OK;
 }
 
+/* The times at which an evaluation takes the given velocities. Their rate is that over the time in which
+ * sound crosses h. */
+static void find_times(const struct fluid_constants *k, double time, double t[OPEN_TIMES])
+{
+    t[OPEN_BEFORE] = max2(0, time - 0.5 * k->h / k->c0);
+    t[OPEN_AFTER] = t[OPEN_BEFORE] + k->h / k->c0;
+    t[OPEN_NOW] = time;
+}
+
 /* Functions of time alone are then evaluated once a step instead of once a particle. */
 static void fix_times(struct open *o, const struct fluid_constants *k, double time)
 {
-    const double before = max2(0, time - 0.5 * k->h / k->c0);
-    const double t[OPEN_TIMES] = {before, before + k->h / k->c0, time};
+    double t[OPEN_TIMES];
+    find_times(k, time, t);
     for (int n = 0; n < o->n; n++)
         for (int m = 0; m < OPEN_TIMES; m++) {
             const struct scene_open *const b = &o->boundary[n];
@@ -166,11 +175,11 @@ static void given_acceleration(const struct open_moment at[OPEN_TIMES],
                                const struct fluid_constants *k, const double x[2], double time,
                                double a[2])
 {
-    const double from = max2(0, time - 0.5 * k->h / k->c0), to = from + k->h / k->c0;
-    double v[2];
-    scene_open_velocity(&at[OPEN_BEFORE].boundary, x, from, v);
-    scene_open_velocity(&at[OPEN_AFTER].boundary, x, to, a);
-    for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (to - from);
+    double t[OPEN_TIMES], v[2];
+    find_times(k, time, t);
+    scene_open_velocity(&at[OPEN_BEFORE].boundary, x, t[OPEN_BEFORE], v);
+    scene_open_velocity(&at[OPEN_AFTER].boundary, x, t[OPEN_AFTER], a);
+    for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (t[OPEN_AFTER] - t[OPEN_BEFORE]);
 }
 
 /* A buffer particle's fields from the fluid at its mirror image in the line: pressure and velocity

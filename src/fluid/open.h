@@ -23,7 +23,7 @@ struct open_rate {
     double flow;     /* mean velocity out of the fluid, m/s */
 };
 
-/* Half the time in which sound crosses h before and after that of an evaluation, and that time. */
+/* Before, after and at the time of an evaluation. */
 enum open_time { OPEN_BEFORE, OPEN_AFTER, OPEN_NOW, OPEN_TIMES };
 
 /* A boundary at a time: its velocities are expressions in x and y alone. */

@@ -95,7 +95,8 @@ static double mean_gravity(const struct scene *s)
     return sum / TIMES;
 }
 
-/* Where gravity varies, a moment of upward gravity is no doubt: a tank may be shaken. */
+/* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank may be
+ * shaken. */
 static void warn_of_upward_gravity(struct sampler *g, const struct scene_fluid *fluid)
 {
     char place[LOCATION_TEXT];

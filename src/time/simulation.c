@@ -88,7 +88,8 @@ static const char *remedy_of_substeps(const struct simulation *s)
     const double free = solid_step_of(square(s->solid.omega_max), 0);
     bool damped = false;
     for (int k = 0; k < s->scene->n_solid; k++) damped |= s->scene->solid[k].damping_time > 0;
-    if (s->scene->numerics.fixed_step > 0) return "reduce fixed_step, or leave it out";
+    const double sound = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    if (s->scene->numerics.fixed_step > sound) return "reduce fixed_step, or leave it out";
     if (damped && s->solid.stable_step < 0.5 * free)
         return "reduce the damping_time of the [solid]";
     return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";

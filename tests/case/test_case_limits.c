@@ -129,6 +129,24 @@ static void test_shifting_that_goes_wrong_is_warned_of(void)
     TEST_ASSERT_NULL(strstr(warned, "with gravity"));
 }
 
+static void test_sliding_along_one_side_is_warned_of(void)
+{
+    const char *const warning = "sides = one drags the fluid that slides along [solid a]";
+    const char *const body = TOP
+        "[numerics]\nsides = one\n" WATER
+        "laminar_viscosity = 1e-3\n[solid a]\nshape = box 30 mm, 0, 50 mm, 10 mm\ndensity = 1100\n"
+        "young = 1e5\npoisson = 0.3\nslip = %s\n";
+    char text[1024];
+    snprintf(text, sizeof text, body, "free");
+    takes(text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warned, warning), warned);
+    snprintf(text, sizeof text, body, "none");
+    takes(text);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warned, warning), warned);
+    takes(TOP "[numerics]\nsides = one\n" WATER "[wall b]\nshape = box 0, -5 mm, 20 mm, 0\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warned, "sides = one"), warned);
+}
+
 /* A constant that needs 32 others, each the next one, is read; one that needs 33 is not. */
 static void test_area_of_a_polygon(void)
 {
@@ -299,6 +317,7 @@ int main(void)
     RUN_TEST(test_values_that_do_not_fit_together);
     RUN_TEST(test_gravity_at_the_end);
     RUN_TEST(test_shifting_that_goes_wrong_is_warned_of);
+    RUN_TEST(test_sliding_along_one_side_is_warned_of);
     RUN_TEST(test_area_of_a_polygon);
     RUN_TEST(test_depth_of_constants);
     RUN_TEST(test_number_of_constants);

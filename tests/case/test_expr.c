@@ -217,7 +217,7 @@ static void test_at_a_fixed_time(void)
         const struct slice text = {texts[k], strlen(texts[k])};
         TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, expr_compile(&e, text, &both, &dim, &a, why, &d),
                                       why);
-        TEST_ASSERT_EQUAL_INT(ERR_OK, expr_room(&fixed, e, &a, &d));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, expr_copy(&fixed, e, &a, &d));
         for (int n = 0; n < 60; n++) {
             const double x = 0.1 * (n % 5), y = 0.07 * (n % 7) - 0.1, t = 0.031 * n;
             expr_fix_time(fixed, e, t);

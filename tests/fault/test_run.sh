@@ -11,9 +11,9 @@ expect 1 'no case is given'
 expect 1 'nearest one is --threads' "$case" --thread 2
 expect 1 'unknown option -x' "$case" -x
 expect 1 '--out needs a value' "$case" --out
-expect 1 'from 1 to 1000000' "$case" --threads 0
-expect 1 'from 1 to 1000000' "$case" --threads many
-expect 1 'a whole number from 1 to 1000000' "$case" --threads 4.5
+expect 1 'from 1 to 2147483647' "$case" --threads 0
+expect 1 'from 1 to 2147483647' "$case" --threads many
+expect 1 'a whole number from 1 to 2147483647' "$case" --threads 4.5
 expect 1 'above 0' "$case" --until -1
 expect 1 'key=value' "$case" --set dp
 expect 1 'takes no value' "$case" --quiet=yes
