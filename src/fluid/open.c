@@ -182,9 +182,24 @@ static void given_acceleration(const struct open_moment at[OPEN_TIMES],
     for (int c = 0; c < 2; c++) a[c] = (a[c] - v[c]) / (t[OPEN_AFTER] - t[OPEN_BEFORE]);
 }
 
-/* A buffer particle's fields from the fluid at its mirror image in the line: pressure and velocity
- * (T-51). With a given velocity: the pressure that T-10 gives a wall with that velocity (T-50).
- * Without fluid there its fields do not change. */
+/* T-51: velocity of a buffer from the fluid around the foot of its particle. Velocities that varied
+ * along the normal would compress the buffer, because it has none along the line. Without fluid
+ * there the velocity does not change. */
+static void see_velocity(struct open *o, int64_t m, const struct fluid_constants *k,
+                         const struct particles *p, const struct cells *c, const double foot[2])
+{
+    const double *const n = o->boundary[p->open[o->member[m]] - 1].inward;
+    const struct across s = state_across(k, p, c, foot);
+    if (!(s.w > 0)) return;
+    const double normal =
+        linear_value(&s, s.u, s.ux, s.uy) * n[0] + linear_value(&s, s.v, s.vx, s.vy) * n[1];
+    o->mirror_u[m] = normal * n[0];
+    o->mirror_v[m] = normal * n[1];
+}
+
+/* A buffer particle's pressure from the fluid at its mirror image in the line (T-52), and with a
+ * given pressure its velocity. With a given velocity: the pressure that T-10 gives a wall with that
+ * velocity (T-50). Without fluid there its fields do not change. */
 static void see(struct open *o, int64_t m, const struct fluid_constants *k,
                 const struct particles *p, const struct cells *c, double time)
 {
@@ -198,19 +213,15 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
         mirror[axis] = foot[axis] + fabs(in) * b->inward[axis];
     }
     const struct across s = state_across(k, p, c, mirror);
-    o->mirror_p[m] =
-        b->kind == OPEN_PRESSURE ? (double)NAN : eos_pressure(p->dens[i], k->rho0, k->c0);
     o->mirror_u[m] = p->vx[i];
     o->mirror_v[m] = p->vy[i];
-    if (!(s.w > 0)) return;
     if (b->kind == OPEN_PRESSURE) {
-        o->mirror_p[m] = s.p / s.w;
-        const double normal = linear_value(&s, s.u, s.ux, s.uy) * b->inward[0] +
-                              linear_value(&s, s.v, s.vx, s.vy) * b->inward[1];
-        o->mirror_u[m] = normal * b->inward[0];
-        o->mirror_v[m] = normal * b->inward[1];
+        o->mirror_p[m] = s.w > 0 ? s.p / s.w : (double)NAN;
+        see_velocity(o, m, k, p, c, foot);
         return;
     }
+    o->mirror_p[m] = eos_pressure(p->dens[i], k->rho0, k->c0);
+    if (!(s.w > 0)) return;
     given_acceleration(o->at[p->open[i] - 1], k, foot, time, a);
     const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
     o->mirror_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
