@@ -30,6 +30,20 @@ enum err diag_fail(struct diag *d, enum err code, const char *format, ...)
     return code;
 }
 
+enum err diag_add(struct diag *d, enum err code, const char *format, ...)
+{
+    ASSERT(code != ERR_OK);
+    if (!d) return code;
+    char text[sizeof d->text];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    if (d->code == ERR_OK) return diag_fail(d, code, "%s", text);
+    diag_more(d, text);
+    return code;
+}
+
 void diag_warn(struct diag *d, const char *format, ...)
 {
     if (!d || !d->warn) return;

@@ -175,10 +175,10 @@ static enum err check_solid(struct sampler *g, const struct region *region)
     char place[LOCATION_TEXT];
     scene_location(g->scene, region->line, place);
     if (across < 2)
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: [solid %s] is %.0f particle thick at dp = %g m; bending needs at "
-                         "least 2, better 4",
-                         place, region->name, across, region->lattice.dp);
+        return diag_add(g->diag, ERR_INPUT,
+                        "%s: [solid %s] is %.0f particle thick at dp = %g m; bending needs at "
+                        "least 2, better 4",
+                        place, region->name, across, region->lattice.dp);
     if (across < 4)
         diag_warn(g->diag,
                   "%s: [solid %s] is only %.0f particles thick at dp = %g m, so its bending will "
@@ -206,7 +206,7 @@ enum err geometry_check_regions(struct sampler *g)
                 warn_see_through(g, region, shape->line, thinnest(shape));
         }
         if (region->kind != KIND_SOLID) continue;
-        TRY(check_solid(g, region));
+        TRY(geometry_go_on(g, check_solid(g, region)));
         TRY(check_area(g, region));
     }
     return ERR_OK;

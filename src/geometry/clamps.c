@@ -10,7 +10,7 @@ static enum err fail_empty(struct sampler *g, const struct region *region, int c
     const struct shape_list *const clamps = &g->scene->solid[region->body].clamp;
     char place[LOCATION_TEXT];
     scene_location(g->scene, clamps->item[clamp].line, place);
-    return diag_fail(
+    return diag_add(
         g->diag, ERR_INPUT,
         "%s: clamp %d of [solid %s] contains no particle; it must cover a part of the body", place,
         clamp + 1, region->name);
@@ -38,6 +38,6 @@ enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, 
         region->n_clamped += p->clamped[k];
     }
     for (int c = 0; c < clamps->n; c++)
-        if (!held[c]) return fail_empty(g, region, c);
+        if (!held[c]) TRY(geometry_go_on(g, fail_empty(g, region, c)));
     return ERR_OK;
 }

@@ -168,11 +168,11 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     if (outside <= 0.5 * dp) return ERR_OK;
     char place[LOCATION_TEXT];
     scene_location(s, probe->common.line, place);
-    return diag_fail(g->diag, ERR_INPUT,
-                     "%s: [probe %s] point (%g, %g) lies about %.3g m outside of "
-                     "[solid %s]",
-                     place, probe->common.name, probe->point[0], probe->point[1], outside,
-                     probe->body);
+    return diag_add(g->diag, ERR_INPUT,
+                    "%s: [probe %s] point (%g, %g) lies about %.3g m outside of "
+                    "[solid %s]",
+                    place, probe->common.name, probe->point[0], probe->point[1], outside,
+                    probe->body);
 }
 
 static enum err check_place(const struct sampler *g, const struct scene_probe *probe,
@@ -185,23 +185,24 @@ static enum err check_place(const struct sampler *g, const struct scene_probe *p
     if (inside) return ERR_OK;
     char place[LOCATION_TEXT];
     scene_location(s, probe->common.line, place);
-    return diag_fail(g->diag, ERR_INPUT,
-                     "%s: [probe %s] %s (%g, %g) lies outside of the domain, "
-                     "(%g, %g) to (%g, %g) m",
-                     place, probe->common.name, key, at[0], at[1], s->domain_lower[0],
-                     s->domain_lower[1], s->domain_upper[0], s->domain_upper[1]);
+    return diag_add(g->diag, ERR_INPUT,
+                    "%s: [probe %s] %s (%g, %g) lies outside of the domain, "
+                    "(%g, %g) to (%g, %g) m",
+                    place, probe->common.name, key, at[0], at[1], s->domain_lower[0],
+                    s->domain_lower[1], s->domain_upper[0], s->domain_upper[1]);
 }
 
-static enum err check_probes(const struct sampler *g)
+static enum err check_probes(struct sampler *g)
 {
     const struct scene *s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *probe = &s->probe[k];
         const enum probe_target target = scene_probe_target(probe);
         const bool line = probe->quantity == PROBE_SURFACE_PRESSURE;
-        if (target == TARGET_SOLID_POINT) TRY(check_body_probe(g, probe));
-        if (target == TARGET_FLUID_POINT || line) TRY(check_place(g, probe, "point", probe->point));
-        if (line) TRY(check_place(g, probe, "to", probe->to));
+        if (target == TARGET_SOLID_POINT) TRY(geometry_go_on(g, check_body_probe(g, probe)));
+        if (target == TARGET_FLUID_POINT || line)
+            TRY(geometry_go_on(g, check_place(g, probe, "point", probe->point)));
+        if (line) TRY(geometry_go_on(g, check_place(g, probe, "to", probe->to)));
     }
     return ERR_OK;
 }
@@ -218,24 +219,25 @@ static enum err check_field(const struct sampler *g, const struct scene_expr *fi
                 continue;
             char place[LOCATION_TEXT];
             scene_location(g->scene, common->line, place);
-            return diag_fail(g->diag, ERR_INPUT,
-                             "%s: [%s %s] %s is not finite at (%g, %g) m; change the expression",
-                             place, kind_names[kind], common->name, key, p->x[k], p->y[k]);
+            return diag_add(g->diag, ERR_INPUT,
+                            "%s: [%s %s] %s is not finite at (%g, %g) m; change the expression",
+                            place, kind_names[kind], common->name, key, p->x[k], p->y[k]);
         }
     }
     return ERR_OK;
 }
 
-static enum err check_fields(const struct sampler *g)
+static enum err check_fields(struct sampler *g)
 {
     const struct scene *s = g->scene;
     for (int k = 0; k < s->n_fluid; k++) {
         const struct scene_fluid *f = &s->fluid[k];
-        TRY(check_field(g, &f->velocity, KIND_FLUID, k, &f->common, "velocity"));
-        TRY(check_field(g, &f->pressure, KIND_FLUID, k, &f->common, "pressure"));
+        TRY(geometry_go_on(g, check_field(g, &f->velocity, KIND_FLUID, k, &f->common, "velocity")));
+        TRY(geometry_go_on(g, check_field(g, &f->pressure, KIND_FLUID, k, &f->common, "pressure")));
     }
     for (int k = 0; k < s->n_solid; k++)
-        TRY(check_field(g, &s->solid[k].velocity, KIND_SOLID, k, &s->solid[k].common, "velocity"));
+        TRY(geometry_go_on(g, check_field(g, &s->solid[k].velocity, KIND_SOLID, k,
+                                          &s->solid[k].common, "velocity")));
     return ERR_OK;
 }
 

@@ -16,8 +16,8 @@ static enum err fail_at(const struct sampler *g, const struct scene_open *o, con
 {
     char place[LOCATION_TEXT];
     scene_location(g->scene, o->common->line, place);
-    return diag_fail(g->diag, ERR_INPUT, "%s: [%s %s] %s at (%.6g, %.6g) m: %s", place,
-                     o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
+    return diag_add(g->diag, ERR_INPUT, "%s: [%s %s] %s at (%.6g, %.6g) m: %s", place,
+                    o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
 }
 
 /* Points of a kind around a boundary's buffer. */
@@ -180,7 +180,7 @@ enum err geometry_open(struct sampler *g)
     GROW(open);
     for (int k = 0; k < scene_open_count(s); k++) {
         const struct scene_open o = scene_open_at(s, k);
-        TRY(append(g, k, &o));
+        TRY(geometry_go_on(g, append(g, k, &o)));
     }
     return ERR_OK;
 }

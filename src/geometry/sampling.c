@@ -223,6 +223,14 @@ static enum err lay_layers(struct sampler *g, struct region *region)
     return ERR_OK;
 }
 
+enum err geometry_go_on(struct sampler *g, enum err e)
+{
+    return e == ERR_INPUT && g->diag && ++g->problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
+}
+
+enum err geometry_problems(const struct sampler *g) { return g->problems ? ERR_INPUT : ERR_OK; }
+
+/* Shapes without particles are told together, before anything needs their particles. */
 static enum err count_points(struct sampler *g, struct region *region)
 {
     int64_t *per_shape =
@@ -234,18 +242,22 @@ static enum err count_points(struct sampler *g, struct region *region)
     }
     if (region->has_layers) TRY(lay_layers(g, region));
     char place[LOCATION_TEXT];
+    bool empty = false;
     for (int k = 0; k < region->list->n; k++) {
         if (per_shape[k]) continue;
+        empty = true;
         scene_location(g->scene, region->list->item[k].line, place);
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: shape %d of [%s %s] contains no particle, because it is narrower "
-                         "than dp = %g m or lies between lattice points; enlarge or move it",
-                         place, k + 1, kind_names[region->kind], region->name, region->lattice.dp);
+        TRY(geometry_go_on(
+            g, diag_add(g->diag, ERR_INPUT,
+                        "%s: shape %d of [%s %s] contains no particle, because it is narrower "
+                        "than dp = %g m or lies between lattice points; enlarge or move it",
+                        place, k + 1, kind_names[region->kind], region->name, region->lattice.dp)));
     }
-    if (region->n) return ERR_OK;
+    if (region->n || empty) return ERR_OK;
     scene_location(g->scene, region->line, place);
-    return diag_fail(g->diag, ERR_INPUT, "%s: nothing is left of [%s %s] after its `minus`", place,
-                     kind_names[region->kind], region->name);
+    return geometry_go_on(g, diag_add(g->diag, ERR_INPUT,
+                                      "%s: nothing is left of [%s %s] after its `minus`", place,
+                                      kind_names[region->kind], region->name));
 }
 
 /* Stores a point given in the axes of its lattice. */
@@ -300,6 +312,7 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
         TRY(count_points(g, &g->regions[k]));
         total += g->regions[k].n;
     }
+    TRY(geometry_problems(g));
     p->x = arena_alloc(&g->temp, (size_t)total, sizeof *p->x, "sampling", g->diag);
     p->y = arena_alloc(&g->temp, (size_t)total, sizeof *p->y, "sampling", g->diag);
     p->region = arena_alloc(&g->temp, (size_t)total, sizeof *p->region, "sampling", g->diag);
@@ -322,10 +335,12 @@ enum err scene_sample(struct scene *s, struct diag *d)
     s->h = s->numerics.h_over_dp * s->top.dp;
     enum err err = geometry_sample(&g, &points);
     if (!err) err = geometry_check_regions(&g);
+    if (!err) err = geometry_problems(&g);
     if (!err) err = geometry_merge(&g, &points);
     if (!err) err = geometry_pack(&g);
     if (!err) err = geometry_open(&g);
     if (!err) err = geometry_extent(&g);
+    if (!err) err = geometry_problems(&g);
     if (!err) err = geometry_warn_of_gaps(&g);
     if (!err) err = geometry_warn_of_doubts(&g);
     arena_free(&g.temp);

@@ -39,6 +39,7 @@ struct sampler {
     struct region *regions; /* solids, walls, fluids: in order of priority */
     unsigned char *mask;    /* of a row */
     double *scratch;        /* crossings of a line */
+    int problems;           /* reported so far */
 };
 
 /* All points, region after region. */
@@ -48,6 +49,11 @@ struct samples {
     int32_t *region;
     uint8_t *clamped;
 };
+
+/* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next section; the
+ * error itself after CASE_MAX_PROBLEMS of them. geometry_problems then ends what needs sound input. */
+enum err geometry_go_on(struct sampler *g, enum err e) SPHFSI_CHECKED;
+enum err geometry_problems(const struct sampler *g) SPHFSI_CHECKED;
 
 enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 

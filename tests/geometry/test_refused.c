@@ -67,10 +67,51 @@ static void test_the_channel_itself_is_not(void)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, build(CHANNEL), diag.text);
 }
 
+/* The sentences of one scene, in one run. */
+static void must_tell(const char *text, int n, const char *const *message)
+{
+    TEST_ASSERT_EQUAL_INT(ERR_INPUT, build(text));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, message[0]), diag.text);
+    int lines = 1;
+    for (const char *c = diag.more; *c; c++) lines += *c == '\n';
+    TEST_ASSERT_EQUAL_INT_MESSAGE(n, lines, diag.more);
+    for (int k = 1; k < n; k++)
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.more, message[k]), diag.more);
+}
+
+static void test_all_problems_are_told_at_once(void)
+{
+    must_tell("dp = 1 cm\nend_time = 1\n"
+              "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nshape = box 0.2, 0, 0.202, 0.1\n"
+              "sound_speed = 20\n"
+              "[wall b]\nshape = box 0.3, 0, 0.302, 0.1\nshape = box 0, -0.04, 0.3, 0\n",
+              2,
+              (const char *const[]){"g.cfg:8: shape 1 of [wall b] contains no particle",
+                                    "g.cfg:5: shape 2 of [fluid w] contains no particle"});
+    must_tell("dp = 1 cm\nend_time = 1\n"
+              "[solid a]\nshape = box 0, 0, 0.01, 0.1\n" SOLID "clamp = box 1, 1, 2, 2\n"
+              "clamp = box 3, 3, 4, 4\n[solid c]\nshape = box 1, 0, 1.01, 0.1\n" SOLID,
+              4,
+              (const char *const[]){"g.cfg:8: clamp 1 of [solid a]",
+                                    "g.cfg:9: clamp 2 of [solid a]",
+                                    "[solid a] is 1 particle thick",
+                                    "[solid c] is 1 particle thick"});
+    must_tell("dp = 1 cm\nend_time = 1\n[domain]\nlower = -1, -1\nupper = 1, 1\n"
+              "[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\nvelocity = 1/(x - x), 0\n"
+              "[solid a]\nshape = box 0.2, 0, 0.3, 0.1\n" SOLID
+              "[probe p]\nquantity = displacement\nbody = a\npoint = 0.5, 0.5\n"
+              "[probe q]\nquantity = pressure\npoint = 50, 50\n",
+              3,
+              (const char *const[]){"[probe p] point (0.5, 0.5) lies about",
+                                    "[probe q] point (50, 50) lies outside of the domain",
+                                    "[fluid w] velocity is not finite"});
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_each_is_refused);
     RUN_TEST(test_the_channel_itself_is_not);
+    RUN_TEST(test_all_problems_are_told_at_once);
     return UNITY_END();
 }
