@@ -5,8 +5,6 @@
 #include "geometry/layers.h"
 #include "geometry/load.h"
 
-#include "case/case.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -222,13 +220,6 @@ static enum err lay_layers(struct sampler *g, struct region *region)
     if (region->n_layered > 0) region->layer_point = l.points.pt + l.first;
     return ERR_OK;
 }
-
-enum err geometry_go_on(struct sampler *g, enum err e)
-{
-    return e == ERR_INPUT && g->diag && ++g->problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
-}
-
-enum err geometry_problems(const struct sampler *g) { return g->problems ? ERR_INPUT : ERR_OK; }
 
 /* Shapes without particles are told together, before anything needs their particles. */
 static enum err count_points(struct sampler *g, struct region *region)

@@ -4,6 +4,7 @@
 #ifndef SPHFSI_GEOMETRY_SAMPLING_H
 #define SPHFSI_GEOMETRY_SAMPLING_H
 
+#include "case/case.h"
 #include "particles/particles.h"
 #include "geometry/outline.h"
 
@@ -52,8 +53,15 @@ struct samples {
 
 /* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next section; the
  * error itself after CASE_MAX_PROBLEMS of them. geometry_problems then ends what needs sound input. */
-enum err geometry_go_on(struct sampler *g, enum err e) SPHFSI_CHECKED;
-enum err geometry_problems(const struct sampler *g) SPHFSI_CHECKED;
+SPHFSI_INLINE enum err geometry_go_on(struct sampler *g, enum err e)
+{
+    return e == ERR_INPUT && g->diag && ++g->problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
+}
+
+SPHFSI_INLINE enum err geometry_problems(const struct sampler *g)
+{
+    return g->problems ? ERR_INPUT : ERR_OK;
+}
 
 enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 
