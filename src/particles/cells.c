@@ -2,6 +2,7 @@
 #include "particles/cells.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "particles/morton.h"
@@ -15,12 +16,15 @@ enum { DIGIT_BITS = CELLS_SORT_DIGIT_BITS, DIGITS = 1 << DIGIT_BITS };
 /* All threads or one: libgomp would end and restart threads if teams changed in size. */
 static int sort_threads(void) { return thread_count() <= CELLS_SORT_THREADS ? thread_count() : 1; }
 
-static enum err list_create(struct cell_list *list, struct arena *a, size_t n_cells,
+static enum err list_create(struct cell_list *list, struct arena *a, const struct cells *c,
                             const struct particles *p, bool keep_order, struct diag *d)
 {
-    list->start = arena_alloc(a, n_cells, sizeof *list->start, "cell list", d);
-    list->count = arena_alloc(a, n_cells, sizeof *list->count, "cell list", d);
-    list->cluster = arena_alloc(a, n_cells, sizeof *list->cluster, "cell list", d);
+    char what[80];
+    snprintf(what, sizeof what, "cell list of the [domain], %d x %d cells", c->nx, c->ny);
+    const size_t n_cells = (size_t)c->nx * (size_t)c->ny;
+    list->start = arena_alloc(a, n_cells, sizeof *list->start, what, d);
+    list->count = arena_alloc(a, n_cells, sizeof *list->count, what, d);
+    list->cluster = arena_alloc(a, n_cells, sizeof *list->cluster, what, d);
     list->active = arena_alloc(a, (size_t)p->capacity, sizeof *list->active, "cell list", d);
     if (!list->start || !list->count || !list->cluster || !list->active) return ERR_MEMORY;
     if (!keep_order) return ERR_OK;
@@ -66,8 +70,7 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
     for (int k = 0; k < KIND_COUNT; k++) {
         if (kinds[k].capacity == 0) continue;
         if (kinds[k].capacity > most) most = kinds[k].capacity;
-        TRY(list_create(&c->kind[k], a, (size_t)c->nx * (size_t)c->ny, &kinds[k], k != KIND_FLUID,
-                        d));
+        TRY(list_create(&c->kind[k], a, c, &kinds[k], k != KIND_FLUID, d));
     }
     c->pair_a = arena_alloc(a, (size_t)most, sizeof *c->pair_a, "sorting", d);
     c->pair_b = arena_alloc(a, (size_t)most, sizeof *c->pair_b, "sorting", d);
