@@ -113,7 +113,8 @@ static enum err prepare(struct one_run *one, const struct refinement *x, int k)
     return ERR_OK;
 }
 
-/* Whether the case can be read in this resolution: checked before any run, since runs may take hours. */
+/* Whether the case can be read in this resolution: checked before any run, since runs may take hours. It
+ * could be read at its own dp, so what is wrong comes from the resolution. */
 static enum err try_case(struct refinement *x, int k)
 {
     struct one_run one = {.dp = ""};
@@ -123,9 +124,13 @@ static enum err try_case(struct refinement *x, int k)
     if (!e && (e = session_read(s, &one.options, &why)) == ERR_OK) {
         x->off_lattice |= s->scene.off_lattice;
         scene_free(&s->scene);
-    } else if (why.code)
-        diag_fail(x->diag, e, "refine: at dp = %.6g m, %.4g times the case's: %.500s",
-                  spacing(x, k), spacing(x, k) / x->dp, why.text);
+    } else if (why.code) {
+        diag_fail(
+            x->diag, e,
+            "refine: at dp = %.6g m, %.4g times the case's: %.500s; for a finer first run, use "
+            "a smaller --ratio, or start from a finer dp (--set dp=...)",
+            spacing(x, k), spacing(x, k) / x->dp, why.text);
+    }
     free(one.sets);
     free(s);
     return e;
