@@ -445,6 +445,7 @@ enum err refine_case(const struct sphfsi_options *o, int runs, double ratio, str
     enum err e = session_read(s, o, &quiet);
     if (e) {
         free(s);
+        if (d) memcpy(d->more, quiet.more, sizeof d->more);
         return diag_fail(d, e, "%s", quiet.text);
     }
     x.dp = s->scene.top.dp;

@@ -187,11 +187,13 @@ static void lone_bodies_are_explained(void)
 /* Nothing is made of a case that cannot be read. */
 static void a_refinement_of_a_wrong_case(void)
 {
-    const struct sphfsi_options o = {.case_text = "dp = 1 cm\nend_time = 1\n[solid a]\nyuong = 1\n",
-                                     .threads = 1,
-                                     .out = tiny_path("refined")};
+    const struct sphfsi_options o = {
+        .case_text = "dp = 1 cm\nend_time = 1\n[solid a]\nyuong = 1\nshap = 3\n",
+        .threads = 1,
+        .out = tiny_path("refined")};
     TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_refine(&o, 3, 2));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "yuong"), sphfsi_error());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "shap"), sphfsi_error());
     TEST_ASSERT_NULL_MESSAGE(strstr(sphfsi_error(), "--ratio"), sphfsi_error());
     struct stat info;
     TEST_ASSERT_NOT_EQUAL(0, stat(tiny_path("refined"), &info));
