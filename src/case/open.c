@@ -92,11 +92,32 @@ static enum err check_given(struct reader *r, const struct scene_open *o, int in
 
 enum { LINE_POINTS = 33, LINE_TIMES = 65 };
 
+/* Given values at which the fluid is not weakly compressible: its density then deviates by about M^2 or
+ * by P/(rho0 c0^2). */
+static void warn_of_sound(struct reader *r, const struct scene_open *o, double speed,
+                          double pressure)
+{
+    const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;
+    if (!(stiffness > 0)) return;
+    if (o->kind == OPEN_VELOCITY && speed > 0.3 * c0)
+        case_warn(r, o->common->line,
+                  "[%s %s] gives the fluid up to %.4g m/s, above 0.3 of the speed of sound, %.4g "
+                  "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
+                  "= %.3g or more",
+                  word_of(o), o->common->name, speed, c0, 10 * speed);
+    if (pressure > 0.1 * stiffness)
+        case_warn(r, o->common->line,
+                  "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
+                  "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
+                  word_of(o), o->common->name, pressure, 100 * pressure / stiffness,
+                  sqrt(pressure / (0.01 * r->scene->rho0)));
+}
+
 /* Finite on the whole line at all times; an inflow must bring fluid in at some time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
     const char *const word = word_of(o), *const name = o->common->name;
-    double most = -HUGE_VAL, least = HUGE_VAL;
+    double most = -HUGE_VAL, least = HUGE_VAL, fastest = 0, pressure = 0;
     for (int n = 0; n < LINE_TIMES; n++) {
         const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
         for (int k = 0; k < LINE_POINTS; k++) {
@@ -117,9 +138,17 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
             const double in = v[0] * o->inward[0] + v[1] * o->inward[1];
             most = max2(most, in);
             least = min2(least, in);
+            fastest = max2(fastest, elementary_hypot(v[0], v[1]));
+            if (o->pressure) pressure = max2(pressure, fabs(v[0]));
         }
     }
+    warn_of_sound(r, o, fastest, pressure);
     if (o->kind == OPEN_PRESSURE) return ERR_OK;
+    if (fastest > 0 && max2(most, -least) < 1e-9 * fastest)
+        return bad_line(r, o->common->line,
+                        "[%s %s] its velocity is along the line everywhere and at all times, so no "
+                        "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",
+                        word, name, o->inward[0], o->inward[1]);
     if (o->inflow && most <= 0 && least < 0)
         return bad_line(r, o->common->line,
                         "[inflow %s] its velocity points out of the fluid everywhere and at all "

@@ -129,6 +129,29 @@ static void test_shifting_that_goes_wrong_is_warned_of(void)
     TEST_ASSERT_NULL(strstr(warned, "with gravity"));
 }
 
+/* What an open boundary gives the fluid beyond its speed of sound, of 20 m/s. */
+static void test_fast_open_boundaries_are_warned_of(void)
+{
+    const char *const text = TOP WATER "[inflow i]\nfrom = 0, 0\nto = 0, 20 mm\n%s\n";
+    static const char *const row[][2] = {
+        {"speed = 7", "gives the fluid up to 7 m/s, above 0.3 of the speed of sound"},
+        {"speed = 5", NULL},
+        {"pressure = -1e5", "gives the fluid up to 1e+05 Pa, which changes its density"},
+        {"pressure = 1e4", NULL},
+    };
+    char all[1024];
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        snprintf(all, sizeof all, text, row[k][0]);
+        takes(all);
+        if (row[k][1])
+            TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warned, row[k][1]), warned);
+        else
+            TEST_ASSERT_NULL_MESSAGE(strstr(warned, "gives the fluid"), warned);
+    }
+    snprintf(all, sizeof all, text, "velocity = 0, 1");
+    refuses(all, "its velocity is along the line everywhere and at all times");
+}
+
 static void test_sliding_along_one_side_is_warned_of(void)
 {
     const char *const warning = "sides = one drags the fluid that slides along [solid a]";
@@ -317,6 +340,7 @@ int main(void)
     RUN_TEST(test_values_that_do_not_fit_together);
     RUN_TEST(test_gravity_at_the_end);
     RUN_TEST(test_shifting_that_goes_wrong_is_warned_of);
+    RUN_TEST(test_fast_open_boundaries_are_warned_of);
     RUN_TEST(test_sliding_along_one_side_is_warned_of);
     RUN_TEST(test_area_of_a_polygon);
     RUN_TEST(test_depth_of_constants);
