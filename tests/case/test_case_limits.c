@@ -132,7 +132,7 @@ static void test_shifting_that_goes_wrong_is_warned_of(void)
 /* What an open boundary gives the fluid beyond its speed of sound, of 20 m/s. */
 static void test_fast_open_boundaries_are_warned_of(void)
 {
-    const char *const text = TOP WATER "[inflow i]\nfrom = 0, 0\nto = 0, 20 mm\n%s\n";
+    const char *const text = TOP WATER "[inflow i]\nfrom = 0, 20 mm\nto = 0, 0\n%s\n";
     static const char *const row[][2] = {
         {"speed = 7", "gives the fluid up to 7 m/s, above 0.3 of the speed of sound"},
         {"speed = 5", NULL},
@@ -143,10 +143,11 @@ static void test_fast_open_boundaries_are_warned_of(void)
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         snprintf(all, sizeof all, text, row[k][0]);
         takes(all);
-        if (row[k][1])
+        if (row[k][1]) {
             TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warned, row[k][1]), warned);
-        else
+        } else {
             TEST_ASSERT_NULL_MESSAGE(strstr(warned, "gives the fluid"), warned);
+        }
     }
     snprintf(all, sizeof all, text, "velocity = 0, 1");
     refuses(all, "its velocity is along the line everywhere and at all times");
