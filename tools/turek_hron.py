@@ -342,7 +342,7 @@ def pictures(run):
         if own:
             ax.loglog([k[0] for k in own], [k[1] for k in own], mark, label=f"sphfsi, {case.upper()}")
             for cost, off, across in own:
-                ax.annotate(f" D/dp = {across}", (cost, off))
+                ax.annotate(f"  {across} across", (cost, off), fontsize=8)
     # Twenty seconds of FSI2, 77 to 81 mm beside 81.6 mm (timed on two cores).
     ax.loglog([200, 200], [0.7, 5.6], "-", color="tab:red", label="SPHinXsys, FSI2, 10 across")
     ax.set(xlabel="core-seconds", ylabel="error of the amplitude of uy, %")
@@ -354,6 +354,9 @@ def pictures(run):
     fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.4 * len(series)), sharex=True)
     for axis, (name, values) in zip(axes, series.items()):
         axis.plot(times, values, lw=0.6)
+        late = [v for t, v in zip(times, values) if t > times[-1] / 2]  # the start may be far larger
+        margin = 0.2 * (max(late) - min(late)) or 1
+        axis.set_ylim(min(late) - margin, max(late) + margin)
         axis.set_ylabel(f"{name}, {UNIT[name]}")
     axes[-1].set_xlabel("time, s")
     name = Path(run).name.replace("-", "_")

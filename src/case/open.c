@@ -92,32 +92,30 @@ static enum err check_given(struct reader *r, const struct scene_open *o, int in
 
 enum { LINE_POINTS = 33, LINE_TIMES = 65 };
 
-/* Given values at which the fluid is not weakly compressible: its density then deviates by about M^2 or
- * by P/(rho0 c0^2). */
-static void warn_of_sound(struct reader *r, const struct scene_open *o, double speed,
-                          double pressure)
+/* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs. `largest`:
+ * of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0 c0^2) in Eq. 2. */
+static void warn_of_sound(struct reader *r, const struct scene_open *o, double largest)
 {
     const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;
-    if (!(stiffness > 0)) return;
-    if (o->kind == OPEN_VELOCITY && speed > 0.3 * c0)
+    if (o->kind == OPEN_VELOCITY && c0 > 0 && largest > SPEED_WARNING * c0)
         case_warn(r, o->common->line,
-                  "[%s %s] gives the fluid up to %.4g m/s, above 0.3 of the speed of sound, %.4g "
+                  "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "
                   "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
                   "= %.3g or more",
-                  word_of(o), o->common->name, speed, c0, 10 * speed);
-    if (pressure > 0.1 * stiffness)
+                  word_of(o), o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
+    if (o->kind == OPEN_PRESSURE && stiffness > 0 && largest > DENS_WARNING * stiffness)
         case_warn(r, o->common->line,
                   "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
                   "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
-                  word_of(o), o->common->name, pressure, 100 * pressure / stiffness,
-                  sqrt(pressure / (0.01 * r->scene->rho0)));
+                  word_of(o), o->common->name, largest, 100 * largest / stiffness,
+                  sqrt(largest / (0.01 * r->scene->rho0)));
 }
 
-/* Finite on the whole line at all times; an inflow must bring fluid in at some time. */
+/* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow at some time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
     const char *const word = word_of(o), *const name = o->common->name;
-    double most = -HUGE_VAL, least = HUGE_VAL, fastest = 0, pressure = 0;
+    double most = -HUGE_VAL, least = HUGE_VAL, largest = 0;
     for (int n = 0; n < LINE_TIMES; n++) {
         const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
         for (int k = 0; k < LINE_POINTS; k++) {
@@ -138,13 +136,12 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
             const double in = v[0] * o->inward[0] + v[1] * o->inward[1];
             most = max2(most, in);
             least = min2(least, in);
-            fastest = max2(fastest, elementary_hypot(v[0], v[1]));
-            if (o->pressure) pressure = max2(pressure, fabs(v[0]));
+            largest = max2(largest, elementary_hypot(v[0], v[1]));
         }
     }
-    warn_of_sound(r, o, fastest, pressure);
+    warn_of_sound(r, o, largest);
     if (o->kind == OPEN_PRESSURE) return ERR_OK;
-    if (fastest > 0 && max2(most, -least) < 1e-9 * fastest)
+    if (largest > 0 && max2(most, -least) < 1e-9 * largest)
         return bad_line(r, o->common->line,
                         "[%s %s] its velocity is along the line everywhere and at all times, so no "
                         "fluid passes; give it a part along (%.3g, %.3g), or use `speed`",

@@ -6,6 +6,11 @@
 
 #include "base/base.h"
 
+/* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0, and
+ * |rho/rho0 - 1|. */
+#define SPEED_WARNING 0.3
+#define DENS_WARNING 0.1
+
 enum { SCENE_TEXT = 256, SCENE_NAME = 64, SCENE_MAX_SECTIONS = 64 };
 
 enum shape_kind { SHAPE_BOX, SHAPE_POLYGON, SHAPE_POLYLINE, SHAPE_CIRCLE };

@@ -9,10 +9,8 @@
 #include "time/simulation.h"
 #include "time/timestep.h"
 
-/* Fractions of the limits at which a warning is given. Speed over c0: above it the fluid is no
- * longer weakly compressible. Steps over the largest step of the fluid. */
-#define SPEED_WARNING 0.3
-#define DENS_WARNING 0.1
+/* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h. Steps over
+ * the largest step of the fluid. */
 #define DET_WARNING 0.2
 #define STEP_WARNING 100 /* times the limit */
 
