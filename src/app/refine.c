@@ -46,6 +46,7 @@ static struct convergence without_order(const double value[3], const char *why)
     return (struct convergence){.extrapolated = value[0],
                                 .band = 3 * widest,
                                 .order = NAN,
+                                .resolved = 3 * widest <= fabs(value[0]),
                                 .why = widest > 0 ? why : "no difference"};
 }
 
@@ -56,6 +57,7 @@ struct convergence converge(const double value[3], double ratio)
     if (!isfinite(value[0]) || !isfinite(value[1]) || !isfinite(value[2])) {
         c.why = "not finite";
         c.band = NAN;
+        c.resolved = false;
         return c;
     }
     if (!(fine / coarse > 0)) return c;
@@ -66,6 +68,7 @@ struct convergence converge(const double value[3], double ratio)
     const double gain = pow(ratio, min2(c.order, 2)) - 1;
     c.extrapolated = value[0] - fine / gain;
     c.band = 1.25 * fabs(fine) / gain;
+    c.resolved = c.band <= fabs(value[0]);
     return c;
 }
 
@@ -297,24 +300,39 @@ static struct convergence converge_columns(const struct refinement *x, enum meas
     return without_order(value, "noise");
 }
 
+/* Two significant digits, without an exponent up to a million. */
+static const char *two_digits(char text[32], double v)
+{
+    const double step = fabs(v) >= 100 && fabs(v) < 1e6 ? pow(10, floor(log10(fabs(v))) - 1) : 0;
+    snprintf(text, 32, step > 0 ? "%.0f" : "%.2g", step > 0 ? step * round(v / step) : v);
+    return text;
+}
+
+static void print_row(const struct refinement *x, const char *name, const double value[3],
+                      const struct convergence *c)
+{
+    char order[32] = "none", limit[32] = "none", percent[40] = "", digits[32];
+    if (c->ordered) snprintf(order, sizeof order, "%.2f", c->order);
+    if (c->resolved) snprintf(limit, sizeof limit, "%.5g", c->extrapolated);
+    if (value[0] != 0 && isfinite(c->band))
+        snprintf(percent, sizeof percent, " (%s %%)",
+                 two_digits(digits, 100 * c->band / fabs(value[0])));
+    session_result(x->options, "  %-8s %12.5g %12.5g %12.5g %12s  %5s  +- %s%s%s%s%s", name,
+                   value[2], value[1], value[0], limit, order, two_digits(digits, c->band), percent,
+                   *c->why ? "; " : "", c->why, c->resolved ? "" : "; no result");
+}
+
 static void say_value(const struct refinement *x, struct json *j, enum measure m,
                       const struct column *const run[3], bool print)
 {
     const struct convergence c = converge_columns(x, m, run);
     const double value[3] = {run[0]->measure[m], run[1]->measure[m], run[2]->measure[m]};
-    const char *const name = measure_names[m];
-    char order[32] = "none";
-    if (c.ordered) snprintf(order, sizeof order, "%.2f", c.order);
-    const double percent = value[0] != 0 ? 100 / fabs(value[0]) : 0;
-    if (print)
-        session_result(x->options, "  %-8s %12.5g %12.5g %12.5g %12.5g  %5s  +- %.2g (%.2g %%)%s%s",
-                       name, value[2], value[1], value[0], c.extrapolated, order, c.band,
-                       percent * c.band, *c.why ? "; " : "", c.why);
-    json_open(j, name, '{');
+    if (print) print_row(x, measure_names[m], value, &c);
+    json_open(j, measure_names[m], '{');
     json_numbers(j, "values", value, 3);
     json_number(j, "order", c.ordered ? c.order : (double)NAN);
     json_text(j, "why_no_order", c.why);
-    json_number(j, "extrapolated", c.extrapolated);
+    json_number(j, "extrapolated", c.resolved ? c.extrapolated : (double)NAN);
     json_number(j, "band", c.band);
     json_close(j, '}');
 }
@@ -391,6 +409,8 @@ static void say_foot(const struct refinement *x)
         x->options,
         "peak: value of largest magnitude; settled: mean of the last quarter; band: grid "
         "convergence index or, if there is no order, 3 times the largest difference");
+    session_result(x->options, "no result: the band is larger than the value of the finest run, so "
+                               "not even the sign is known");
     session_result(x->options, "noise: in the last quarter the differences of the runs are not "
                                "proportional to each other, so no final value is reliable");
     if (x->off_lattice)

@@ -9,7 +9,8 @@
 
 /* Convergence of one value over three resolutions. */
 struct convergence {
-    bool ordered; /* monotone with an order of 0.5 or more; else there is no order */
+    bool ordered;  /* monotone with an order of 0.5 or more; else there is no order */
+    bool resolved; /* the band is not larger than the finest value; else the values have no limit */
     double order, extrapolated;
     double band;     /* of the finest value, in its unit */
     const char *why; /* why there is no order; "" if there is one */

@@ -48,6 +48,36 @@ static void test_no_order_where_differences_hardly_shrink(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, 3 * (pow(2, 0.6) - 1), c.band);
 }
 
+/* Energies dissipated in the template dam_break: all positive, but a limit of their trend is negative. */
+static void test_a_band_above_the_value_is_no_result(void)
+{
+    const struct convergence c = converge((const double[]){14, 30.415, 65.021}, 2);
+    TEST_ASSERT_TRUE(c.ordered && c.extrapolated < 0);
+    TEST_ASSERT_FALSE(c.resolved);
+    TEST_ASSERT_FALSE(converge((const double[]){1, 3, 2}, 2).resolved);
+    TEST_ASSERT_FALSE(converge((const double[]){0, 1, 2}, 2).resolved);
+    TEST_ASSERT_TRUE(converge((const double[]){7, 6, 6.5}, 2).resolved);
+    TEST_ASSERT_TRUE(converge((const double[]){0, 0, 0}, 2).resolved);
+}
+
+/* Wherever three values of one sign have a limit of the other, the band is above 100 %. */
+static void test_no_result_has_another_sign_than_its_values(void)
+{
+    uint32_t random = 1;
+    int turned = 0;
+    for (int k = 0; k < 20000; k++) {
+        double value[3];
+        for (int i = 0; i < 3; i++) {
+            random = random * 1664525u + 1013904223u;
+            value[i] = (double)(random >> 8) + 1;
+        }
+        const struct convergence c = converge(value, 1.1 + (k % 30) * 0.1);
+        turned += c.extrapolated < 0;
+        TEST_ASSERT_FALSE(c.resolved && c.extrapolated < 0);
+    }
+    TEST_ASSERT_GREATER_THAN(100, turned);
+}
+
 static void test_three_equal_values_have_no_band(void)
 {
     const struct convergence c = converge((const double[]){5, 5, 5}, 2);
@@ -64,6 +94,7 @@ static void test_values_that_are_not_finite(void)
         TEST_ASSERT_FALSE(c.ordered);
         TEST_ASSERT_EQUAL_STRING("not finite", c.why);
         TEST_ASSERT_TRUE(isnan(c.band));
+        TEST_ASSERT_FALSE(c.resolved);
     }
 }
 
@@ -98,6 +129,8 @@ int main(void)
     RUN_TEST(test_an_order_above_two_is_not_believed);
     RUN_TEST(test_no_order_where_values_go_to_and_fro);
     RUN_TEST(test_no_order_where_differences_hardly_shrink);
+    RUN_TEST(test_a_band_above_the_value_is_no_result);
+    RUN_TEST(test_no_result_has_another_sign_than_its_values);
     RUN_TEST(test_three_equal_values_have_no_band);
     RUN_TEST(test_values_that_are_not_finite);
     RUN_TEST(test_noise_has_no_order);
