@@ -25,7 +25,7 @@ def main() -> None:
         from .files import make_runs
         from .style import STYLE
     except ImportError as missing:
-        sys.exit(f"sphfsi: {missing.name} is missing; pip install 'sphfsi[plot]'")
+        sys.exit(f"sphfsi: {missing.name} is missing; pip install {missing.name}")
     try:
         runs = make_runs(args.run)
         tables = [run.curves() for run in runs]

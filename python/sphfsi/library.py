@@ -91,11 +91,17 @@ def version() -> str:
     return text(lib.sphfsi_version())
 
 
+# Options of the command line in sentences of the program, and what they are called here.
+_ARGUMENTS = {"--restart": "restart=True", "--out": "out=...", "--fork": "fork=..."}
+
+
 def check(status: int) -> None:
     """Raises what a failure stands for, with the sentence of the program."""
     if status == lib.SPHFSI_OK:
         return
     sentence = text(lib.sphfsi_error())
+    for option, argument in _ARGUMENTS.items():
+        sentence = sentence.replace(option, argument)
     kinds = {lib.SPHFSI_INPUT: InputError, lib.SPHFSI_MEMORY: MemoryError, lib.SPHFSI_IO: OSError,
              lib.SPHFSI_GUARD: Guard, lib.SPHFSI_INTERRUPT: Interrupted}
     raise kinds.get(status, Error)(sentence)

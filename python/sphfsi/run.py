@@ -168,8 +168,10 @@ def _runs(runs: Run | str | os.PathLike | Iterable[Run | str | os.PathLike]) -> 
 
 
 def _style():
-    import matplotlib.pyplot as plt
-
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as missing:
+        raise files.Error(f"{missing.name} is missing; pip install {missing.name}") from None
     from .style import STYLE
     return plt.rc_context(STYLE)
 

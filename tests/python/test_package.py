@@ -236,6 +236,21 @@ def test_errors():
         raises(sphfsi.CaseWarning, "only 3 particles thick", sphfsi.Case(TINY).simulation, threads=1)
 
 
+def test_a_folder_with_results_is_kept_and_the_arguments_are_named():
+    raises(sphfsi.InputError, "continue it with restart=True, choose another folder with out=...",
+           sphfsi.Case(TINY).run, "runs/a", progress=False, threads=1)
+
+
+def test_pictures_without_matplotlib_are_refused_with_a_sentence():
+    code = ("import sys; sys.modules['matplotlib'] = None\nimport sphfsi\nrun = sphfsi.open('runs/a')\n"
+            "for draw in run.plot_probes, run.plot_fields, run.animate:\n"
+            "    try: draw()\n"
+            "    except sphfsi.Error as e: assert 'pip install matplotlib' in str(e)\n"
+            "    else: raise SystemExit('matplotlib?')\n")
+    path = str(Path(sphfsi.__file__).resolve().parents[1])
+    subprocess.run([sys.executable, "-c", code], check=True, env={**os.environ, "PYTHONPATH": path})
+
+
 def test_reading_needs_no_library():
     """Neither cffi nor the library, and without pandas structured arrays."""
     code = ("import sys; sys.modules['cffi'] = None; sys.modules['pandas'] = None\n"

@@ -35,7 +35,7 @@ def main():
     import sphfsi
     path = ROOT / "python" / "TUTORIAL.md"
     names, said = {}, io.StringIO()
-    warnings.simplefilter("ignore", sphfsi.CaseWarning)
+    warnings.simplefilter("error", sphfsi.CaseWarning)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for line, block in blocks(path):
