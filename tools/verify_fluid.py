@@ -96,6 +96,8 @@ RUNS = [
     ("fluid_gate_impact", "dam break behind a gate, H/dp = 60", [[]], single(of.measure_gate_impact)),
     ("dam_break_front", "dam break, square column, a/dp = 40", [["constants.n2=1"]],
      single(of.measure_front)),
+    ("fluid_front", "dam break, square column, free at once",
+     [[f"constants.ratio={ratio}"] for ratio in (20, 40, 80)], of.measure_free_front),
     ("fluid_opening", "opening", [["constants.across=4"], ["constants.across=16"]], of.measure_opening),
     ("dam_break", "template dam_break", [[]], single(of.penetration)),
     ("baffle", "template baffle", skins() + skins("dp=2 mm"), of.measure_baffle),

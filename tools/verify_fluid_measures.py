@@ -258,7 +258,26 @@ def measure_front(run):
             ("shift of the time, sqrt(a/g)", shift, None)]
 
 
-# --- openings, bodies: several runs at once ---
+# --- several runs at once ---
+def measure_free_front(runs):
+    """The way of the front against potential flow (tools/dam_break_potential.py), whose time begins with the
+    release, as in the runs, of which each is finer than the one before."""
+    time, place = reference("dam_break_front_potential.csv")
+    H, largest, means, rows = 0.6, [], [], []
+    for run in runs:
+        p = run.table("probes.csv")
+        front = p[[c for c in p if c.startswith("front")][0]] / H
+        off = 100 * (np.interp(time, p["time_s"] * math.sqrt(G / H), front) / place - 1)
+        largest.append(float(max(off, key=abs)))
+        means.append(float(np.mean(abs(off))))
+    for run, off in zip(runs, largest):
+        ratio = round(H / run.dp)
+        rows.append((f"H/dp = {ratio}: front, largest deviation from potential flow, %", off,
+                     5 if ratio == 40 else None))
+    order = math.log(means[0] / means[-1]) / math.log(runs[0].dp / runs[-1].dp)
+    return [*rows, ("order of its mean deviation", order, None)]
+
+
 def measure_opening(runs):
     """The same opening with 4 and with 16 particles across."""
     through = []

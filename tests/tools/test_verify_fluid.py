@@ -92,6 +92,17 @@ def test_a_wave_without_a_period_has_no_figure():
     assert all(math.isnan(figure) for _, figure, _ in found), found
 
 
+def test_a_front_against_potential_flow():
+    """Three runs that lag by 4, 2 and 1 %."""
+    time, place = of.reference("dam_break_front_potential.csv")
+    seconds = time * math.sqrt(0.6 / 9.81)
+    runs = [Made({"time_s": seconds, "front_m": 0.6 * place * (1 - 0.8 / ratio)}, dp=0.6 / ratio)
+            for ratio in (20, 40, 80)]
+    found = of.measure_free_front(runs)
+    assert np.allclose([figure for _, figure, _ in found], [-4, -2, -1, 1]), found
+    assert [limit for _, _, limit in found] == [None, 5, None, None]
+
+
 if __name__ == "__main__":
     for name, test in list(globals().items()):
         if name.startswith("test_"):
