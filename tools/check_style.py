@@ -4,6 +4,7 @@
 Prints one line per finding, `file:line: what`; warnings do not fail. Needs only Python itself.
 """
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -62,6 +63,12 @@ def check_text(path, lines):
 
 # A string of a user must never reach a shell: no other program is started at all. main.c starts itself again.
 PROGRAMS = re.compile(r"\b(system|popen|exec[lv]p?e?|execvpe|fexecve|fork|vfork|posix_spawnp?)\s*\(")
+
+
+def check_mode(path, lines):
+    """Examples call tools by their names."""
+    if lines and lines[0].startswith("#!") and not os.access(path, os.X_OK):
+        report(path, 0, "begins with #! but is not executable; chmod +x")
 
 
 def check_programs(path, lines):
@@ -199,6 +206,8 @@ def main():
             check_rounding(path, lines)
         if path.suffix in (".c", ".h", ".py", ".sh"):
             check_sizes(path, lines)
+        if path.parts[len(ROOT.parts)] in ("tools", "web"):
+            check_mode(path, lines)
     build = args.library[0].resolve().parent if args.library else None
     for path in sorted(documents() + code):
         if path.suffix == ".md" or path.parts[len(ROOT.parts)] in ("src", "include", "bench"):

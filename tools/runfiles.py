@@ -1,12 +1,26 @@
 # SPDX-License-Identifier: MIT
 """Reads the files of a run's folder and holds what all figures share: style, colours, saving."""
 
+import shlex
 import sys
 import traceback
 from pathlib import Path
 
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def remedy():
+    """What a user does whose Python lacks a package: another Python that has it, as setup.sh records it."""
+    record, command = ROOT / "build" / "python", shlex.join(sys.argv)
+    python = record.read_text(encoding="utf-8").strip() if record.is_file() else ""
+    if python and Path(python).is_file() and python != sys.executable:
+        return f"run {shlex.quote(python)} {command}"
+    return (f"{shlex.quote(str(ROOT / 'tools' / 'setup.sh'))} plot installs it; then run "
+            f"$(cat {shlex.quote(str(record))}) {command}")
+
+
 # The package as it lies in this clone, installed or not.
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "python"))
+sys.path.insert(0, str(ROOT / "python"))
 try:
     import matplotlib
     matplotlib.use("Agg")
@@ -16,8 +30,7 @@ try:
                               read_table, read_text, references)
     from sphfsi.style import COLOURS, STYLE, WIDTH, scaled_unit
 except ImportError as missing:
-    sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing; "
-             "pip install -r tools/requirements.txt")
+    sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; {remedy()}")
 
 __all__ = ["CASES", "COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "check_increasing",
            "make_runs", "np", "plt", "read_case", "read_table", "read_text", "references", "run_tool",

@@ -19,10 +19,10 @@ import runfiles
 from runfiles import COLOURS, BadFile, np, plt
 
 ROOT = Path(__file__).resolve().parent.parent
-EXAMPLE = """examples:
-  tools/sweep.py cases/gate.cfg --vary dp=2mm,1mm --vary gate.young=8MPa:14MPa:2MPa --go
-  tools/sweep.py cases/gate.cfg --vary gate.young=8MPa:14MPa --vary water.artificial_viscosity=0.01:0.05 \\
-      --sample lhs:50 --metric M1_dx_m:largest
+EXAMPLE = """examples (PY=$(cat build/python)):
+  $PY tools/sweep.py cases/gate.cfg --vary dp=2mm,1mm --vary gate.young=8MPa:14MPa:2MPa --go
+  $PY tools/sweep.py cases/gate.cfg --vary gate.young=8MPa:14MPa \\
+      --vary water.artificial_viscosity=0.01:0.05 --sample lhs:50 --metric M1_dx_m:largest --out sweeps/gate-sample
 On a cluster: snakemake -d DIR -s DIR/Snakefile --executor slurm --jobs 20 --rerun-incomplete
 (with snakemake-executor-plugin-slurm; threads, memory and time of a job stand in the workflow)."""
 METRICS = {"final": lambda v: v[-1], "low": np.min, "high": np.max, "mean": np.mean,
@@ -299,7 +299,8 @@ def draw(path, plan, rows):
         known = sorted({name for row in rows for name in row if ":" in name})
         raise BadFile(f"no run has {metric}; there are {', '.join(known)}")
     good = [row for row in rows if row["exit_reason"] == "finished" and metric in row]
-    figure, axes = plt.subplots(1, 1 + len(keys), figsize=(2.6 * (1 + len(keys)), 2.6), squeeze=False)
+    figure, axes = plt.subplots(1, 1 + len(keys), figsize=(2.6 * (1 + len(keys)), 2.6), squeeze=False,
+                                layout="constrained")
     if good:
         result = np.array([row[metric] for row in good])
         inputs = {key: numbers(good, key) for key in keys}
@@ -309,11 +310,13 @@ def draw(path, plan, rows):
                         left=[result.mean() - swing[key] / 2 for key in order], color=COLOURS[0])
         axes[0, 0].axvline(result.mean(), color="0.4", linewidth=0.8)
         axes[0, 0].set_xlabel(metric)
+        axes[0, 0].use_sticky_edges = False
+        axes[0, 0].margins(x=0.05)
+        axes[0, 1].set_ylabel(metric)
         for place, key in zip(axes[0, 1:], keys):
             place.plot(inputs[key][0], result, "o", color=COLOURS[1], markersize=4)
             place.set_xlabel(f"{key} ({inputs[key][1]})" if inputs[key][1] else key)
-    axes[0, 0].set_title(f"{len(good)} of {len(rows)} runs finished")
-    figure.tight_layout()
+    axes[0, 0].set_title(f"change from lowest to highest value\n{len(good)} of {len(rows)} runs finished")
     runfiles.save(figure, path)
 
 
@@ -342,7 +345,7 @@ def main():
         print("written " + str(out) + "; run it, and go on with it after a kill, with\n  " + shlex.join(run))
         return 0
     if not snakemake():
-        raise BadFile("snakemake is missing; pip install snakemake")
+        raise BadFile(f"snakemake is missing; {shlex.quote(sys.executable)} -m pip install snakemake")
     return subprocess.run([*run, "--quiet"]).returncode
 
 

@@ -11,9 +11,8 @@ import sys
 import zlib
 from pathlib import Path
 
-import matplotlib
 import runfiles
-from runfiles import BadFile, np
+from runfiles import BadFile, np, plt
 from sphfsi.draw_fields import colour_scale, frame, load_panel
 from sphfsi.draw_probes import column_words
 from sphfsi.snapshots import FIELDS, KINDS, Snapshots
@@ -119,7 +118,7 @@ def probe_curves(run):
 
 
 def palette(name):
-    colours = matplotlib.colormaps[name](np.arange(256))[:, :3]
+    colours = plt.colormaps[name](np.arange(256))[:, :3]
     return np.rint(255 * colours).astype(int).ravel().tolist()
 
 

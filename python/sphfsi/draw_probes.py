@@ -21,6 +21,10 @@ WORDS = {"dx": "horizontal displacement", "dy": "vertical displacement", "p": "p
          "Exx": "strain $E_{xx}$", "Eyy": "strain $E_{yy}$", "Exy": "strain $E_{xy}$",
          "cx": "x of the centre", "cy": "y of the centre", "angle": "rotation",
          "kinetic": "kinetic energy", "elastic": "strain energy", "hourglass": "hourglass energy"}
+# What the label of a panel calls quantities whose words do not end with it.
+KINDS = {"level": "level", "front": "front", "cx": "position", "cy": "position",
+         **dict.fromkeys(("sxx", "syy", "szz", "sxy"), "stress"),
+         **dict.fromkeys(("Exx", "Eyy", "Exy"), "strain")}
 UNITS = {"SI": "SI", "m_per_s": "m/s", "N_per_m": "N/m", "Nm_per_m": "N m/m", "J_per_m": "J/m",
          "m2_per_s": "m²/s", "m_per_s2": "m/s²"}
 DASHES = [(0, (5, 2)), (0, (1.5, 1.5)), (0, (6, 1.5, 1.5, 1.5)), (0, (8, 3))]
@@ -117,9 +121,22 @@ def reference_style(refs):
     return styles
 
 
+def parts_of(column):
+    """Probe, quantity and unit of a column <probe>_<quantity>_<unit>."""
+    return re.fullmatch(rf"(.+?)_({'|'.join(WORDS)})_([^_]+(?:_per_[^_]+)?)", column)
+
+
+def kinds_of(columns):
+    """What the columns of a panel show, each once: "displacement", or "stress, pressure"."""
+    found = [parts_of(column) for column in columns]
+    kinds = [KINDS.get(parts[2], WORDS[parts[2]].split()[-1]) if parts else column
+             for parts, column in zip(found, columns)]
+    return ", ".join(dict.fromkeys(kinds))
+
+
 def column_words(column, size):
     """Words for the axis, factor and name of the unit of a column <probe>_<quantity>_<unit>."""
-    parts = re.fullmatch(rf"(.+?)_({'|'.join(WORDS)})_([^_]+(?:_per_[^_]+)?)", column)
+    parts = parts_of(column)
     scale, unit = scaled_unit(parts[3] if parts else "", size)
     words = column
     if parts:  # a probe that is named after its quantity says it once
@@ -226,9 +243,8 @@ def draw_panel(axes, columns, curves, refs):
                 axes.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
                           markeredgewidth=2, zorder=5)
     times = [time for column in columns for _, time, _ in curves[column]]
-    kinds = {column_words(column, size)[0].rpartition(" (")[0].split()[-1] for column in columns}
-    label = words.rpartition(" (")[0] if len(columns) == 1 else kinds.pop() if len(kinds) == 1 else ""
-    axes.set(ylabel=f"{label} ({unit})".strip(),
+    label = words.rpartition(" (")[0] if len(columns) == 1 else kinds_of(columns)
+    axes.set(ylabel=textwrap.fill(f"{label} ({unit})", 34),
              xlim=(min(time[0] for time in times), max(time[-1] for time in times) or 1))
     low, high = axes.get_ylim()
     if low < 0 < high:

@@ -180,6 +180,13 @@ def test_probes(tmp):
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == ["displacement (mm)", "P pressure (Pa)", "wave front (m)", "force (N/m)"], labels
     assert units["M1_dy_m"] == (1e3, "mm") and units["load_fx_N_per_m"] == (1, "N/m"), units
+    mixed = {"a_level_m": "level", "b_front_m": "front", "c_cx_m": "position", "c_cy_m": "position",
+             "s_sxx_Pa": "stress", "s_sxy_Pa": "stress", "s_mises_Pa": "stress", "P_p_Pa": "pressure",
+             "post_elastic_J_per_m": "energy", "e_Exx_SI": "strain", "e_Eyy_SI": "strain",
+             "p_angle_rad": "rotation"}
+    for column, kind in mixed.items():
+        assert draw_probes.kinds_of([column, column]) == kind, column
+    assert draw_probes.kinds_of(list(mixed)[:4]) == "level, front, position"
     low, high = figure.axes[1].get_ylim()
     assert 50 < low < 50.2 and 50.3 < high < 50.5, (low, high)
     assert figure.axes[1].get_xlim() == (0.1, END), figure.axes[1].get_xlim()
