@@ -22,7 +22,8 @@ ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = """examples (PY=$(cat build/python)):
   $PY tools/sweep.py cases/gate.cfg --vary dp=2mm,1mm --vary gate.young=8MPa:14MPa:2MPa --go
   $PY tools/sweep.py cases/gate.cfg --vary gate.young=8MPa:14MPa \\
-      --vary water.artificial_viscosity=0.01:0.05 --sample lhs:50 --metric M1_dx_m:largest --out sweeps/gate-sample
+      --vary water.artificial_viscosity=0.01:0.05 --sample lhs:50 --metric M1_dx_m:largest \\
+      --out sweeps/gate-sample
 On a cluster: snakemake -d DIR -s DIR/Snakefile --executor slurm --jobs 20 --rerun-incomplete
 (with snakemake-executor-plugin-slurm; threads, memory and time of a job stand in the workflow)."""
 METRICS = {"final": lambda v: v[-1], "low": np.min, "high": np.max, "mean": np.mean,
