@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/session.h"
 #include "base/threads.h"
+#include "case/params.h"
 #include "geometry/load.h"
 #include "time/timestep.h"
 
@@ -8,6 +9,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static void forward_warning(void *context, const char *text)
 {
@@ -60,36 +62,44 @@ double session_time(double time)
 /* No run has more steps, nor a file more rows. */
 static const double most_counts = 1e10;
 
-/* Refuses a time between two of `what` of which there would be too many; 0: none is set. */
-static enum err check_count(const struct scene *scene, const char *key, double between,
-                            const char *what, double until, struct diag *d)
+/* A time between two of `what`; 0: none is set. */
+struct counted {
+    enum section_id section;
+    int index;
+    const char *key;
+    double between;
+    const char *what;
+};
+
+static enum err check_count(const struct scene *scene, const struct counted *c, double until,
+                            struct diag *d)
 {
-    const double end = max2(scene->top.end_time, until), n = end / between;
-    if (between == 0 || n <= most_counts) return ERR_OK;
-    return diag_fail(
-        d, ERR_INPUT,
-        "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose at least %.3g s",
-        scene->path, key, between, n, what, end, most_counts, end / most_counts);
+    const double end = max2(scene->top.end_time, until), n = end / c->between;
+    char place[LOCATION_TEXT];
+    if (c->between == 0 || n <= most_counts) return ERR_OK;
+    scene_location(scene, scene_line(scene, c->section, c->index, c->key), place);
+    return diag_fail(d, ERR_INPUT,
+                     "%s: %s = %g s gives %.3g %s until %g s, more than the limit of %g; choose "
+                     "at least %.3g s",
+                     place, c->key, c->between, n, c->what, end, most_counts, end / most_counts);
 }
 
 static enum err check_counts(const struct scene *scene, double until, struct diag *d)
 {
     const struct scene_output *const out = &scene->output;
-    const struct {
-        const char *key;
-        double between;
-        const char *what;
-    } item[] = {
-        {"[numerics] fixed_step", scene->numerics.fixed_step, "steps"},
-        {"[output] probe_interval", out->probe_interval, "rows"},
-        {"[output] ledger_interval", out->ledger_interval, "rows"},
-        {"[output] snapshot_interval", out->snapshot_interval, "snapshots"},
-        {"[output] checkpoint_interval", out->checkpoint_interval, "checkpoints"},
+    const struct counted item[] = {
+        {SECTION_numerics, 0, "fixed_step", scene->numerics.fixed_step, "steps"},
+        {SECTION_output, 0, "probe_interval", out->probe_interval, "rows"},
+        {SECTION_output, 0, "ledger_interval", out->ledger_interval, "rows"},
+        {SECTION_output, 0, "snapshot_interval", out->snapshot_interval, "snapshots"},
+        {SECTION_output, 0, "checkpoint_interval", out->checkpoint_interval, "checkpoints"},
     };
-    for (size_t k = 0; k < COUNT_OF(item); k++)
-        TRY(check_count(scene, item[k].key, item[k].between, item[k].what, until, d));
-    for (int k = 0; k < scene->n_probe; k++)
-        TRY(check_count(scene, "[probe] interval", scene->probe[k].interval, "rows", until, d));
+    for (size_t k = 0; k < COUNT_OF(item); k++) TRY(check_count(scene, &item[k], until, d));
+    for (int k = 0; k < scene->n_probe; k++) {
+        const struct counted rows = {SECTION_probe, k, "interval", scene->probe[k].interval,
+                                     "rows"};
+        TRY(check_count(scene, &rows, until, d));
+    }
     return ERR_OK;
 }
 
@@ -201,12 +211,24 @@ static enum err check_steps(const struct session *x, struct diag *d)
     const double end = x->scene.top.end_time, n = end / step;
     if (n <= most_counts) return ERR_OK;
     char place[LOCATION_TEXT];
-    const struct scene_given *const given = scene_given(&x->scene, SECTION_top, 0, "end_time");
-    scene_location(&x->scene, given ? given->line : 1, place);
+    scene_location(&x->scene, scene_line(&x->scene, SECTION_top, 0, "end_time"), place);
     return diag_fail(d, ERR_INPUT,
                      "%s: the run needs about %.3g steps of %.3g s until end_time = %g s, more "
                      "than the limit of %g; choose at most %.3g s",
                      place, n, step, end, most_counts, most_counts * step);
+}
+
+/* A problem that is found where no case file is known, such as in the cells of the domain. */
+static void name_case(const struct scene *s, struct diag *d)
+{
+    char place[LOCATION_TEXT], text[sizeof d->text];
+    if (!d || d->code != ERR_INPUT) return;
+    scene_location(s, 1, place);
+    *strrchr(place, ':') = '\0';
+    if (strncmp(d->text, place, strlen(place)) == 0 || strncmp(d->text, "--set", 5) == 0) return;
+    memcpy(text, d->text, sizeof text);
+    snprintf(d->text, sizeof d->text, "%s: %.*s", place, (int)(sizeof text - sizeof place - 8),
+             text);
 }
 
 enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
@@ -216,6 +238,7 @@ enum err session_open(struct session *x, const struct sphfsi_options *o, struct 
     thread_use(session_threads(&x->scene, o, offered, d));
     const enum err e = simulation_create(&x->simulation, &x->scene, d);
     if (e) {
+        name_case(&x->scene, d);
         scene_free(&x->scene);
         return e;
     }

@@ -9,15 +9,15 @@
 
 enum { PLACE_TEXT = LOCATION_TEXT + 16 };
 
-/* "FILE:LINE: " of a key; nothing where it is not given. */
+/* "FILE:LINE: " of a key, or of its section; where neither is given, "FILE: ". */
 static void place_of(const struct scene *s, enum section_id section, int index, const char *key,
                      char place[PLACE_TEXT])
 {
     char at[LOCATION_TEXT];
-    const struct scene_given *const given = scene_given(s, section, index, key);
-    place[0] = '\0';
-    if (!given) return;
-    scene_location(s, given->line, at);
+    const int line = scene_line(s, section, index, key);
+    const bool none = line == 0 && !scene_given(s, section, index, key);
+    scene_location(s, none ? 1 : line, at);
+    if (none) *strrchr(at, ':') = '\0';
     snprintf(place, PLACE_TEXT, "%s: ", at);
 }
 
@@ -26,11 +26,12 @@ static void warn_of_interval(const struct simulation *s, enum section_id section
 {
     char place[PLACE_TEXT];
     if (!(interval > 0 && interval < 0.5 * step)) return;
+    const bool given = scene_given(s->scene, section, index, key) != NULL;
     place_of(s->scene, section, index, key, place);
     diag_warn(d,
-              "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, so "
+              "%s%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, so "
               "the run needs about %.3g times as many steps; use a longer interval",
-              place, key, interval, step, step / interval);
+              place, given ? "" : "the default of output.", key, interval, step, step / interval);
 }
 
 static void warn_of_damping(const struct simulation *s, struct diag *d)

@@ -156,14 +156,6 @@ static enum err check_fluids(struct reader *r)
 
 /* --- references between sections --- */
 
-/* The line of a key; without it, that of its section. */
-static int line_of(const struct reader *r, enum section_id id, int index, const char *key)
-{
-    const struct scene_given *const given = scene_given(r->scene, id, index, key);
-    const struct scene_section_common *const common = section_at(r->scene, id, index);
-    return given ? given->line : common->line;
-}
-
 static void offer_names(const struct reader *r, enum section_id kind, const char *given,
                         struct nearest *near)
 {
@@ -196,15 +188,15 @@ static enum err check_moved(struct reader *r)
     for (int k = 0; k < s->n_wall; k++)
         if (case_sound(r, SECTION_wall, k) && *s->wall[k].motion &&
             scene_find_motion(s, s->wall[k].motion) < 0)
-            TRY(case_go_on(r, no_such(r, line_of(r, SECTION_wall, k, "motion"), "motion",
+            TRY(case_go_on(r, no_such(r, scene_line(r->scene, SECTION_wall, k, "motion"), "motion",
                                       s->wall[k].motion, SECTION_motion, SECTION_motion)));
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *b = &s->solid[k];
         if (!*b->clamp_motion || !case_sound(r, SECTION_solid, k)) continue;
         if (scene_find_motion(s, b->clamp_motion) < 0)
-            TRY(case_go_on(r,
-                           no_such(r, line_of(r, SECTION_solid, k, "clamp_motion"), "clamp_motion",
-                                   b->clamp_motion, SECTION_motion, SECTION_motion)));
+            TRY(case_go_on(r, no_such(r, scene_line(r->scene, SECTION_solid, k, "clamp_motion"),
+                                      "clamp_motion", b->clamp_motion, SECTION_motion,
+                                      SECTION_motion)));
         else if (b->clamp.n == 0)
             TRY(case_go_on(r, bad_line(r, b->common.line,
                                        "[solid %s] has a `clamp_motion` but no `clamp`",
@@ -256,7 +248,7 @@ static enum err check_joined(struct reader *r, int solid)
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(s, a->joined);
     if (other < 0)
-        return no_such(r, line_of(r, SECTION_solid, solid, "joined"), "joined", a->joined,
+        return no_such(r, scene_line(r->scene, SECTION_solid, solid, "joined"), "joined", a->joined,
                        SECTION_solid, SECTION_solid);
     if (other == solid)
         return bad_line(r, a->common.line,
@@ -287,7 +279,7 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
         return bad_line(r, c->common.line, "[contact %s] needs a [solid]", c->common.name);
     if (case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_solid)) TRY(check_gap(r, c));
     if (!*c->between) return ERR_OK;
-    const int line = line_of(r, SECTION_contact, (int)(c - s->contact), "between");
+    const int line = scene_line(r->scene, SECTION_contact, (int)(c - s->contact), "between");
     if (!scene_pair(c->between, name))
         return bad_line(r, line, "between = %.100s: two names are expected, separated by a comma",
                         c->between);
@@ -311,8 +303,8 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
     if (!*l->body)
         return bad_line(r, line, "[load %s] needs `body`, the solid it acts on", l->common.name);
     if (scene_find_solid(r->scene, l->body) < 0)
-        return no_such(r, line_of(r, SECTION_load, (int)(l - r->scene->load), "body"), "body",
-                       l->body, SECTION_solid, SECTION_solid);
+        return no_such(r, scene_line(r->scene, SECTION_load, (int)(l - r->scene->load), "body"),
+                       "body", l->body, SECTION_solid, SECTION_solid);
     if (l->shape.n == 0)
         return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
                         l->common.name);
@@ -328,7 +320,7 @@ static enum err check_reference(struct reader *r, const struct scene_reference *
     const struct scene *s = r->scene;
     const int line = ref->common.line;
     const bool formula = ref->formula.e[0] != NULL;
-    const int column = line_of(r, SECTION_reference, (int)(ref - s->reference), "probe");
+    const int column = scene_line(r->scene, SECTION_reference, (int)(ref - s->reference), "probe");
     if (!*ref->probe || (!*ref->file && !formula))
         return bad_line(r, line, "[reference %s] needs `%s`", ref->common.name,
                         *ref->probe ? "file` or `formula" : "probe");
@@ -354,13 +346,13 @@ static enum err check_gravity(struct reader *r)
 {
     enum { TIMES = 1000 };
     const struct scene_top *const top = &r->scene->top;
-    const struct scene_given *const given = scene_given(r->scene, SECTION_top, 0, "gravity");
+    const int line = scene_line(r->scene, SECTION_top, 0, "gravity");
     for (int c = 0; c < 2; c++)
         for (int n = 0; top->gravity_in_time.e[c] && n <= TIMES; n++) {
             const double t = top->end_time * n / TIMES;
             if (isfinite(scene_expr_at(top->gravity_in_time.e[c], t, 0))) continue;
             const char *const text[] = {c ? "..., " : "", c ? "" : ", ..."};
-            return bad_line(r, given ? given->line : 1,
+            return bad_line(r, line,
                             "gravity = %s%.200s%s: component %d is not finite at t = %g s; it must "
                             "be finite at all times up to end_time",
                             text[0], expr_source(top->gravity_in_time.e[c]), text[1], c + 1, t);
@@ -389,9 +381,7 @@ static enum err check_solid_h(struct reader *r)
 {
     const double value = r->scene->numerics.solid_h_over_dp;
     if (value == 0 || value >= 1.1) return ERR_OK;
-    const struct scene_given *const at =
-        scene_given(r->scene, SECTION_numerics, 0, "solid_h_over_dp");
-    return bad_line(r, at ? at->line : 1,
+    return bad_line(r, scene_line(r->scene, SECTION_numerics, 0, "solid_h_over_dp"),
                     "solid_h_over_dp = %g is too small, so particles would have too few "
                     "neighbours; use 1.1 to 2, or 0 for the value of h_over_dp",
                     value);
@@ -409,7 +399,7 @@ static void warn_of_sliding(struct reader *r)
         const int slip = solid ? s->solid[k].slip : s->wall[k - s->n_solid].slip;
         const bool moves = solid || *s->wall[k - s->n_solid].motion;
         if (slip != SLIP_FREE || !moves) continue;
-        case_warn(r, line_of(r, SECTION_numerics, 0, "sides"),
+        case_warn(r, scene_line(r->scene, SECTION_numerics, 0, "sides"),
                   "sides = one drags the fluid that slides along [%s %s], as if the body were "
                   "larger by a spacing all round: the added mass of a cylinder of 10 spacings is "
                   "40 %% too large; use sides = both, or slip = none",

@@ -65,6 +65,13 @@ const struct scene_given *scene_given(const struct scene *s, enum section_id sec
     return NULL;
 }
 
+int scene_line(const struct scene *s, enum section_id section, int index, const char *key)
+{
+    const struct scene_given *const given = scene_given(s, section, index, key);
+    const struct scene_section_common *const common = section_at(s, section, index);
+    return given ? given->line : common->line;
+}
+
 void *section_at(const struct scene *s, enum section_id id, int index)
 {
     const struct section_info *info = &section_table[id];

@@ -84,12 +84,13 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
     const char *const name = s->scene->solid[body].common.name;
     const double h = scene_solid_h(s->scene, body), reach = 2 * h;
     const double distance = nearest_distance(p, body, pr->point);
+    char place[LOCATION_TEXT];
+    scene_location(s->scene, sp->common.line, place);
     if (!(distance < h))
         return diag_fail(d, ERR_INPUT,
-                         "line %d: [probe %s] point = %g, %g is %.3g m from the nearest particle "
-                         "of [solid %s]; move it to h = %.3g m or less",
-                         sp->common.line, sp->common.name, pr->point[0], pr->point[1], distance,
-                         name, h);
+                         "%s: [probe %s] point = %g, %g is %.3g m from the nearest particle of "
+                         "[solid %s]; move it to h = %.3g m or less",
+                         place, sp->common.name, pr->point[0], pr->point[1], distance, name, h);
     pr->n = find_near(p, body, pr->point, reach, NULL);
     pr->particle = arena_alloc(a, (size_t)pr->n, sizeof *pr->particle, "probe", d);
     pr->weight = arena_alloc(a, (size_t)pr->n, sizeof *pr->weight, "probe", d);

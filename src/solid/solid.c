@@ -9,6 +9,7 @@
 #include "solid/interface.h"
 #include "base/barrier.h"
 #include "case/effects.h"
+#include "case/params.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
 #include "solid/parts.h"
@@ -71,14 +72,18 @@ static int useful_threads(int64_t n)
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
  * not depend on the step (tests/stability/test_step_bound.c). */
-static void warn_of_flutter(const struct solid_body *b, const char *name, struct diag *d)
+static void warn_of_flutter(const struct solid_body *b, const struct scene *scene, int body,
+                            struct diag *d)
 {
+    const struct scene_section_common *const common = &scene->solid[body].common;
     const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
+    char place[LOCATION_TEXT];
     if (b->variational || !(b->kappa > (quadratic ? 0 : 10))) return;
+    scene_location(scene, common->line, place);
     diag_warn(d,
-              "[solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
+              "%s: [solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
               "hourglass_form = variational%s",
-              name, quadratic ? "gradient = quadratic" : "hourglass above 10",
+              place, common->name, quadratic ? "gradient = quadratic" : "hourglass above 10",
               quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
@@ -114,12 +119,26 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     const char *const name = needs_double(s, scene, p);
     if (!name) return &solid_sweeps_mixed;
     if (choice == SOLID_PRECISION_AUTO) return &solid_sweeps_double;
+    char place[LOCATION_TEXT];
+    scene_location(scene, scene_line(scene, SECTION_numerics, 0, "solid_precision"), place);
     diag_warn(d,
-              "[numerics] solid_precision = single, but [solid %s] can turn freely or has an "
+              "%s: [numerics] solid_precision = single, but [solid %s] can turn freely or has an "
               "artificial_viscosity below %g: its stress may have an error of 1e-6 of Young's "
               "modulus, and it may gain energy; use auto",
-              name, DAMPED);
+              place, name, DAMPED);
     return &solid_sweeps_mixed;
+}
+
+static enum err far_apart(const struct solid *s, const struct scene *scene, int body,
+                          struct diag *d)
+{
+    const struct scene_solid *const b = &scene->solid[body];
+    char place[LOCATION_TEXT];
+    scene_location(scene, scene_line(scene, SECTION_solid, body, "joined"), place);
+    return diag_fail(d, ERR_INPUT,
+                     "%s: [solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
+                     "from it; move it, or leave `joined` out",
+                     place, b->common.name, b->joined, KERNEL_REACH * s->body[body].h);
 }
 
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
@@ -134,7 +153,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
         s->body[k] = body_of(scene, k);
-        warn_of_flutter(&s->body[k], scene->solid[k].common.name, d);
+        warn_of_flutter(&s->body[k], scene, k, d);
         s->variational |= s->body[k].variational;
         s->kelvin_voigt |= s->body[k].damping_time > 0;
         s->mass_damped |= s->body[k].mass_damping > 0;
@@ -147,12 +166,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     TRY(solid_packed_create(s, a, p, d));
     TRY(solid_stencil_create(s, a, p, d));
     for (int k = 0; k < s->n_bodies; k++)
-        if (scene->solid[k].joined[0] && !s->body[k].touches)
-            return diag_fail(d, ERR_INPUT,
-                             "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
-                             "away from it; move it, or leave `joined` out",
-                             scene->solid[k].common.name, scene->solid[k].joined,
-                             KERNEL_REACH * s->body[k].h);
+        if (scene->solid[k].joined[0] && !s->body[k].touches) return far_apart(s, scene, k, d);
     for (int k = 0; k < (int)COUNT_OF(s->scratch); k++) {
         s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
         if (!s->scratch[k]) return ERR_MEMORY;
