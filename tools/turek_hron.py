@@ -68,7 +68,8 @@ PERIODS = 6      # at the end that mean and amplitude are taken of, at least
 HARMONICS = 4    # that make up a period
 SAME = 0.05      # of the size of a period: its trend over half of the periods, and its standard error
 REST = 0.02      # of the mean of a series at rest: its trend over a quarter of the run, and its error
-PARTS = 12       # of the last half of a run, whose means judge whether it rests
+PARTS = 24       # of the last half of a run, whose means judge whether it rests
+ALONE = 8        # parts without correlation that those of a series at rest stand for, at least
 
 
 def columns(folder):
@@ -132,6 +133,36 @@ def settled(sizes, same):
             and count * abs(slope) <= max(2 * same * whole, 2 * count * error))
 
 
+def trendless(values):
+    """Whether the slope of a few values is at most twice the error that their scatter gives it."""
+    order = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    slope = float(order @ values / (order @ order))
+    left = values - np.mean(values) - slope * order
+    return abs(slope) <= 2 * math.sqrt(left @ left / (len(values) - 2) / (order @ order))
+
+
+def swings(times, values):
+    """Whether one frequency and its harmonics make up half of the variance or more."""
+    frequency = frequency_of(times, values)
+    return bool(frequency) and fit(times, values, frequency)[1] <= 0.5 * np.var(values)
+
+
+def rest(times, late):
+    """State of the last half of a run without a period, its mean and the standard error of the mean. It is
+    steady within its noise if it does not swing and neither the means of its parts nor the scatter in them
+    have a trend. The correlation of neighbouring parts makes them stand for fewer: ALONE at least."""
+    pieces = np.array_split(late, min(PARTS, len(late)))
+    parts, scatter = np.array([p.mean() for p in pieces]), np.array([p.std() for p in pieces])
+    off, count = parts - parts.mean(), len(parts)
+    alike = min(max(off[1:] @ off[:-1] / max(off @ off, 1e-300) + 1 / count, 0), 0.99)
+    alone = count * (1 - alike) / (1 + alike)
+    state = ("steady" if settled(parts, REST) else
+             "steady within its noise" if alone >= ALONE and trendless(parts) and trendless(scatter)
+             and not swings(times, late) else
+             "neither steady nor periodic yet")
+    return state, float(parts.mean()), float(np.std(parts, ddof=1) / math.sqrt(alone))
+
+
 def sizes_of(times, values, frequency, count):
     """The first harmonic of each of the last periods, in phase with that of all of them together. So
     noise makes it neither larger nor smaller on average."""
@@ -183,11 +214,10 @@ def summary(times, values, found):
         strongest = np.argmax(np.hypot(*own.mean(axis=0)[1:].reshape(2, HARMONICS))) + 1
         return {"state": "periodic", "mean": middle, "amplitude": size, "mean_error": errors[0],
                 "amplitude_error": errors[1], "frequency": float(strongest * frequency), "periods": count}
-    late = values[times >= 0.5 * times[-1]]
-    parts = np.array([part.mean() for part in np.array_split(late, min(PARTS, len(late)))])
-    return {"state": "steady" if settled(parts, REST) else "neither steady nor periodic yet",
-            "mean": float(parts.mean()), "amplitude": float(np.std(late)), "frequency": None,
-            "mean_error": float(np.std(parts, ddof=1) / math.sqrt(len(parts)))}
+    late = times >= 0.5 * times[-1]
+    state, mean, off = rest(times[late], values[late])
+    return {"state": state, "mean": mean, "amplitude": float(np.std(values[late])), "frequency": None,
+            "mean_error": off}
 
 
 def read(folder):
@@ -269,7 +299,7 @@ def judged(best, quantity, part, limit):
         used = best["cpu_seconds"] / 3600
         return f"{used:.2g} core-hours | {limit} core-hours | {'met' if used <= limit else '**missed**'}"
     found, wanted = best["series"][quantity], REFERENCE[best["case"]][quantity]
-    if found["state"] == "periodic" or found["state"] == "steady" and part == "mean":
+    if found["state"] == "periodic" or found["state"].startswith("steady") and part == "mean":
         size = wanted[("mean", "amplitude", "frequency").index(part)]
         off, known = 100 * (found[part] / size - 1), 200 * abs(found.get(f"{part}_error", 0) / size)
         word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit else

@@ -84,6 +84,41 @@ def test_what_rests():
     assert found["state"] == "steady" and abs(found["mean"] + 66.1) < 0.01, found
 
 
+def correlated(noise, count, memory):
+    """Noise of variance one that forgets within some samples."""
+    values, keep = noise.normal(0, 1, count), np.exp(-1 / memory)
+    for k in range(1, count):
+        values[k] = keep * values[k - 1] + np.sqrt(1 - keep**2) * values[k]
+    return values
+
+
+def test_noise_about_a_mean_rests():
+    """With a standard error of 5 to 40 % of the mean, which the trials scatter by."""
+    for memory, size in ((1, 2), (10, 1)):
+        ratios = []
+        for seed in range(40):
+            noise = np.random.default_rng(seed)
+            found = read(lambda t, n=noise, m=memory, s=size: 1 + s * correlated(n, len(t), m))
+            assert found["state"] != "steady", found
+            if found["state"] == "steady within its noise":
+                ratios.append((found["mean"] - 1) / found["mean_error"])
+        assert len(ratios) >= 26, len(ratios)  # chance gives the others a trend
+        assert 0.6 < np.sqrt(np.mean(np.array(ratios) ** 2)) < 1.7, ratios
+
+
+def test_noise_hides_no_change():
+    """Neither a drift of five standard errors, nor a slow swing or its end, nor noise that dies away."""
+    for seed in range(20):
+        noise = np.random.default_rng(seed)
+        for change in (lambda t: t / 2,
+                       lambda t: np.sin(2 * np.pi * 0.5 * t), lambda t: np.sin(2 * np.pi * 0.3 * t),
+                       lambda t: 5 * np.exp(-t / 3) * np.sin(2 * np.pi * 0.4 * t)):
+            found = read(lambda t, n=noise, c=change: 1 + c(t) + n.normal(0, 0.5, len(t)))
+            assert found["state"] == "neither steady nor periodic yet", (seed, found)
+        found = read(lambda t, n=noise: 1 + 100 * np.exp(-t / 3) * n.normal(0, 1, len(t)))
+        assert found["state"] == "neither steady nor periodic yet", (seed, found)
+
+
 def test_a_target_is_met_missed_or_not_shown():
     swing = {"state": "periodic", "mean": 1.3, "amplitude": 81.6 * 1.02, "frequency": 1.93 * 1.05}
     run = {"case": "fsi2", "cpu_seconds": 3600 * 2.5, "series": {"uy": swing}}
@@ -94,6 +129,8 @@ def test_a_target_is_met_missed_or_not_shown():
     assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 ± 0.4 % | 3 % | met"
     swing["amplitude_error"] = 81.6 * 0.006
     assert turek_hron.judged(run, "uy", "amplitude", 3) == "+2.0 ± 0.6 % | 3 % | undecided: noise"
+    swing["state"] = "steady within its noise"
+    assert turek_hron.judged(run, "uy", "mean", 3) == "+0.0 % | 3 % | met"
     swing["state"] = "neither steady nor periodic yet"
     assert turek_hron.judged(run, "uy", "amplitude", 3).endswith("not shown")
 
