@@ -135,6 +135,19 @@ def test_a_target_is_met_missed_or_not_shown():
     assert turek_hron.judged(run, "uy", "amplitude", 3).endswith("not shown")
 
 
+def test_other_constants_are_judged_apart():
+    """The finest run with the case's constants, and the finest with others; a short start is no other."""
+    uy = {"state": "periodic", "mean": 1.3, "amplitude": 81.6, "frequency": 1.93, "periods": 6}
+    kept = [{"case": "fsi2", "across": across, "settings": settings, "cpu_seconds": 36, "time": 1,
+             "series": {"uy": {**uy, "amplitude": size}}}
+            for across, settings, size in ((10, [], 90), (20, ["ramp=0.3 s", "kick=1.2 m/s"], 85.68),
+                                           (20, ["numerics.sides=both"], 82.416))]
+    rows = [line for line in turek_hron.headline(kept) if "| uy amplitude |" in line]
+    assert len(rows) == 2, rows
+    assert "20 (ramp=0.3 s, kick=1.2 m/s)" in rows[0] and "+5.0 % | 3 % | **missed**" in rows[0], rows
+    assert "20 (numerics.sides=both)" in rows[1] and "+1.0 % | 3 % | met" in rows[1], rows
+
+
 def test_every_reference_has_its_case():
     for name in turek_hron.REFERENCE:
         assert (turek_hron.CASES / f"{name}.cfg").is_file(), name
