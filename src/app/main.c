@@ -18,7 +18,7 @@ static const char usage[] =
     "usage: sphfsi CASE.cfg [options]\n"
     "  --out DIR         folder of the results (runs/<case name>)\n"
     "  --threads N       threads to use (as many as are useful and idle)\n"
-    "  --until TIME      simulated time in s to end at (end_time of the case)\n"
+    "  --until TIME      simulated time to end at, in s or as 50ms (end_time of the case)\n"
     "  --set KEY=VALUE   replace a value of the case: dp=1mm, \"solid gate.young=12MPa\"; "
     "repeatable\n"
     "  --restart [FILE]  continue from the newest valid checkpoint of the run, or from FILE\n"
@@ -191,27 +191,30 @@ static int read_number(const char *option, const char *text, double low, double 
     return complain(strcmp(option, "--threads") == 0
                         ? "%s %s: give a whole number from 1 to 2147483647"
                     : strcmp(option, "--refine") == 0 ? "%s %s: give a whole number from 3 to 6"
-                    : strcmp(option, "--ratio") == 0  ? "%s %s: give a number from 1.1 to 4"
-                                                      : "%s %s: give a time in seconds, above 0",
+                                                      : "%s %s: give a number from 1.1 to 4",
                     option, text);
 }
 
-/* Wall time: a number followed by s, min or h. */
-static int read_duration(const char *text, double *seconds)
+/* A number followed by a unit of time, of 1e-300 to 1e9 s. Simulated times may go without: then it is s. */
+static int read_time(const char *option, const char *text, double *seconds)
 {
     static const struct {
         const char *unit;
         double seconds;
-    } units[] = {{"s", 1}, {"min", 60}, {"h", 3600}};
+    } units[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}, {"h", 3600}, {"", 1}};
+    const int wall = strcmp(option, "--budget") == 0;
     char *end;
-    *seconds = strtod(text, &end);
+    const double number = strtod(text, &end);
     while (end != text && *end == ' ') end++;
-    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++)
-        if (end != text && strcmp(end, units[k].unit) == 0 && *seconds > 0) {
-            *seconds *= units[k].seconds;
-            return 0;
+    for (size_t k = 0; k < sizeof units / sizeof units[0] - (wall ? 1 : 0); k++)
+        if (end != text && strcmp(end, units[k].unit) == 0) {
+            *seconds = number * units[k].seconds;
+            if (*seconds >= 1e-300 && *seconds <= 1e9) return 0;
         }
-    return complain("--budget %s: give a time such as 90s, 10min or 2h%s", text, "");
+    return complain(
+        wall ? "%s %s: give a time such as 90s, 10min or 2h"
+             : "%s %s: give a time such as 0.5, 0.5s or 500ms, above 0 and at most 1e9 s",
+        option, text);
 }
 
 static int apply(struct command *c, const struct option *option, const char *operand)
@@ -223,7 +226,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
     if (option->mode != RUN) {
         c->mode = option->mode;
         c->operand = operand;
-        if (option->mode == BUDGET) return read_duration(word, &c->budget);
+        if (option->mode == BUDGET) return read_time(name, word, &c->budget);
         if (option->mode == REFINE) return read_number(name, word, 3, 6, &c->runs);
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
@@ -231,7 +234,7 @@ static int apply(struct command *c, const struct option *option, const char *ope
         if (read_number(name, word, 1, INT_MAX, &number)) return 1;
         o->threads = (int)number;
     } else if (strcmp(name, "--until") == 0) {
-        if (read_number(name, word, 1e-300, 1e9, &number)) return 1;
+        if (read_time(name, word, &number)) return 1;
         o->until = number;
     } else if (strcmp(name, "--set") == 0) {
         if (!strchr(word, '='))

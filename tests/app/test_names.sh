@@ -29,6 +29,16 @@ done
 for time in "90  s" "1 min"; do
     ./sphfsi --budget "$time" tiny >said 2>&1 || fail "$(cat said)"
 done
+# A simulated time may have a unit; without one it is in seconds.
+for time in 1e-4 1e-4s "0.1 ms" 100us; do
+    rm -rf runs/tank
+    ./sphfsi tank.cfg --quiet --until "$time" >said 2>&1 || fail "$(cat said)"
+    tail -n 1 runs/tank/ledger.csv | grep -q "^0.0001," || fail "--until $time ends elsewhere"
+done
+for time in 1mm 0 -1s inf nan 2e9 ms; do
+    ./sphfsi tank.cfg --quiet --until "$time" >said 2>&1 && fail "--until $time was accepted"
+    grep -q "^sphfsi: --until $time: give a time such as 0.5, 0.5s or 500ms" said || fail "$(cat said)"
+done
 for ratio in 9 x 1; do
     ./sphfsi --refine 3 --ratio "$ratio" tiny >said 2>&1 && fail "--ratio $ratio was accepted"
     grep -q 'give a number from 1.1 to 4' said || fail "$(cat said)"
