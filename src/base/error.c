@@ -44,6 +44,13 @@ enum err diag_add(struct diag *d, enum err code, const char *format, ...)
     return code;
 }
 
+int diag_count(const struct diag *d)
+{
+    int n = d->code != ERR_OK;
+    for (const char *c = d->more; *c; c++) n += *c == '\n';
+    return n;
+}
+
 void diag_warn(struct diag *d, const char *format, ...)
 {
     if (!d || !d->warn) return;

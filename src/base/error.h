@@ -28,6 +28,8 @@ struct diag {
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
 /* The same, but where d holds a failure already, the sentence is added to `more`. */
 enum err diag_add(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
+/* Failures so far. */
+int diag_count(const struct diag *d);
 void diag_warn(struct diag *d, const char *format, ...) SPHFSI_PRINTF(2, 3);
 /* Adds a sentence to `more`; one that does not fit is left out. */
 void diag_more(struct diag *d, const char *text);

@@ -112,6 +112,7 @@ enum err motion_load(struct scene *s, struct diag *d)
     s->motion_data =
         arena_alloc(&s->arena, (size_t)s->n_motion, sizeof *s->motion_data, "motions", d);
     if (!s->motion_data) return ERR_MEMORY;
+    enum err bad = ERR_OK;
     for (int k = 0; k < s->n_motion; k++) {
         const struct scene_motion *m = &s->motion[k];
         struct scene_table *const table = &s->motion_data[k];
@@ -121,12 +122,15 @@ enum err motion_load(struct scene *s, struct diag *d)
         if (!tabled) continue;
         char name[2 * SCENE_NAME];
         snprintf(name, sizeof name, "[motion %s] file", m->common.name);
-        TRY(table_load(s, table, &kind, m->file, m->common.line, name, d));
+        const enum err e = table_load(s, table, &kind, m->file, m->common.line, name, d);
+        if (e != ERR_OK && e != ERR_INPUT) return e;
+        if (e) bad = e;
+        if (e) continue;
         set_slopes(table->n, table->t, table->x, table->vx);
         set_slopes(table->n, table->t, table->y, table->vy);
         warn_of_end(s, m, table, d);
     }
-    return ERR_OK;
+    return bad;
 }
 
 /* --- evaluation --- */

@@ -152,13 +152,18 @@ static bool is_called(const char *key, const char *word)
     return false;
 }
 
+bool param_may_be(const struct param *p, const char *word)
+{
+    return has_word(p->key, word) || is_called(p->key, word);
+}
+
 bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT])
 {
     text[0] = '\0';
     if (strlen(word) > SCENE_NAME) return false;
     for (int k = 0; k < PARAM_COUNT; k++) {
         const struct param *const p = &param_table[k];
-        if (p->section != section || !(has_word(p->key, word) || is_called(p->key, word))) continue;
+        if (p->section != section || !param_may_be(p, word)) continue;
         const size_t used = strlen(text);
         snprintf(text + used, PARAM_MEANT - used, "%s`%s`", used ? " or " : "", p->key);
     }

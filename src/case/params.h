@@ -98,6 +98,8 @@ enum { PARAM_MEANT = 200 };
 bool param_meant(enum section_id section, const char *word, char text[PARAM_MEANT]);
 /* The first parameter of any section that other programs call by this word, or NULL. */
 const struct param *param_called(const char *word);
+/* Whether `word` is a part of a key or its usual name. */
+bool param_may_be(const struct param *p, const char *word);
 
 /* Why a key of an older release has no effect any more; NULL: it is not such a key. */
 const char *param_retired(enum section_id section, const char *key);

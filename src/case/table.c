@@ -31,16 +31,16 @@ static int read_row(struct table_file *t, double row[3])
         t->line++;
         const size_t length = strlen(text);
         if (memchr(text + length + 1, 0, sizeof text - length - 1)) {
-            diag_fail(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
-                      t->line);
+            diag_add(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
+                     t->line);
             return -1;
         }
         const char *at = text + strspn(text, " \t\r\n");
         const bool head =
             t->line == 1 && ((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z'));
         if (length == sizeof text - 1 && text[length - 1] != '\n') {
-            diag_fail(t->diag, ERR_INPUT, "%s:%d: the line has more than %zu characters", t->path,
-                      t->line, sizeof text - 2);
+            diag_add(t->diag, ERR_INPUT, "%s:%d: the line has more than %zu characters", t->path,
+                     t->line, sizeof text - 2);
             return -1;
         }
         if (!*at || *at == '#' || head) continue;
@@ -48,20 +48,20 @@ static int read_row(struct table_file *t, double row[3])
             char *end;
             row[k] = strtod(at, &end);
             if (end == at || !isfinite(row[k]) || fabs(row[k]) > 1e9) {
-                diag_fail(t->diag, ERR_INPUT, "%s:%d: three numbers are expected: %s", t->path,
-                          t->line, t->kind->columns);
+                diag_add(t->diag, ERR_INPUT, "%s:%d: three numbers are expected: %s", t->path,
+                         t->line, t->kind->columns);
                 return -1;
             }
             at = end + strspn(end, " \t\r\n");
             if (*at == ',' || *at == ';') at += 1 + strspn(at + 1, " \t\r\n");
         }
         if (!*at) return 1;
-        diag_fail(t->diag, ERR_INPUT, "%s:%d: more than three columns; %s are expected", t->path,
-                  t->line, t->kind->columns);
+        diag_add(t->diag, ERR_INPUT, "%s:%d: more than three columns; %s are expected", t->path,
+                 t->line, t->kind->columns);
         return -1;
     }
     if (!ferror(t->file)) return 0;
-    diag_fail(t->diag, ERR_INPUT, "%s: cannot be read: %s", t->path, strerror(errno));
+    diag_add(t->diag, ERR_INPUT, "%s: cannot be read: %s", t->path, strerror(errno));
     return -1;
 }
 
@@ -73,16 +73,15 @@ static enum err fill_table(struct scene_table *table, struct table_file *t, int 
     for (table->n = 0; table->n < rows; table->n++) {
         const int k = table->n;
         if (read_row(t, row) != 1)
-            return diag_fail(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
+            return diag_add(t->diag, ERR_INPUT, "%s: changed while it was read", t->path);
         if (k > 0 && row[0] <= table->t[k - 1])
-            return diag_fail(t->diag, ERR_INPUT,
-                             "%s:%d: times must increase, but %g s follows %g s", t->path, t->line,
-                             row[0], table->t[k - 1]);
+            return diag_add(t->diag, ERR_INPUT, "%s:%d: times must increase, but %g s follows %g s",
+                            t->path, t->line, row[0], table->t[k - 1]);
         if (k == 0 && t->kind->from_rest && (row[0] < 0 || row[1] != 0 || row[2] != 0))
-            return diag_fail(t->diag, ERR_INPUT,
-                             "%s:%d: the first row must have a time of 0 or later and no "
-                             "displacement, usually `0, 0, 0`",
-                             t->path, t->line);
+            return diag_add(t->diag, ERR_INPUT,
+                            "%s:%d: the first row must have a time of 0 or later and no "
+                            "displacement, usually `0, 0, 0`",
+                            t->path, t->line);
         table->t[k] = row[0];
         table->x[k] = row[1];
         table->y[k] = row[2];
@@ -96,12 +95,12 @@ static enum err read_table(struct scene *s, struct scene_table *table, struct ta
     int rows = 0, more;
     while ((more = read_row(t, row)) > 0)
         if (++rows > MAX_ROWS)
-            return diag_fail(t->diag, ERR_INPUT, "%s: more than %d rows; use fewer", t->path,
-                             MAX_ROWS);
+            return diag_add(t->diag, ERR_INPUT, "%s: more than %d rows; use fewer", t->path,
+                            MAX_ROWS);
     if (more < 0) return ERR_INPUT;
     if (rows < 2)
-        return diag_fail(t->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d", t->path,
-                         t->kind->what, rows == 1 ? "is" : "are", rows);
+        return diag_add(t->diag, ERR_INPUT, "%s: %s needs two rows or more; there %s %d", t->path,
+                        t->kind->what, rows == 1 ? "is" : "are", rows);
     double **const columns[] = {&table->t, &table->x, &table->y, &table->vx, &table->vy};
     for (size_t k = 0; k < COUNT_OF(columns); k++) {
         *columns[k] = arena_alloc(&s->arena, (size_t)rows, sizeof(double), "table", t->diag);
@@ -116,15 +115,15 @@ enum err table_load(struct scene *s, struct scene_table *table, const struct tab
     char path[4096 + SCENE_TEXT], place[LOCATION_TEXT];
     scene_location(s, line, place);
     if (!scene_file(s, name, path, sizeof path))
-        return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
+        return diag_add(d, ERR_INPUT, "%s: the path of %s is too long", place, name);
     /* Opening a pipe would wait for its writer. */
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
-        return diag_fail(d, ERR_INPUT, "%s: %s = %s is not a regular file", place, key, name);
+        return diag_add(d, ERR_INPUT, "%s: %s = %s is not a regular file", place, key, name);
     FILE *file = fopen(path, "r");
     if (!file)
-        return diag_fail(d, ERR_INPUT, "%s: %s = %s cannot be opened: %s", place, key, name,
-                         strerror(errno));
+        return diag_add(d, ERR_INPUT, "%s: %s = %s cannot be opened: %s", place, key, name,
+                        strerror(errno));
     struct table_file t = {file, name, 0, kind, d};
     const enum err err = read_table(s, table, &t);
     fclose(file);

@@ -77,19 +77,19 @@ static enum err given_domain(struct scene *s, struct diag *d)
         s->domain_lower[c] = s->domain.lower[c];
         s->domain_upper[c] = s->domain.upper[c];
         if (!(s->domain.lower[c] < s->domain.upper[c]))
-            return diag_fail(d, ERR_INPUT,
-                             "%s: [domain] lower must lie below and left of upper; here "
-                             "%c is %g and %g m",
-                             place, "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
+            return diag_add(d, ERR_INPUT,
+                            "%s: [domain] lower must lie below and left of upper; here "
+                            "%c is %g and %g m",
+                            place, "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct scene_points *p = &s->points[kind];
         for (int64_t k = 0; k < p->n; k++) {
             if (in_domain(s, 0, p->x[k]) && in_domain(s, 1, p->y[k])) continue;
-            return diag_fail(d, ERR_INPUT,
-                             "%s: a %s particle at (%g, %g) m lies outside [domain]; enlarge "
-                             "[domain] or change the shape",
-                             place, kind_names[kind], p->x[k], p->y[k]);
+            return diag_add(d, ERR_INPUT,
+                            "%s: a %s particle at (%g, %g) m lies outside [domain]; enlarge "
+                            "[domain] or change the shape",
+                            place, kind_names[kind], p->x[k], p->y[k]);
         }
     }
     return ERR_OK;
@@ -103,10 +103,10 @@ static enum err check_period(const struct scene *s, int axis, const char *place,
     const double period = s->domain.upper[axis] - s->domain.lower[axis];
     const double n = period / s->top.dp;
     if (fabs(n - round(n)) <= 1e-6) return ERR_OK;
-    return diag_fail(d, ERR_INPUT,
-                     "%s: [domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
-                     "must be a whole number of them; %.9g m would fit",
-                     place, "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
+    return diag_add(d, ERR_INPUT,
+                    "%s: [domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
+                    "must be a whole number of them; %.9g m would fit",
+                    place, "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
 }
 
 /* Bodies are bonded within the domain only: a body through a periodic side would be cut there. */
@@ -122,11 +122,11 @@ static enum err check_span(const struct scene *s, int axis, int body, const char
     }
     const double gap = s->domain.upper[axis] - s->domain.lower[axis] - (high - low);
     if (gap >= 2 * s->h) return ERR_OK;
-    return diag_fail(d, ERR_INPUT,
-                     "%s: [domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
-                     "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
-                     "needed",
-                     place, s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
+    return diag_add(d, ERR_INPUT,
+                    "%s: [domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
+                    "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
+                    "needed",
+                    place, s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
 }
 
 static enum err check_periodic(const struct scene *s, struct diag *d)
@@ -135,16 +135,14 @@ static enum err check_periodic(const struct scene *s, struct diag *d)
     char place[LOCATION_TEXT];
     scene_location(s, s->domain.common.line, place);
     if (s->lattice.angle != 0)
-        return diag_fail(
-            d, ERR_INPUT,
-            "%s: [domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
-            "at the sides; it must be 0",
-            place, s->numerics.lattice_angle);
+        return diag_add(d, ERR_INPUT,
+                        "%s: [domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
+                        "at the sides; it must be 0",
+                        place, s->numerics.lattice_angle);
     for (int axis = 0; axis < 2; axis++) {
         if (!scene_periodic(s, axis)) continue;
         if (s->domain.lower[axis] >= s->domain.upper[axis])
-            return diag_fail(d, ERR_INPUT, "%s: [domain] periodic needs `lower` and `upper`",
-                             place);
+            return diag_add(d, ERR_INPUT, "%s: [domain] periodic needs `lower` and `upper`", place);
         TRY(check_period(s, axis, place, d));
         for (int k = 0; k < s->n_solid; k++) TRY(check_span(s, axis, k, place, d));
     }

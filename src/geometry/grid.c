@@ -24,11 +24,10 @@ static enum err grow(struct point_grid *t, struct sampler *g)
 {
     const int64_t capacity = t->capacity ? 2 * t->capacity : 256;
     if (capacity > INT32_MAX / 2)
-        return diag_fail(
-            g->diag, ERR_INPUT,
-            "%s: dp = %g m needs too many particles along curved or slanted edges; use "
-            "a larger dp or shorter edges",
-            g->scene->path, g->scene->top.dp);
+        return diag_add(g->diag, ERR_INPUT,
+                        "%s: dp = %g m needs too many particles along curved or slanted edges; use "
+                        "a larger dp or shorter edges",
+                        g->scene->path, g->scene->top.dp);
     double(*pt)[2] = arena_alloc(&g->temp, (size_t)capacity, sizeof *pt, "edges", g->diag);
     t->next = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->next, "edges", g->diag);
     t->head = arena_alloc(&g->temp, (size_t)capacity, sizeof *t->head, "edges", g->diag);

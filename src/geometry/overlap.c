@@ -94,11 +94,11 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
                               : "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
         mend = "walls that move differently must not overlap";
-    return diag_fail(g->diag, ERR_INPUT,
-                     "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
-                     "(%.6g, %.6g) m: %s",
-                     place, (long long)count, kind_names[mine->kind], mine->name,
-                     kind_names[its->kind], its->name, x, y, mend);
+    return diag_add(g->diag, ERR_INPUT,
+                    "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
+                    "(%.6g, %.6g) m: %s",
+                    place, (long long)count, kind_names[mine->kind], mine->name,
+                    kind_names[its->kind], its->name, x, y, mend);
 }
 
 /* Sets `kept`; fails if a region overlaps another one and must not. */

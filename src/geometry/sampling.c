@@ -62,16 +62,16 @@ static enum err check_size(struct sampler *g)
     const double memory = pages > 0 && page > 0 ? pages * page : 1e18;
     const double bytes = total * bytes_per_particle;
     if (total > 1e9 || bytes > memory)
-        return diag_fail(
+        return diag_add(
             g->diag, ERR_INPUT,
             "%s: dp = %g m gives about %.3g particles, which need %.3g GB. This machine has %.3g "
             "GB, and the limit is 1e9 particles; use a larger dp or smaller shapes",
             g->scene->path, dp, total, 1e-9 * bytes, 1e-9 * memory);
     if (cells > max_cells)
-        return diag_fail(g->diag, ERR_INPUT,
-                         "%s: the shapes span more than %g cells of dp = %g m; use a larger dp or "
-                         "smaller shapes",
-                         g->scene->path, max_cells, dp);
+        return diag_add(g->diag, ERR_INPUT,
+                        "%s: the shapes span more than %g cells of dp = %g m; use a larger dp or "
+                        "smaller shapes",
+                        g->scene->path, max_cells, dp);
     return ERR_OK;
 }
 
@@ -85,8 +85,8 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
     if (shape->n == 0) {
         char place[LOCATION_TEXT];
         scene_location(g->scene, common->line, place);
-        return diag_fail(g->diag, ERR_INPUT, "%s: [%s %s] has no shape", place, kind_names[kind],
-                         common->name);
+        return diag_add(g->diag, ERR_INPUT, "%s: [%s %s] has no shape", place, kind_names[kind],
+                        common->name);
     }
     TRY(outlines_of(&region->add, g->scene, shape, &g->temp, g->diag));
     TRY(outlines_of(&region->minus, g->scene, minus, &g->temp, g->diag));
@@ -319,14 +319,33 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
     return ERR_OK;
 }
 
+/* The shapes alone. */
+static enum err sample_shapes(struct sampler *g, struct samples *points)
+{
+    g->scene->h = g->scene->numerics.h_over_dp * g->scene->top.dp;
+    TRY(geometry_sample(g, points));
+    TRY(geometry_check_regions(g));
+    return geometry_problems(g);
+}
+
+void scene_check_rest(struct scene *s, enum scene_rest rest, struct diag *d)
+{
+    struct sampler g = {.scene = s, .diag = d};
+    struct samples points = {0};
+    if (rest == REST_NOTHING) return;
+    enum err err = sample_shapes(&g, &points);
+    if (!err && rest == REST_PLACES) err = geometry_merge(&g, &points);
+    if (!err && rest == REST_PLACES) err = geometry_open(&g);
+    if (!err && rest == REST_PLACES) err = geometry_extent(&g);
+    (void)err; /* the case has failed already */
+    arena_free(&g.temp);
+}
+
 enum err scene_sample(struct scene *s, struct diag *d)
 {
     struct sampler g = {.scene = s, .diag = d};
     struct samples points = {0};
-    s->h = s->numerics.h_over_dp * s->top.dp;
-    enum err err = geometry_sample(&g, &points);
-    if (!err) err = geometry_check_regions(&g);
-    if (!err) err = geometry_problems(&g);
+    enum err err = sample_shapes(&g, &points);
     if (!err) err = geometry_merge(&g, &points);
     if (!err) err = geometry_pack(&g);
     if (!err) err = geometry_open(&g);

@@ -40,7 +40,7 @@ struct sampler {
     struct region *regions; /* solids, walls, fluids: in order of priority */
     unsigned char *mask;    /* of a row */
     double *scratch;        /* crossings of a line */
-    int problems;           /* reported so far */
+    int problems;           /* found so far */
 };
 
 /* All points, region after region. */
@@ -52,10 +52,12 @@ struct samples {
 };
 
 /* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next section; the
- * error itself after CASE_MAX_PROBLEMS of them. geometry_problems then ends what needs sound input. */
+ * error itself after CASE_MAX_PROBLEMS of them and of the case's values. geometry_problems then ends what
+ * needs sound input. */
 SPHFSI_INLINE enum err geometry_go_on(struct sampler *g, enum err e)
 {
-    return e == ERR_INPUT && g->diag && ++g->problems < CASE_MAX_PROBLEMS ? ERR_OK : e;
+    g->problems += e == ERR_INPUT;
+    return e == ERR_INPUT && g->diag && diag_count(g->diag) < CASE_MAX_PROBLEMS ? ERR_OK : e;
 }
 
 SPHFSI_INLINE enum err geometry_problems(const struct sampler *g)
