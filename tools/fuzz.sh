@@ -6,6 +6,10 @@
 # build/fuzz/found. Found inputs grow in build/fuzz/; KEEP=1 adds those that reach new code to the corpus.
 set -eu
 cd "$(dirname "$0")/.."
+if ! command -v clang >/dev/null; then
+    echo "fuzz: clang and its runtime are missing; on Debian: sudo apt-get install clang libclang-rt-14-dev"
+    exit 1
+fi
 seconds=${1:-60}
 shift || true
 targets=("$@")
