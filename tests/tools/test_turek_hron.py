@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: MIT
 """The reader of the Turek-Hron benchmark: periods, mean and amplitude of series of known answer."""
 
+import os
 import sys
 from pathlib import Path
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only wait for each other
 
 import numpy as np
 
@@ -92,30 +95,35 @@ def correlated(noise, count, memory):
     return values
 
 
+def rest(function):
+    times, values = series(function)
+    return turek_hron.summary(times, values, None)
+
+
 def test_noise_about_a_mean_rests():
     """With a standard error of 5 to 40 % of the mean, which the trials scatter by."""
     for memory, size in ((1, 2), (10, 1)):
         ratios = []
-        for seed in range(40):
+        for seed in range(30):
             noise = np.random.default_rng(seed)
-            found = read(lambda t, n=noise, m=memory, s=size: 1 + s * correlated(n, len(t), m))
+            found = rest(lambda t, n=noise, m=memory, s=size: 1 + s * correlated(n, len(t), m))
             assert found["state"] != "steady", found
             if found["state"] == "steady within its noise":
                 ratios.append((found["mean"] - 1) / found["mean_error"])
-        assert len(ratios) >= 26, len(ratios)  # chance gives the others a trend
+        assert len(ratios) >= 18, len(ratios)  # chance gives the others a trend
         assert 0.6 < np.sqrt(np.mean(np.array(ratios) ** 2)) < 1.7, ratios
 
 
 def test_noise_hides_no_change():
     """Neither a drift of five standard errors, nor a slow swing or its end, nor noise that dies away."""
-    for seed in range(20):
+    for seed in range(10):
         noise = np.random.default_rng(seed)
         for change in (lambda t: t / 2,
                        lambda t: np.sin(2 * np.pi * 0.5 * t), lambda t: np.sin(2 * np.pi * 0.3 * t),
                        lambda t: 5 * np.exp(-t / 3) * np.sin(2 * np.pi * 0.4 * t)):
-            found = read(lambda t, n=noise, c=change: 1 + c(t) + n.normal(0, 0.5, len(t)))
+            found = rest(lambda t, n=noise, c=change: 1 + c(t) + n.normal(0, 0.5, len(t)))
             assert found["state"] == "neither steady nor periodic yet", (seed, found)
-        found = read(lambda t, n=noise: 1 + 100 * np.exp(-t / 3) * n.normal(0, 1, len(t)))
+        found = rest(lambda t, n=noise: 1 + 100 * np.exp(-t / 3) * n.normal(0, 1, len(t)))
         assert found["state"] == "neither steady nor periodic yet", (seed, found)
 
 
