@@ -19,6 +19,7 @@
 #   make verify-fluid    rest, waves, impact, openings with both schemes: docs/fluid_verification.md
 #   make stability-map   1440 plates over density, thickness and stiffness: docs/stability_map.json, picture
 #   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
+#   make verify-contact  restitution, pressure, friction, stacks, folds, impacts: docs/contact_verification.md
 #   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
 #   make gallery         run the small cases, draw the pictures of the README's table
 #   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
@@ -251,6 +252,9 @@ random-cases: $(PROGRAM)
 verify-fluid: $(PROGRAM)
 	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_fluid.py $(ARGS)
 
+verify-contact: $(PROGRAM)
+	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_contact.py $(ARGS)
+
 verify-manufactured: $(PROGRAM) $(SHARED)
 	$(Q)$(PROJECT_PYTHON) tools/manufactured.py $(ARGS)
 
@@ -327,7 +331,7 @@ test-web: $(PROGRAM)
 	@$(MAKE) --no-print-directory web || echo "there is no page: the test will be skipped"
 	@WEB=1 SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER=web/ tests/run.sh $(B)
 
-.PHONY: accuracy forecast verify-fluid verify-manufactured verify-open
+.PHONY: accuracy forecast verify-contact verify-fluid verify-manufactured verify-open
 accuracy: $(PROGRAM)
 	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
 	@$(MAKE) --no-print-directory all

@@ -10,49 +10,16 @@ says how far each is off (make verify-fluid, ten minutes on one core).
 The scenes are those of cases/verify, shipped cases and templates. tools/verify_fluid_measures.py says how
 each figure is taken. The figures are kept in docs/fluid_verification.json."""
 import argparse
-import csv
 import json
-import math
-import os
-import resource
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
 import verify_fluid_measures as of
+from verify_runs import ROOT, Run, case_of, cell, kept, number, program_version
 
-ROOT = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("SPHFSI", str(ROOT / "sphfsi"))
 REPORT = ROOT / "docs" / "fluid_verification.md"
 KEPT = REPORT.with_suffix(".json")  # the figures of each scene, as last run
 SCHEMES = ("paper", "standard")
-
-
-class Run:
-    """A finished run: its tables, its snapshots, and the seconds of processor time that it took."""
-
-    def __init__(self, case, scheme, settings, folder):
-        self.folder = folder
-        command = [PROGRAM, str(case), "--quiet", "--threads", "1", "--out", str(folder),
-                   "--set", f"scheme={scheme}"]
-        for setting in settings:
-            command += ["--set", setting]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        if done.returncode not in (0, 2):
-            sys.exit(f"verify_fluid: {' '.join(command)}: {done.stderr.strip()}")
-        top = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["parameters"]
-        self.dp, self.end_time = top["dp"], top["end_time"]
-
-    def table(self, name):
-        with open(self.folder / name, encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        return {column: np.array([float(row[k] or "nan") for row in rows[1:]])
-                for k, column in enumerate(rows[0])}
 
 
 def single(measure):
@@ -109,16 +76,6 @@ RUNS = [
 ]
 
 
-def case_of(scene, folder):
-    for path in (ROOT / "cases" / "verify" / f"{scene}.cfg", ROOT / "cases" / f"{scene}.cfg"):
-        if path.is_file():
-            return path
-    path = Path(folder) / f"{scene}.cfg"
-    text = subprocess.run([PROGRAM, "--new", scene], capture_output=True, text=True, check=True).stdout
-    path.write_text(text, encoding="utf-8")
-    return path
-
-
 def rows_of(name, scene):
     """One row a figure, with both schemes."""
     rows = []
@@ -126,24 +83,18 @@ def rows_of(name, scene):
         row = {"scene": name, "what": what, "limit": limit}
         for scheme, figures in scene["figures"].items():
             row[scheme] = figures[k][1]
-            row[scheme + "_kept"] = limit is None or abs(row[scheme]) <= limit
+            row[scheme + "_kept"] = kept(row[scheme], limit)
         rows.append(row)
     return rows
 
 
-def number(value):
-    if math.isnan(value):
-        return "stopped"
-    return str(value) if isinstance(value, int) else f"{value:.3g}"
-
-
 def answer(rows):
     """The first lines: which limits the standard scheme keeps."""
-    kept = [r for r in rows if r["limit"] is not None and r["standard_kept"]]
+    good = [r for r in rows if r["limit"] is not None and r["standard_kept"]]
     missed = [r for r in rows if r["limit"] is not None and not r["standard_kept"]]
-    lines = [f"The standard scheme keeps {len(kept)} of {len(kept) + len(missed)} limits; "
-             f"of {sum('paper' in r for r in kept + missed)} that were run with it the paper's keeps "
-             f"{sum(r.get('paper_kept', False) for r in kept + missed)}."]
+    lines = [f"The standard scheme keeps {len(good)} of {len(good) + len(missed)} limits; "
+             f"of {sum('paper' in r for r in good + missed)} that were run with it the paper's keeps "
+             f"{sum(r.get('paper_kept', False) for r in good + missed)}."]
     if missed:
         lines += ["", "It misses:", ""]
         lines += [f"* {r['scene']}, {r['what']}: {number(r['standard'])}, limit {number(r['limit'])}"
@@ -162,8 +113,7 @@ def report(scenes):
              "curve of the later peaks of a measured impact is at hand, so these are not judged.", "",
              "| scene | figure | limit | paper | standard |", "|---|---|---|---|---|"]
     for r in rows:
-        cells = ["" if s not in r else number(r[s]) if r[s + "_kept"] else f"({number(r[s])})"
-                 for s in SCHEMES]
+        cells = [cell(r[s], r["limit"]) if s in r else "" for s in SCHEMES]
         limit = "" if r["limit"] is None else number(r["limit"])
         lines.append(f"| {r['scene']} | {r['what']} | {limit} | {cells[0]} | {cells[1]} |")
     lines += ["", "Processor time, s, on a machine with other work:", "", "| scene | paper | standard |",
@@ -182,16 +132,15 @@ def main():
     parser.add_argument("--list", action="store_true", help="say which runs there are")
     parser.add_argument("--only", default="", help="part of a scene's name")
     chosen = parser.parse_args()
-    version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True)
     for scene, name, variants, measure in RUNS:
         if chosen.list:
             print(name)
         if chosen.list or chosen.only not in name:
             continue
-        now = {"version": version.stdout.splitlines()[0], "figures": {}, "seconds": {}}
+        now = {"version": program_version(), "figures": {}, "seconds": {}}
         for scheme in SCHEMES[standard_only(name):]:
             with tempfile.TemporaryDirectory() as folder:
-                runs = [Run(case_of(scene, folder), scheme, settings, Path(folder) / f"run{k}")
+                runs = [Run(case_of(scene, folder), [f"scheme={scheme}", *settings], Path(folder) / f"run{k}")
                         for k, settings in enumerate(variants)]
                 now["figures"][scheme] = measure(runs)
                 now["seconds"][scheme] = round(sum(run.seconds for run in runs), 1)
@@ -199,9 +148,9 @@ def main():
             print(name, row["what"], *(number(row[s]) for s in SCHEMES if s in row), flush=True)
         KEPT.write_text(json.dumps({**kept_figures(), name: now}, indent=1) + "\n", encoding="utf-8")
     if not chosen.list:
-        kept = kept_figures()
-        kept = {name: kept[name] for _, name, *_ in RUNS if name in kept}
-        REPORT.write_text(report(kept), encoding="utf-8")
+        known = kept_figures()
+        scenes = {name: known[name] for _, name, *_ in RUNS if name in known}
+        REPORT.write_text(report(scenes), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -9,46 +9,28 @@ examples:
 
 The scenes are cases/verify/open_*.cfg."""
 import argparse
-import csv
 import math
-import os
-import resource
-import subprocess
 import sys
 import tempfile
-from pathlib import Path
 
 import numpy as np
 
 import runfiles  # finds the package of the clone
+import verify_runs
 from sphfsi.snapshots import KINDS, Snapshots
+from verify_runs import ROOT, case_of, cell, kept, number, program_version
 
-ROOT = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("SPHFSI", str(ROOT / "sphfsi"))
 REPORT = ROOT / "docs" / "open_verification.md"
 G = 9.81
 
 
-class Run:
-    """A finished run: its tables, its fluid, and the seconds of processor time that it took."""
+class Run(verify_runs.Run):
+    """A finished run with the motion of its fluid."""
 
     def __init__(self, scene, settings, folder):
-        self.folder = Path(folder)
-        command = [PROGRAM, str(ROOT / "cases" / "verify" / f"{scene}.cfg"), "--quiet",
-                   "--threads", "1", "--out", str(folder)]
-        for setting in settings:
-            command += ["--set", setting]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        if done.returncode:
-            sys.exit(f"verify_open: {' '.join(command)}: {done.stderr.strip()}")
-
-    def table(self):
-        with open(self.folder / "probes.csv", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        return {column: np.array([float(row[k] or "nan") for row in rows[1:]])
-                for k, column in enumerate(rows[0])}
+        super().__init__(case_of(scene, folder), settings, folder)
+        if self.stopped:
+            sys.exit(f"verify_open: a guard stopped {scene} {' '.join(settings)}")
 
     def fluid(self):
         """Times, and for each the positions and velocities of the fluid."""
@@ -153,13 +135,9 @@ RUNS = [("vortex, 30 spacings over the channel", measure_vortex, 30),
         ("reversal, 40 spacings across", measure_reversal, 40)]
 
 
-def number(value):
-    return f"{value:.3g}"
-
-
 def report(rows, seconds, version):
     limited = [r for r in rows if r[3] is not None]
-    missed = [r for r in limited if abs(r[2]) > r[3]]
+    missed = [r for r in limited if not kept(r[2], r[3])]
     text = f"{len(limited) - len(missed)} of {len(limited)} limits are kept."
     if missed:
         text += " Those missed are in brackets."
@@ -172,8 +150,8 @@ def report(rows, seconds, version):
              "Its error is the same with `shifting = 2` instead of 10.", "",
              "| scene | figure | found | limit |", "|---|---|---|---|"]
     for scene, what, found, limit in rows:
-        cell = number(found) if limit is None or abs(found) <= limit else f"({number(found)})"
-        lines.append(f"| {scene} | {what} | {cell} | {'' if limit is None else number(limit)} |")
+        most = "" if limit is None else number(limit)
+        lines.append(f"| {scene} | {what} | {cell(found, limit)} | {most} |")
     lines += ["", "| scene | processor time, s |", "|---|---|"]
     lines += [f"| {name} | {used:.0f} |" for name, used in seconds.items()] + [""]
     return "\n".join(lines)
@@ -193,8 +171,7 @@ def main():
         for what, value, _ in found:
             print(name, what, number(value), flush=True)
     if rows and not chosen.only:
-        version = subprocess.run([PROGRAM, "--version"], capture_output=True, text=True, check=True)
-        REPORT.write_text(report(rows, seconds, version.stdout.splitlines()[0] + "."), encoding="utf-8")
+        REPORT.write_text(report(rows, seconds, program_version() + "."), encoding="utf-8")
 
 
 if __name__ == "__main__":
