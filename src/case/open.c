@@ -44,6 +44,27 @@ void scene_open_velocity(const struct scene_open *o, const double x[2], double t
             o->speed ? along * o->inward[c] : scene_expr_at_time(o->velocity[c], x[0], x[1], time);
 }
 
+enum { LINE_POINTS = 33, LINE_TIMES = 65 };
+
+/* Point k of those along the line. */
+static void line_point(const struct scene_open *o, int k, double x[2])
+{
+    const double part = (k + 0.5) / LINE_POINTS * o->length;
+    for (int c = 0; c < 2; c++) x[c] = o->from[c] + part * o->along[c];
+}
+
+double scene_open_flow(const struct scene_open *o, double time)
+{
+    double sum = 0;
+    for (int k = 0; k < LINE_POINTS; k++) {
+        double x[2], v[2];
+        line_point(o, k, x);
+        scene_open_velocity(o, x, time, v);
+        sum += v[0] * o->inward[0] + v[1] * o->inward[1];
+    }
+    return sum / LINE_POINTS * o->length;
+}
+
 /* --- checks --- */
 
 static const char *word_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
@@ -90,7 +111,26 @@ static enum err check_given(struct reader *r, const struct scene_open *o, int in
     return ERR_OK;
 }
 
-enum { LINE_POINTS = 33, LINE_TIMES = 65 };
+/* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
+static void warn_of_absorb(struct reader *r, const struct scene_open *o, int index)
+{
+    const struct scene *const s = r->scene;
+    const double wave = s->c0 * o->absorb / 4, reach = 2 * s->numerics.h_over_dp * s->top.dp;
+    const int line = scene_line(s, o->inflow ? SECTION_inflow : SECTION_outflow, index, "absorb");
+    if (!(o->absorb > 0) || o->kind != OPEN_PRESSURE || !(s->c0 > 0)) return;
+    if (wave < reach)
+        case_warn(r, line,
+                  "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The "
+                  "fluid resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out "
+                  "waves of up to the length L",
+                  word_of(o), o->common->name, o->absorb, wave, reach);
+    if (o->absorb > s->top.end_time)
+        case_warn(r, line,
+                  "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
+                  "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a "
+                  "shorter time",
+                  word_of(o), o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
+}
 
 /* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs. `largest`:
  * of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0 c0^2) in Eq. 2. */
@@ -119,9 +159,8 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
     for (int n = 0; n < LINE_TIMES; n++) {
         const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
         for (int k = 0; k < LINE_POINTS; k++) {
-            const double part = (k + 0.5) / LINE_POINTS * o->length;
-            const double x[2] = {o->from[0] + part * o->along[0], o->from[1] + part * o->along[1]};
-            double v[2] = {0, 0};
+            double x[2], v[2] = {0, 0};
+            line_point(o, k, x);
             if (o->kind == OPEN_VELOCITY) scene_open_velocity(o, x, time, v);
             if (o->pressure) v[0] = scene_expr_at_time(o->pressure, x[0], x[1], time);
             if (!isfinite(v[0] + v[1]))
@@ -173,7 +212,9 @@ enum err case_check_open(struct reader *r)
     }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
         const struct scene_open o = scene_open_at(s, k);
-        TRY(check_given(r, &o, o.inflow ? k : k - s->n_inflow));
+        const int index = o.inflow ? k : k - s->n_inflow;
+        TRY(check_given(r, &o, index));
+        warn_of_absorb(r, &o, index);
         TRY(check_profile(r, &o));
     }
     return ERR_OK;

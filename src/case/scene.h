@@ -382,6 +382,9 @@ SPHFSI_INLINE void scene_open_place(const struct scene_open *o, const double x[2
 /* The given velocity at a point of the line and a time, m/s. */
 void scene_open_velocity(const struct scene_open *o, const double x[2], double time, double v[2]);
 
+/* The flow that a given velocity brings into the fluid at a time, per depth, m^2/s. */
+double scene_open_flow(const struct scene_open *o, double time);
+
 /* Value of an expression at a point; of one in t at x = t (grammar: case/expr.h). */
 double scene_expr_at(const struct expr *e, double x, double y);
 /* Value of an expression in x, y and t. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a surface below
- * the water. Each gets a warning with the consequence and the remedy. Bodies: doubts_solid.c. */
+ * the water. Each gets a warning with the consequence and the remedy. Bodies: doubts_solid.c; open
+ * boundaries: doubts_open.c. */
 #include "geometry/sampling.h"
 #include "base/elementary.h"
 
@@ -360,7 +361,8 @@ enum err geometry_warn_of_doubts(struct sampler *g)
     TRY(warn_of_surface(g));
     warn_of_density(g);
     warn_of_soft_fluid(g);
-    geometry_warn_of_bodies(g);
+    TRY(geometry_warn_of_bodies(g));
+    TRY(geometry_warn_of_open(g));
     warn_of_pressure_probes(g);
     warn_of_drift(g);
     return warn_of_missing_floor(g);

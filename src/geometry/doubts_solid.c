@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Bodies that can be simulated but are probably a mistake: clamped all over, without a clamp, far too
  * soft or light. Each gets a warning with the consequence and the remedy. */
+#include "geometry/near.h"
 #include "geometry/sampling.h"
 #include "base/elementary.h"
 
@@ -102,53 +103,93 @@ static void warn_of_soft_bodies(struct sampler *g)
     }
 }
 
-/* Whether a free particle of a body lies beside a clamped one. */
-static bool beside_clamp(const struct scene_points *p, int64_t free, double dp)
-{
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->body[k] == p->body[free] && p->clamped[k] &&
-            square(p->x[k] - p->x[free]) + square(p->y[k] - p->y[free]) < square(1.5 * dp))
-            return true;
-    return false;
-}
+/* Fewer rows than a body needs across (geometry/check.c). */
+enum { RESOLVED_ROWS = 4 };
 
-/* Whether all that a clamp leaves free is a rim of one particle. */
-static bool is_rim(const struct scene *s, int body)
-{
-    const struct scene_points *const p = &s->points[KIND_SOLID];
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->body[k] == body && !p->clamped[k] && !beside_clamp(p, k, scene_solid_dp(s, body)))
-            return false;
-    return true;
-}
-
-static void warn_of_full_clamps(struct sampler *g)
+/* The clamped particles of all bodies, by cell. */
+static enum err find_clamped(struct near_table *t, struct sampler *g)
 {
     const struct scene *const s = g->scene;
     const struct scene_points *const p = &s->points[KIND_SOLID];
+    TRY(near_create(t, (RESOLVED_ROWS + 0.5) * s->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
+    for (int64_t k = 0; k < p->n; k++)
+        if (p->clamped[k]) near_insert(t, k);
+    return ERR_OK;
+}
+
+/* Whether a free particle lies within so many rows of a clamped one of its body. */
+static bool near_clamp(const struct near_table *t, const struct scene_points *p, int64_t free,
+                       int rows, double dp)
+{
+    const double x = p->x[free], y = p->y[free], within = square((rows + 0.5) * dp);
+    for (int64_t n = 0; n < 9; n++)
+        for (int32_t at = near_first(t, near_cell(t, x) + n % 3 - 1, near_cell(t, y) + n / 3 - 1);
+             at; at = t->next[at - 1])
+            if (p->body[at - 1] == p->body[free] &&
+                square(p->x[at - 1] - x) + square(p->y[at - 1] - y) < within)
+                return true;
+    return false;
+}
+
+/* How many rows of particles beside its clamps a body has free; RESOLVED_ROWS: these or more. */
+static int free_rows(const struct scene *s, const struct near_table *clamped, int body)
+{
+    const struct scene_points *const p = &s->points[KIND_SOLID];
+    const double dp = scene_solid_dp(s, body);
+    int rows = 0;
+    for (int64_t k = 0; k < p->n && rows < RESOLVED_ROWS; k++)
+        while (p->body[k] == body && !p->clamped[k] && rows < RESOLVED_ROWS &&
+               !near_clamp(clamped, p, k, rows, dp))
+            rows++;
+    return rows;
+}
+
+static void warn_of_few_rows(struct sampler *g, int body, int rows, int64_t free, int64_t all)
+{
+    const struct scene *const s = g->scene;
+    char place[LOCATION_TEXT];
+    scene_location(s, scene_line(s, SECTION_solid, body, "clamp"), place);
+    if (rows == 1)
+        diag_warn(g->diag,
+                  "%s: `clamp` leaves only %lld of %lld particles of [solid %s] free, all of them "
+                  "beside clamped ones: they move, but the body can neither bend nor stretch as "
+                  "drawn; make the clamp smaller, or use a finer dp",
+                  place, (long long)free, (long long)all, s->solid[body].common.name);
+    else
+        diag_warn(g->diag,
+                  "%s: `clamp` leaves only %d rows of particles of [solid %s] free, so what bends "
+                  "or stretches there is inaccurate; make the clamp smaller, or use a finer dp, "
+                  "for %d rows or more",
+                  place, rows, s->solid[body].common.name, RESOLVED_ROWS);
+}
+
+static enum err warn_of_full_clamps(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    const struct scene_points *const p = &s->points[KIND_SOLID];
+    struct near_table table;
+    TRY(find_clamped(&table, g));
     for (int body = 0; body < s->n_solid; body++) {
         int64_t all = 0, clamped = 0;
         for (int64_t k = 0; k < p->n; k++) {
             all += p->body[k] == body;
             clamped += p->body[k] == body && p->clamped[k];
         }
-        if (all == 0 || clamped == 0 || !is_rim(s, body)) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, s->solid[body].common.line, place);
-        if (clamped < all) {
-            diag_warn(g->diag,
-                      "%s: `clamp` leaves only %lld of %lld particles of [solid %s] free, all of "
-                      "them beside clamped ones: they move, but the body can neither bend nor "
-                      "stretch as drawn; make the clamp smaller, or use a finer dp",
-                      place, (long long)(all - clamped), (long long)all,
-                      s->solid[body].common.name);
+        if (all == 0 || clamped == 0) continue;
+        const int rows = free_rows(s, &table, body);
+        if (rows >= RESOLVED_ROWS || (rows > 0 && scene_is_bonded(s, body))) continue;
+        if (rows > 0) {
+            warn_of_few_rows(g, body, rows, all - clamped, all);
             continue;
         }
+        char place[LOCATION_TEXT];
+        scene_location(s, scene_line(s, SECTION_solid, body, "clamp"), place);
         diag_warn(g->diag,
                   "%s: `clamp` covers all %lld particles of [solid %s], so it cannot deform; make "
                   "the clamp smaller, or use a [wall], which is faster",
                   place, (long long)all, s->solid[body].common.name);
     }
+    return ERR_OK;
 }
 
 /* Whether a clamped particle of the body touches a particle of the wall. */
@@ -188,12 +229,13 @@ static void warn_of_other_motions(struct sampler *g)
     }
 }
 
-void geometry_warn_of_bodies(struct sampler *g)
+enum err geometry_warn_of_bodies(struct sampler *g)
 {
     warn_of_contact(g);
     warn_of_loose_bodies(g);
     warn_of_light_bodies(g);
     warn_of_soft_bodies(g);
-    warn_of_full_clamps(g);
+    TRY(warn_of_full_clamps(g));
     warn_of_other_motions(g);
+    return ERR_OK;
 }

@@ -98,7 +98,10 @@ enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
 /* Warns of bodies that are probably a mistake (geometry/doubts_solid.c). */
-void geometry_warn_of_bodies(struct sampler *g);
+enum err geometry_warn_of_bodies(struct sampler *g) SPHFSI_CHECKED;
+
+/* Warns of open boundaries that are probably a mistake (geometry/doubts_open.c). */
+enum err geometry_warn_of_open(struct sampler *g) SPHFSI_CHECKED;
 
 /* Warns of scenes that can be simulated but are probably a mistake (geometry/doubts.c). */
 enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
