@@ -146,7 +146,9 @@ expect 0 '' "$case" --out "$dir/whole" --restart
 cmp -s "$dir/kept" "$dir/whole/probes.csv" || fail "--restart of a finished run changes its rows"
 expect 1 'above 0' "$case" --out "$dir/no" --until nan
 expect 1 'above 0' "$case" --out "$dir/no" --until 1e400
-expect 1 'above 0' "$case" --out "$dir/no" --until '1 s'
+expect 1 'above 0' "$case" --out "$dir/no" --until '1 m'
+expect 1 'above 0' "$case" --out "$dir/no" --until '1 s s'
+expect 1 'above 0' "$case" --out "$dir/no" --until '1e10 h'
 
 # --- a folder that may be read only, where permissions count ---
 if [ "$(id -u)" != 0 ]; then
