@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Scenes that can be simulated but are probably a mistake: a tank without a bottom, a surface below
  * the water. Each gets a warning with the consequence and the remedy. Bodies: doubts_solid.c; open
- * boundaries: doubts_open.c. */
+ * boundaries: doubts_open.c; how the fluid begins: doubts_start.c. */
 #include "geometry/sampling.h"
 #include "base/elementary.h"
 
@@ -127,7 +127,7 @@ static void warn_of_low_surface(struct sampler *g, int f)
     int64_t above = 0;
     double top = -HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++) {
-        if (p->body[k] != f) continue;
+        if (p->body[k] != f || (p->open && p->open[k] > 0)) continue;
         above += p->y[k] > fluid->surface;
         top = max2(top, p->y[k] + 0.5 * s->top.dp);
     }
@@ -289,27 +289,43 @@ static bool only_falls(const struct scene *s)
     return falls && s->points[KIND_FLUID].n > 0;
 }
 
-/* A pressure is a mean over the fluid within 2 h. */
-static void warn_of_pressure_probes(struct sampler *g)
+/* A value at a point is a mean over the fluid within 2 h. */
+static void warn_of_buried_probe(struct sampler *g, const struct scene_probe *probe)
+{
+    const struct scene *const s = g->scene;
+    char place[LOCATION_TEXT], quantity[SCENE_NAME];
+    scene_location(s, probe->common.line, place);
+    param_choice_name(param_find(SECTION_probe, "quantity"), probe->quantity, quantity);
+    if (probe->quantity == PROBE_LEVEL)
+        diag_warn(g->diag,
+                  "%s: [probe %s] point = %g, %g lies inside a wall or solid, where there is no "
+                  "fluid, so its level is that of the point; move it to the face",
+                  place, probe->common.name, probe->point[0], probe->point[1]);
+    else
+        diag_warn(g->diag,
+                  "%s: [probe %s] point = %g, %g lies inside a wall or solid, where there is no "
+                  "fluid: its %s is that of fluid within 2 h = %g m, or 0; move it to the face",
+                  place, probe->common.name, probe->point[0], probe->point[1], quantity, 2 * s->h);
+}
+
+static void warn_of_fluid_probes(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *const probe = &s->probe[k];
+        if (scene_probe_target(probe) != TARGET_FLUID_POINT) continue;
+        if (is_buried(g, probe->point)) {
+            warn_of_buried_probe(g, probe);
+            continue;
+        }
+        if (probe->quantity != PROBE_PRESSURE || !only_falls(s)) continue;
+        if (height_above(s, probe->point) <= 2 * s->h) continue;
         char place[LOCATION_TEXT];
-        if (probe->quantity != PROBE_PRESSURE) continue;
         scene_location(s, probe->common.line, place);
-        if (is_buried(g, probe->point))
-            diag_warn(
-                g->diag,
-                "%s: [probe %s] point = %g, %g lies inside a wall or solid, where there is no "
-                "fluid: its pressure is that of fluid within 2 h = %g m, or 0; move it to "
-                "the face",
-                place, probe->common.name, probe->point[0], probe->point[1], 2 * s->h);
-        else if (only_falls(s) && height_above(s, probe->point) > 2 * s->h)
-            diag_warn(g->diag,
-                      "%s: [probe %s] point = %g, %g lies in the air, above all fluid, so its "
-                      "pressure is 0 unless a splash reaches it; move it into the fluid",
-                      place, probe->common.name, probe->point[0], probe->point[1]);
+        diag_warn(g->diag,
+                  "%s: [probe %s] point = %g, %g lies in the air, above all fluid, so its "
+                  "pressure is 0 unless a splash reaches it; move it into the fluid",
+                  place, probe->common.name, probe->point[0], probe->point[1]);
     }
 }
 
@@ -363,7 +379,8 @@ enum err geometry_warn_of_doubts(struct sampler *g)
     warn_of_soft_fluid(g);
     TRY(geometry_warn_of_bodies(g));
     TRY(geometry_warn_of_open(g));
-    warn_of_pressure_probes(g);
+    TRY(geometry_warn_of_start(g));
+    warn_of_fluid_probes(g);
     warn_of_drift(g);
     return warn_of_missing_floor(g);
 }

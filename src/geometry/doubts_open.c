@@ -1,85 +1,29 @@
 /* SPDX-License-Identifier: MIT
  * Open boundaries that can be simulated but are probably a mistake: given velocities that do not balance in a
  * full channel, lines that end inside the fluid. */
-#include "geometry/near.h"
-#include "geometry/sampling.h"
+#include "geometry/point_index.h"
 
 #include "case/case.h"
 
 #include <math.h>
 
-/* All points, by cell. */
-struct index {
-    const struct scene *scene;
-    struct near_table table;
-    int64_t n;
-    double *x, *y;
-    bool *own; /* fluid, but not of a buffer */
-};
-
-static enum err index_points(struct index *to, struct sampler *g)
-{
-    const struct scene *const s = g->scene;
-    int64_t n = 0;
-    for (int kind = 0; kind < KIND_COUNT; kind++) n += s->points[kind].n;
-    *to = (struct index){.scene = s};
-    to->x = arena_alloc(&g->temp, (size_t)n, sizeof *to->x, "open boundaries", g->diag);
-    to->y = arena_alloc(&g->temp, (size_t)n, sizeof *to->y, "open boundaries", g->diag);
-    to->own = arena_alloc(&g->temp, (size_t)n, sizeof *to->own, "open boundaries", g->diag);
-    if (!to->x || !to->y || !to->own) return ERR_MEMORY;
-    TRY(near_create(&to->table, s->top.dp, n, to->x, to->y, &g->temp, g->diag));
-    for (int kind = 0; kind < KIND_COUNT; kind++)
-        for (int64_t k = 0; k < s->points[kind].n; k++) {
-            to->x[to->n] = s->points[kind].x[k];
-            to->y[to->n] = s->points[kind].y[k];
-            to->own[to->n] = kind == KIND_FLUID && s->points[kind].open[k] == 0;
-            near_insert(&to->table, to->n++);
-        }
-    return ERR_OK;
-}
-
-/* Whether a point lies within a distance of at most dp, in this image of a periodic domain. */
-static bool has_point(const struct index *of, double x, double y, double within, bool own)
-{
-    const int64_t i = near_cell(&of->table, x), j = near_cell(&of->table, y);
-    for (int64_t n = 0; n < 9; n++)
-        for (int32_t at = near_first(&of->table, i + n % 3 - 1, j + n / 3 - 1); at;
-             at = of->table.next[at - 1])
-            if (square(of->x[at - 1] - x) + square(of->y[at - 1] - y) < square(within) &&
-                (of->own[at - 1] || !own))
-                return true;
-    return false;
-}
-
-static bool has_any(const struct index *of, const double at[2], double within, bool own)
-{
-    const struct scene *const s = of->scene;
-    const int nx = scene_periodic(s, 0), ny = scene_periodic(s, 1);
-    for (int i = -nx; i <= nx; i++)
-        for (int j = -ny; j <= ny; j++)
-            if (has_point(of, at[0] + i * (s->domain_upper[0] - s->domain_lower[0]),
-                          at[1] + j * (s->domain_upper[1] - s->domain_lower[1]), within, own))
-                return true;
-    return false;
-}
-
 /* Whether fluid somewhere has nothing beside it. */
-static bool has_free_surface(const struct index *of)
+static bool has_free_surface(const struct point_index *of)
 {
     const double dp = of->scene->top.dp;
     for (int64_t k = 0; k < of->n; k++)
-        for (int side = 0; side < 4 && of->own[k]; side++) {
+        for (int side = 0; side < 4 && of->bit[k] == POINT_FLUID; side++) {
             const double step = side % 2 ? 1.2 * dp : -1.2 * dp;
             const double at[2] = {of->x[k] + (side < 2 ? step : 0),
                                   of->y[k] + (side < 2 ? 0 : step)};
-            if (!has_any(of, at, dp, false)) return true;
+            if (point_index_at(of, at, dp, POINT_ANY) < 0) return true;
         }
     return false;
 }
 
 /* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there. */
-static void warn_of_end(const struct sampler *g, const struct index *of, const struct scene_open *o,
-                        bool last)
+static void warn_of_end(const struct sampler *g, const struct point_index *of,
+                        const struct scene_open *o, bool last)
 {
     const double dp = g->scene->top.dp, along = last ? o->length + 0.5 * dp : -0.5 * dp;
     double front[2], behind[2];
@@ -88,7 +32,9 @@ static void warn_of_end(const struct sampler *g, const struct index *of, const s
         front[c] = at + 0.5 * dp * o->inward[c];
         behind[c] = at - 0.5 * dp * o->inward[c];
     }
-    if (!has_any(of, front, 0.75 * dp, true) || has_any(of, behind, 0.8 * dp, false)) return;
+    if (point_index_at(of, front, 0.75 * dp, POINT_FLUID) < 0 ||
+        point_index_at(of, behind, 0.8 * dp, POINT_ANY) >= 0)
+        return;
     char place[LOCATION_TEXT];
     scene_location(g->scene, o->common->line, place);
     diag_warn(g->diag,
@@ -119,13 +65,13 @@ static double surplus(const struct scene *s, double volume, double *time)
 }
 
 /* Given velocities hold exactly, whatever the pressure. */
-static void warn_of_balance(const struct sampler *g, const struct index *of)
+static void warn_of_balance(const struct sampler *g, const struct point_index *of)
 {
     const struct scene *const s = g->scene;
     int64_t n = 0;
     for (int k = 0; k < scene_open_count(s); k++)
         if (scene_open_at(s, k).kind != OPEN_VELOCITY) return;
-    for (int64_t k = 0; k < of->n; k++) n += of->own[k];
+    for (int64_t k = 0; k < of->n; k++) n += of->bit[k] == POINT_FLUID;
     double time;
     const double volume = (double)n * square(s->top.dp), more = surplus(s, volume, &time);
     if (more == 0 || has_free_surface(of)) return;
@@ -142,15 +88,47 @@ static void warn_of_balance(const struct sampler *g, const struct index *of)
         more > 0 ? "its pressure rises until a guard stops the run" : "voids open in it");
 }
 
+/* The height up to which a buffer, or the fluid within 2 dp of the line, reaches. */
+static double top_of(const struct point_index *of, const struct scene_open *o, int bit)
+{
+    const double dp = of->scene->top.dp;
+    double top = -HUGE_VAL;
+    for (int64_t k = 0; k < of->n; k++) {
+        double in, along;
+        if (of->bit[k] != bit) continue;
+        scene_open_place(o, (const double[]){of->x[k], of->y[k]}, &in, &along);
+        if (along < 0 || along > o->length || in < -o->depth || in > 2 * dp) continue;
+        top = max2(top, of->y[k] + 0.5 * dp);
+    }
+    return top;
+}
+
+/* Without a level the buffer is filled over the whole line. */
+static void warn_of_level(const struct sampler *g, const struct point_index *of,
+                          const struct scene_open *o)
+{
+    const struct scene *const s = g->scene;
+    const double buffer = top_of(of, o, POINT_BUFFER), fluid = top_of(of, o, POINT_FLUID);
+    if (!(s->top.gravity[1] < 0) || !isnan(o->level) || !(buffer > fluid + 1.5 * s->top.dp)) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, o->common->line, place);
+    diag_warn(g->diag,
+              "%s: the line of [%s %s] passes fluid up to y = %.4g m, but the surface of the fluid "
+              "before it is at y = %.4g m. Above it fluid %s; `level = %.4g m` prevents this",
+              place, o->inflow ? "inflow" : "outflow", o->common->name, buffer, fluid,
+              o->inflow ? "falls in" : "waits", fluid);
+}
+
 enum err geometry_warn_of_open(struct sampler *g)
 {
     const struct scene *const s = g->scene;
-    struct index points;
+    struct point_index points;
     if (scene_open_count(s) == 0 || s->n_fluid == 0) return ERR_OK;
-    TRY(index_points(&points, g));
+    TRY(point_index_create(&points, g));
     for (int k = 0; k < scene_open_count(s); k++) {
         const struct scene_open o = scene_open_at(s, k);
         for (int last = 0; last < 2; last++) warn_of_end(g, &points, &o, last);
+        warn_of_level(g, &points, &o);
     }
     warn_of_balance(g, &points);
     return ERR_OK;

@@ -22,13 +22,14 @@ static void warn_of_contact(struct sampler *g)
               "each other and through walls; periodic = none enables contact");
 }
 
-/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load. */
+/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load, unless it
+ * begins with a velocity. */
 static void warn_of_loose_bodies(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *const b = &s->solid[k];
-        if (b->clamp.n || b->joined[0]) continue;
+        if (b->clamp.n || b->joined[0] || b->velocity.e[0]) continue;
         bool loaded = false;
         for (int m = 0; m < s->n_load; m++) loaded |= scene_find_solid(s, s->load[m].body) == k;
         const bool falls = b->gravity && effects_of_scene(s) & FX_GRAVITY;

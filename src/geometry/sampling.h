@@ -103,6 +103,10 @@ enum err geometry_warn_of_bodies(struct sampler *g) SPHFSI_CHECKED;
 /* Warns of open boundaries that are probably a mistake (geometry/doubts_open.c). */
 enum err geometry_warn_of_open(struct sampler *g) SPHFSI_CHECKED;
 
+/* Warns of fluid that begins beside what is to hold it, and of motions faster than sound
+ * (geometry/doubts_start.c). */
+enum err geometry_warn_of_start(struct sampler *g) SPHFSI_CHECKED;
+
 /* Warns of scenes that can be simulated but are probably a mistake (geometry/doubts.c). */
 enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
 

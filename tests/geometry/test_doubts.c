@@ -52,7 +52,7 @@ static void test_a_tank_without_a_floor(void)
     TEST_ASSERT_NOT_NULL(strstr(warnings, "doubts.cfg:4: "));
     /* Gravity along x: the right side holds the water, nothing else is needed. */
     read("dp = 5 mm\nend_time = 1 s\ngravity = 9.81, 0\n"
-         "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\n" SIDES);
+         "[fluid water]\nshape = box 0, 0, 0.1, 0.05\nsound_speed = 10\npressure = 9810*x\n" SIDES);
     TEST_ASSERT_EQUAL_STRING("", warnings);
     /* The same against x, read first, so that nothing is left of another direction. */
     static const char *const sides[] = {
@@ -62,8 +62,8 @@ static void test_a_tank_without_a_floor(void)
         char text[512];
         snprintf(text, sizeof text,
                  "dp = 5 mm\nend_time = 1 s\n%s[fluid water]\nshape = box 0, 0, 0.1, 0.05\n"
-                 "sound_speed = 10\n",
-                 sides[k % 2]);
+                 "sound_speed = 10\npressure = 9810*%s\n",
+                 sides[k % 2], k % 2 ? "x" : "(0.1 - x)");
         read(text);
         TEST_ASSERT_EQUAL_STRING("", warnings);
     }

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+#include "geometry/point_index.h"
+
+#define ALLOCATE(field)                                                                     \
+    do {                                                                                    \
+        to->field = arena_alloc(&g->temp, (size_t)n, sizeof *to->field, "points", g->diag); \
+        if (!to->field) return ERR_MEMORY;                                                  \
+    } while (0)
+
+enum err point_index_create(struct point_index *to, struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    int64_t n = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) n += s->points[kind].n;
+    *to = (struct point_index){.scene = s};
+    ALLOCATE(x);
+    ALLOCATE(y);
+    ALLOCATE(section);
+    ALLOCATE(kind);
+    ALLOCATE(bit);
+    TRY(near_create(&to->table, s->top.dp, n, to->x, to->y, &g->temp, g->diag));
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t k = 0; k < s->points[kind].n; k++) {
+            const struct scene_points *const p = &s->points[kind];
+            to->x[to->n] = p->x[k];
+            to->y[to->n] = p->y[k];
+            to->section[to->n] = p->body[k];
+            to->kind[to->n] = (uint8_t)kind;
+            to->bit[to->n] = kind != KIND_FLUID          ? POINT_BODY
+                             : p->open && p->open[k] > 0 ? POINT_BUFFER
+                                                         : POINT_FLUID;
+            near_insert(&to->table, to->n++);
+        }
+    return ERR_OK;
+}
+
+/* In one image of a periodic domain. */
+static int64_t point_at(const struct point_index *of, double x, double y, double within, int kinds)
+{
+    const int64_t i = near_cell(&of->table, x), j = near_cell(&of->table, y);
+    for (int64_t n = 0; n < 9; n++)
+        for (int32_t at = near_first(&of->table, i + n % 3 - 1, j + n / 3 - 1); at;
+             at = of->table.next[at - 1])
+            if (square(of->x[at - 1] - x) + square(of->y[at - 1] - y) < square(within) &&
+                of->bit[at - 1] & kinds)
+                return at - 1;
+    return -1;
+}
+
+int64_t point_index_at(const struct point_index *of, const double at[2], double within, int kinds)
+{
+    const struct scene *const s = of->scene;
+    const int nx = scene_periodic(s, 0), ny = scene_periodic(s, 1);
+    for (int i = -nx; i <= nx; i++)
+        for (int j = -ny; j <= ny; j++) {
+            const int64_t found =
+                point_at(of, at[0] + i * (s->domain_upper[0] - s->domain_lower[0]),
+                         at[1] + j * (s->domain_upper[1] - s->domain_lower[1]), within, kinds);
+            if (found >= 0) return found;
+        }
+    return -1;
+}

@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ * Starts that are hardly meant are warned of: fluid beside its container, fluid without its weight's
+ * pressure, motions near the speed of sound, inflows above the surface, probes inside walls. */
+#include "geometry/load.h"
+#include "unity.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static struct scene scene;
+static char warnings[4096];
+
+static void note(void *context, const char *text)
+{
+    (void)context;
+    const size_t n = strlen(warnings);
+    snprintf(warnings + n, sizeof warnings - n, "%s\n", text);
+}
+
+static void read(const char *text)
+{
+    struct diag diag = {.warn = note};
+    scene_free(&scene);
+    warnings[0] = '\0';
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
+                                  scene_load_text(&scene, text, "start.cfg", 0, NULL, &diag),
+                                  diag.text);
+}
+
+static void expect(const char *text)
+{
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, text), warnings);
+}
+
+void setUp(void) {}
+
+void tearDown(void) { scene_free(&scene); }
+
+#define HEAD "dp = 5 mm\nend_time = 1 s\ngravity = 0, -9.81\n"
+#define WATER "[fluid water]\nsound_speed = 10\nsurface = 0.05\n"
+#define TANK                                                                         \
+    "[wall tank]\nshape = box -0.02, -0.02, 0.12, 0\nshape = box -0.02, 0, 0, 0.1\n" \
+    "shape = box 0.1, 0, 0.12, 0.1\n"
+
+static void test_fluid_a_little_beside_its_wall(void)
+{
+    read(HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD WATER "shape = box 0.005, 0, 0.1, 0.05\n" TANK);
+    expect("start.cfg:4: [fluid water] begins one dp = 0.005 m away from [wall tank]");
+    /* Wider: a dam break. Above the fluid: a lid. */
+    read(HEAD WATER "shape = box 0, 0, 0.09, 0.05\n" TANK);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK
+                    "[wall lid]\nshape = box -0.02, 0.06, 0.12, 0.08\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins"), warnings);
+}
+
+static void test_fluid_without_the_pressure_of_its_weight(void)
+{
+    read(HEAD "[fluid water]\nsound_speed = 10\nshape = box 0, 0, 0.1, 0.05\n" TANK);
+    expect("start.cfg:4: [fluid water] begins without the pressure of its weight");
+    expect("twice its 490 Pa");
+    read(HEAD "[fluid water]\nsound_speed = 10\nshape = box 0, 0, 0.1, 0.05\n"
+              "pressure = 1000*9.81*(0.05 - y)\n" TANK);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    /* What falls has none. With a surface it would spout. */
+    read(HEAD "[fluid drop]\nsound_speed = 10\nshape = box 0, 0.05, 0.1, 0.1\n" TANK);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "weight"), warnings);
+    read(HEAD
+         "[fluid drop]\nsound_speed = 10\nsurface = 0.1\nshape = box 0, 0.05, 0.1, 0.1\n" TANK);
+    expect("[fluid drop] has a `surface`, but stands on nothing: it begins with up to 490 Pa");
+}
+
+static void test_a_motion_near_the_speed_of_sound(void)
+{
+#define DRIVEN HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK "motion = shake\n"
+    read(DRIVEN "[motion shake]\nvelocity = 2.9*sin(6.3*t), 0\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "[motion shake]"), warnings);
+    read(DRIVEN "[motion shake]\nvelocity = 4*sin(6.3*t), 0\n");
+    expect("[motion shake] moves [wall tank] at up to 4 m/s at t = ");
+    expect("sound_speed = 40 or more");
+    /* 90 turns a second where 90 degrees were meant, 0.1 m off its axis. */
+    read(DRIVEN "[motion shake]\nkind = rotation\ncentre = 0, 0\nangle = 90\n");
+    expect("angles are in radians");
+}
+
+static void test_an_inflow_above_the_surface(void)
+{
+#define CHANNEL                                                                               \
+    HEAD WATER "shape = box 0, 0, 0.4, 0.05\n[wall bed]\nshape = box -0.06, -0.02, 0.46, 0\n" \
+               "[outflow o]\nfrom = 0.4, 0\nto = 0.4, 0.1\nlevel = 0.05\n"                    \
+               "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nvelocity = 0.1, 0\n"
+    read(CHANNEL);
+    expect("the line of [inflow i] passes fluid up to y = 0.1 m");
+    expect("Above it fluid falls in; `level = 0.05 m` prevents this");
+    read(CHANNEL "level = 0.05\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "passes fluid up to"), warnings);
+}
+
+static void test_probes_inside_a_wall(void)
+{
+#define PROBED HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK "[probe p]\n"
+    read(PROBED "quantity = velocity\npoint = 0.05, -0.01\n");
+    expect("its velocity is that of fluid within 2 h");
+    read(PROBED "quantity = level\npoint = 0.05, -0.01\n");
+    expect("so its level is that of the point");
+    read(PROBED "quantity = velocity\npoint = 0.05, 0.02\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
+static void test_a_body_that_is_thrown(void)
+{
+#define BALL \
+    HEAD "[solid ball]\nshape = circle 0, 0, 0.03\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+    read(BALL);
+    expect("[solid ball] has no clamp");
+    read(BALL "velocity = 1, 0\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "has no clamp"), warnings);
+}
+
+int main(void)
+{
+    UNITY_BEGIN();
+    RUN_TEST(test_fluid_a_little_beside_its_wall);
+    RUN_TEST(test_fluid_without_the_pressure_of_its_weight);
+    RUN_TEST(test_a_motion_near_the_speed_of_sound);
+    RUN_TEST(test_an_inflow_above_the_surface);
+    RUN_TEST(test_probes_inside_a_wall);
+    RUN_TEST(test_a_body_that_is_thrown);
+    return UNITY_END();
+}
