@@ -74,6 +74,36 @@ static void warn_of_bound(const struct simulation *s, struct diag *d)
     }
 }
 
+/* Bodies that limit the step of the fluid: one that is light, or one that steps together with the fluid. */
+static void warn_of_bodies(const struct simulation *s, struct diag *d)
+{
+    char place[PLACE_TEXT];
+    const double acoustic = s->scene->numerics.cfl * s->fluid.k.h / s->fluid.k.c0;
+    const double added = s->dt_bound[BOUND_added_mass], solid = s->dt_bound[BOUND_solid];
+    if (s->effects & FX_COUPLING && added < 0.1 * acoustic) {
+        int lightest;
+        timestep_added_mass(s, &lightest);
+        const struct scene_solid *const body = &s->scene->solid[lightest];
+        place_of(s->scene, SECTION_solid, lightest, "density", place);
+        diag_warn(d,
+                  "%s[solid %s] is %.3g times as dense as the fluid. So light a body limits the "
+                  "time step to %.3g s, while sound waves would allow %.3g times as much. The run "
+                  "takes that many times longer; a denser body allows longer steps",
+                  place, body->common.name, body->density / s->scene->rho0, added,
+                  acoustic / added);
+    }
+    if (s->effects & FX_SOLID && !(s->effects & FX_MULTIRATE) && solid < 0.1 * acoustic &&
+        s->scene->numerics.multirate == MULTIRATE_OFF) {
+        place_of(s->scene, SECTION_numerics, 0, "multirate", place);
+        diag_warn(d,
+                  "%sthe solid limits the time step of the fluid to %.3g s, while sound waves "
+                  "would allow "
+                  "%.3g times as much. The run takes up to that many times longer; "
+                  "numerics.multirate = auto gives the solid steps of its own",
+                  place, solid, acoustic / solid);
+    }
+}
+
 void slow_warn(const struct simulation *s, struct diag *d)
 {
     const struct scene *const c = s->scene;
@@ -88,4 +118,5 @@ void slow_warn(const struct simulation *s, struct diag *d)
         warn_of_interval(s, SECTION_probe, k, "interval", c->probe[k].interval, step, d);
     warn_of_damping(s, d);
     if (fluid) warn_of_bound(s, d);
+    if (fluid) warn_of_bodies(s, d);
 }
