@@ -148,6 +148,13 @@ static void test_across_periodic_sides(void)
         assert_near(1e-9, middle.vx, at.vx, "vx");
     }
     assert_near(1e-9, 0, simulation_level(&rig.sim, 0.15, -0.2), "water up to the top");
+    /* Lines over the whole period, from any side, in it or on it, and over two of them. */
+    static const double lines[][4] = {{0.01, 0, 0.01, -0.3},     {0.01, -0.3, 0.01, 0},
+                                      {0, -0.15, 0, 0.15},       {0.15, -0.1, 0.15, -0.4},
+                                      {0.0533, -0.3, 0.0533, 0}, {0.1, 0, 0.1, -0.6}};
+    for (size_t k = 0; k < COUNT_OF(lines); k++)
+        assert_near(1e-9, lines[k][3] - lines[k][1],
+                    simulation_flux(&rig.sim, lines[k], lines[k] + 2), "flux over the period");
 }
 
 int main(void)
