@@ -8,16 +8,18 @@
 
 /* --- forces of a pair --- */
 
-/* T-62 for a point at `offset` from its foot on an edge, at distance r, with the relative velocity v and
- * the displacement d from the place where it sticks. The dashpot may reduce the repulsion but not turn
- * it into attraction. */
-static void point_force(const struct pair *q, const double offset[2], double r, const double v[2],
-                        const double d[2], double f[2])
+/* T-62 for a point at `offset` from a place on an edge where it repels it with the reach `reach`, with the
+ * relative velocity v and the displacement d from the place where it sticks. The dashpot may reduce the
+ * repulsion but not turn it into attraction. */
+static void point_force(const struct pair *q, const double offset[2], double reach,
+                        const double v[2], const double d[2], double f[2])
 {
     f[0] = f[1] = 0;
-    if (!(r < q->reach) || r == 0) return;
+    const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
+                 left = r - (reach - q->room);
+    if (!(left < q->room) || left <= 0) return;
     const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
-    const double normal = max2(0, elastic_force(q, r) - q->damping * along);
+    const double normal = max2(0, elastic_force(q, left) - q->damping * along);
     f[0] = normal * n[0];
     f[1] = normal * n[1];
     if (!(q->friction > 0)) return;
@@ -30,34 +32,36 @@ static void point_force(const struct pair *q, const double offset[2], double r, 
     f[1] -= less * drag[1];
 }
 
-/* The same for one of the points. */
-static void end_force(const struct contact *c, const struct pair *q, int32_t point, int32_t end,
-                      double f[2])
+/* The same for an end of the edge. */
+static void end_force(const struct contact *c, const struct contact_law *law, const struct pair *q,
+                      int32_t point, int32_t end, double f[2])
 {
     const double offset[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
     const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
     double d[2];
     contact_stick(c, point, end, end, 0, d);
-    point_force(q, offset, sqrt(offset[0] * offset[0] + offset[1] * offset[1]), v, d, f);
+    point_force(q, offset, contact_reach(c, law, point, end), v, d, f);
 }
 
 /* T-61a: an edge acts with its full force, less the fraction that its end points exert, which the
- * edges that meet there divide among them. */
+ * edges that meet there divide among them. The place on the edge is that of the largest overlap (T-61b),
+ * so its change contributes nothing to the derivative of the potential. */
 static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
                        struct contact_force *out)
 {
     const struct contact_law law = contact_pair_law(c, point, edge);
-    const struct contact_foot foot = contact_foot(c, point, edge);
-    if (!law.on || !(foot.distance < law.reach)) return false;
-    const struct pair q = pair_of(c, &law, point, edge);
+    if (!law.on) return false;
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
+    if (!(foot.distance < foot.reach)) return false;
+    const struct pair q = pair_of(c, &law, point, edge, foot.room);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double s = foot.at, offset[2] = {foot.x, foot.y};
     double v[2], d[2], f[2], fa[2], fb[2];
     relative_velocity(c, point, edge, s, v);
     contact_stick(c, point, a, b, s, d);
-    point_force(&q, offset, foot.distance, v, d, f);
-    end_force(c, &q, point, a, fa);
-    end_force(c, &q, point, b, fb);
+    point_force(&q, offset, foot.reach, v, d, f);
+    end_force(c, &law, &q, point, a, fa);
+    end_force(c, &law, &q, point, b, fb);
     for (int k = 0; k < 2; k++) {
         const double ga = c->share[a] * fa[k], gb = c->share[b] * fb[k];
         out->p[k] = f[k] - ga - gb;
@@ -67,33 +71,35 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     return true;
 }
 
-/* Of T-61 and of the spring of T-62 at a place of an edge. */
+/* Of T-61 and of the spring of T-62 at a place of an edge where the reach is `reach`. */
 static double place_energy(const struct contact *c, const struct pair *q, int32_t point, int32_t a,
-                           int32_t b, double s)
+                           int32_t b, double s, double reach)
 {
     const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
                               c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
-    const double r = elementary_hypot(offset[0], offset[1]);
-    if (!(r < q->reach)) return 0;
-    const double sum = touch_energy(q, r);
-    if (!(q->friction > 0) || r == 0) return sum;
+    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->room);
+    if (!(left < q->room)) return 0;
+    const double sum = touch_energy(q, left);
+    if (!(q->friction > 0) || left <= 0) return sum;
     const double n[2] = {offset[0] / r, offset[1] / r};
     double d[2];
     contact_stick(c, point, a, b, s, d);
     const double pull = q->stiffness * elementary_hypot(across(n, d, 0), across(n, d, 1));
-    return sum + 0.5 * square(min2(pull, q->friction * elastic_force(q, r))) / q->stiffness;
+    return sum + 0.5 * square(min2(pull, q->friction * elastic_force(q, left))) / q->stiffness;
 }
 
 static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
 {
     const struct contact_law law = contact_pair_law(c, point, edge);
-    const struct contact_foot foot = contact_foot(c, point, edge);
-    if (!law.on || !(foot.distance < law.reach)) return 0;
-    const struct pair q = pair_of(c, &law, point, edge);
+    if (!law.on) return 0;
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
+    if (!(foot.distance < foot.reach)) return 0;
+    const struct pair q = pair_of(c, &law, point, edge, foot.room);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
-    return place_energy(c, &q, point, a, b, foot.at) -
-           c->share[a] * place_energy(c, &q, point, a, a, 0) -
-           c->share[b] * place_energy(c, &q, point, b, b, 0);
+    const double at_a = contact_reach(c, &law, point, a), at_b = contact_reach(c, &law, point, b);
+    return place_energy(c, &q, point, a, b, foot.at, foot.reach) -
+           c->share[a] * place_energy(c, &q, point, a, a, 0, at_a) -
+           c->share[b] * place_energy(c, &q, point, b, b, 0, at_b);
 }
 
 /* --- forces --- */
@@ -242,7 +248,7 @@ static double moves_freely(const struct contact *c, const struct particles *p, i
 /* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
  * step. */
 static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
-                     const struct pair *q, const struct contact_foot *foot, double r)
+                     const struct pair *q, const struct contact_foot *foot, double left)
 {
     const int32_t k = c->pair_point[pair];
     const struct contact_edge *const e = &c->edge[c->pair_edge[pair]];
@@ -250,7 +256,7 @@ static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
     const double own = s == 0 ? 1 - c->share[e->a] : s == 1 ? 1 - c->share[e->b] : 1;
     const double both =
         moves_freely(c, p, k) + (1 - s) * moves_freely(c, p, e->a) + s * moves_freely(c, p, e->b);
-    const double stiffness = own * both * elastic_stiffness(q, r);
+    const double stiffness = own * both * elastic_stiffness(q, left);
     const double damping = own * both * max2(q->damping, q->grip);
     add_row(c, p, k, 1, stiffness, damping);
     add_row(c, p, e->a, 1 - s, stiffness, damping);
@@ -270,28 +276,38 @@ static double distance_near(const struct contact *c, double speed, double span)
     return max2((NEAR - 1) * c->reach, GAIN * c->spacing) + 1.5 * span * speed;
 }
 
+/* An overlap in parts of that at which the law of a pair that begins apart is infinite. */
+static double overlap_of(const struct contact *c, const struct contact_law *law, int32_t point,
+                         int32_t edge, double overlap)
+{
+    const struct contact_edge *const e = &c->edge[edge];
+    struct contact_law apart = *law;
+    apart.first = (double)INFINITY;
+    const double gap = law->reach - law->spacing;
+    const double room =
+        min2(contact_reach(c, &apart, point, e->a), contact_reach(c, &apart, point, e->b));
+    return (overlap - gap) / (room - gap);
+}
+
 static void watch_pair(struct contact *c, const struct particles *p, int64_t pair, double longest,
                        double span)
 {
     const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
     const struct contact_law law = contact_pair_law(c, point, edge);
-    const struct contact_foot foot = contact_foot(c, point, edge);
-    const double r = foot.distance;
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
+    const double r = foot.distance, left = contact_left(&foot), room = foot.room;
     double v[2];
     relative_velocity(c, point, edge, foot.at, v);
-    if (r > law.reach + distance_near(c, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
+    if (r > foot.reach + distance_near(c, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     c->near = true;
-    const double gap =
-        c->law[c->body[point] * (c->n_solids + c->n_walls) + c->body[c->edge[edge].a]].reach -
-        law.spacing;
-    note_depth(c, point, edge, (law.reach - gap - r) / law.spacing);
+    note_depth(c, point, edge, overlap_of(c, &law, point, edge, room - left));
     const double closing = r > 0 ? max2(0, -(v[0] * foot.x + v[1] * foot.y) / r) : 0;
     if (closing > 0)
         c->approach =
-            min2(c->approach, (max2(0, r - law.reach) + ADVANCE * min2(r, law.reach)) / closing);
-    const double then = max2(r - closing * longest, (1 - ADVANCE) * min2(r, law.reach));
-    if (then > NEAR * law.reach) return;
-    const struct pair q = pair_of(c, &law, point, edge);
+            min2(c->approach, (max2(0, left - room) + ADVANCE * min2(left, room)) / closing);
+    const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, room));
+    if (then > NEAR * room) return;
+    const struct pair q = pair_of(c, &law, point, edge, room);
     add_rows(c, p, pair, &q, &foot, then);
 }
 
@@ -305,7 +321,7 @@ static void watch_side(struct contact *c, int64_t first, int64_t end)
     const int32_t point = c->pair_point[first];
     for (int64_t k = first; k < end; k++) {
         if (contact_with(c, point, c->pair_edge[k]) == CONTACT_SELF) continue;
-        const struct contact_foot f = contact_foot(c, point, c->pair_edge[k]);
+        const struct contact_foot f = contact_nearest(c, point, c->pair_edge[k]);
         if (!(f.distance < nearest)) continue;
         const struct contact_edge *const e = &c->edge[c->pair_edge[k]];
         const double side = (c->x[e->b] - c->x[e->a]) * f.y - (c->y[e->b] - c->y[e->a]) * f.x;
@@ -381,12 +397,21 @@ void contact_name(const struct contact *c, int body, char text[CONTACT_NAME])
 
 /* --- start --- */
 
-/* A pressure p leaves an overlap of dp p/(stiffness E + p) (T-61). */
+/* Modulus of a layer between two surfaces that gives way as half a spacing of each body does, in series; a
+ * wall does not. Each of two equal bodies gives half of the overlap. */
+static double layer_modulus(const struct contact *c, int a, int b, double spacing)
+{
+    const struct solid_body *const one = &c->solid->body[a];
+    double yields = one->dp / one->young;
+    if (b < c->n_solids) yields += c->solid->body[b].dp / c->solid->body[b].young;
+    return 2 * spacing / yields;
+}
+
+/* A pressure p leaves an overlap of spacing p/(stiffness E + p), E of the layer (T-61). */
 static void set_law(struct contact *c, const struct scene_contact *from, int a, int b)
 {
     const bool wall = b >= c->n_solids;
     const struct solid_body *const one = &c->solid->body[a];
-    const double young = wall ? one->young : min2(one->young, c->solid->body[b].young);
     const double spacing = 0.5 * (one->dp + dp_of(c, b));
     /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
     const bool own = !wall && one->bond == c->solid->body[b].bond;
@@ -396,7 +421,7 @@ static void set_law(struct contact *c, const struct scene_contact *from, int a, 
         .on = true,
         .spacing = spacing,
         .reach = reach,
-        .stiffness = from->stiffness * young,
+        .stiffness = from->stiffness * layer_modulus(c, a, b, spacing),
         .damping = from->damping,
         .friction = from->friction,
     };
@@ -422,16 +447,27 @@ static void list_beginnings(struct contact *c)
     contact_list(c);
 }
 
+/* Whether a pair of the list begins within its reach; its distance. */
+static bool begins_near(const struct contact *c, int64_t pair, double *distance)
+{
+    const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
+    const struct contact_law law = contact_pair_law(c, point, edge);
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
+    *distance = contact_nearest(c, point, edge).distance;
+    return foot.distance < foot.reach;
+}
+
 /* Bodies that begin with less than a layer of fluid between them anywhere need not keep one. */
 static void drop_layers(struct contact *c)
 {
     const int n = c->n_solids + c->n_walls;
+    double r;
     list_beginnings(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int a = c->body[c->pair_point[k]], b = c->body[c->edge[c->pair_edge[k]].a];
         const struct scene_contact *const from = scene_contact_of(c->scene, a, b);
         struct contact_law *const law = &c->law[a * n + b];
-        law->reach = c->law[b * n + a].reach = law->spacing + from->gap;
+        if (begins_near(c, k, &r)) law->reach = c->law[b * n + a].reach = law->spacing + from->gap;
     }
 }
 
@@ -442,7 +478,8 @@ static void note_beginnings(struct contact *c)
     list_beginnings(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int32_t point = c->pair_point[k], group = c->group[c->edge[c->pair_edge[k]].a];
-        const double r = contact_foot(c, point, c->pair_edge[k]).distance;
+        double r;
+        if (!begins_near(c, k, &r)) continue;
         if (c->began_group[point] >= 0 && r >= c->began[point]) continue;
         c->began[point] = r;
         c->began_group[point] = group;
@@ -496,6 +533,8 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
     if (!c->law) return ERR_MEMORY;
     set_laws(c);
     TRY(contact_find_surface(c, a, solid, d));
+    TRY(contact_find_outer(c, a, d));
+    c->reach += 2 * c->most_outer;
     TRY(create_list(c, a, d));
     drop_layers(c);
     note_beginnings(c);

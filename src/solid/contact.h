@@ -64,15 +64,36 @@ void contact_find_stick(struct contact *c, const struct particles *p);
 void contact_stick(const struct contact *c, int32_t point, int32_t a, int32_t b, double s,
                    double d[2]);
 
-/* The law of a point and an edge, with the reach of this pair; not on: they do not interact. */
+/* How much further than half a spacing the outlines of the shapes are from the surface points. */
+enum err contact_find_outer(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+
+/* The law of a point and an edge; not on: they do not interact. */
 struct contact_law contact_pair_law(const struct contact *c, int32_t point, int32_t edge);
 
-/* The point's nearest place on an edge: 0 to 1 from a to b, and the vector from there to the
- * point. */
+/* Distance below which a point and an end of an edge repel each other (T-61b). At least half a spacing
+ * remains for the overlap. */
+SPHFSI_INLINE double contact_reach(const struct contact *c, const struct contact_law *law,
+                                   int32_t point, int32_t end)
+{
+    const double outer = max2(c->outer[point] + c->outer[end], -0.5 * law->spacing);
+    return min2(law->first, law->reach + outer);
+}
+
+/* A place on an edge: 0 to 1 from a to b, the vector from there to the point, and the reach there. */
 struct contact_foot {
-    double at, x, y, distance;
+    double at, x, y, distance, reach;
+    double room; /* smallest reach on the edge: the overlap at which the law is infinite, m */
 };
-struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t edge);
+/* The nearest place, without a reach; the place where the distance less the reach is smallest. */
+struct contact_foot contact_nearest(const struct contact *c, int32_t point, int32_t edge);
+struct contact_foot contact_foot(const struct contact *c, const struct contact_law *law,
+                                 int32_t point, int32_t edge);
+
+/* What is left of the room. */
+SPHFSI_INLINE double contact_left(const struct contact_foot *f)
+{
+    return f->distance - (f->reach - f->room);
+}
 
 /* Whether both parts of a pair belong to one group. */
 SPHFSI_INLINE enum contact_with contact_with(const struct contact *c, int32_t point, int32_t edge)

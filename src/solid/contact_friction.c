@@ -58,14 +58,15 @@ void contact_stick(const struct contact *c, int32_t point, int32_t a, int32_t b,
 static void slide(const struct contact *c, struct particles *p, int32_t point, int32_t edge)
 {
     const struct contact_law law = contact_pair_law(c, point, edge);
-    const struct contact_foot foot = contact_foot(c, point, edge);
-    const struct pair q = pair_of(c, &law, point, edge);
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
+    const struct pair q = pair_of(c, &law, point, edge, foot.room);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b, i = c->index[point];
     const double r = foot.distance, n[2] = {foot.x / r, foot.y / r};
     double v[2], d[2];
     relative_velocity(c, point, edge, foot.at, v);
     contact_stick(c, point, a, b, foot.at, d);
-    const double push = max2(0, elastic_force(&q, r) - q.damping * (v[0] * n[0] + v[1] * n[1]));
+    const double push =
+        max2(0, elastic_force(&q, contact_left(&foot)) - q.damping * (v[0] * n[0] + v[1] * n[1]));
     const double pull = q.stiffness * elementary_hypot(across(n, d, 0), across(n, d, 1));
     const bool slides = pull > q.friction * push;
     if (!slides && p->stick_edge[i] == edge + 1) return;
@@ -84,9 +85,10 @@ static int32_t nearest_edge(const struct contact *c, int64_t first, int64_t end)
     for (int64_t k = first; k < end; k++) {
         const int32_t point = c->pair_point[k];
         if (!c->force[k].touches) continue;
-        const double r = contact_foot(c, point, c->pair_edge[k]).distance;
         const struct contact_law law = contact_pair_law(c, point, c->pair_edge[k]);
-        if (!(law.friction > 0) || !(r < nearest) || r == 0) continue;
+        const struct contact_foot foot = contact_foot(c, &law, point, c->pair_edge[k]);
+        const double r = foot.distance;
+        if (!(law.friction > 0) || !(r < nearest) || contact_left(&foot) <= 0) continue;
         nearest = r;
         edge = c->pair_edge[k];
     }

@@ -14,7 +14,7 @@
 
 /* Constants of a point and an edge. */
 struct pair {
-    double reach;     /* m */
+    double room;      /* overlap at which the energy is infinite, m */
     double stiffness; /* force per overlap at first contact, N/m per depth */
     double damping;   /* N s/m */
     double friction;
@@ -31,16 +31,16 @@ SPHFSI_INLINE double dp_of(const struct contact *c, int body)
     return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
 }
 
-/* A point represents its own spacing of surface. Damping as a fraction of 2 sqrt(k m), with the
+/* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
  * mass m of the pair, m_a m_b/(m_a + m_b). */
 SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_law *law,
-                                  int32_t point, int32_t edge)
+                                  int32_t point, int32_t edge, double room)
 {
     const int a = c->body[point], b = c->body[c->edge[edge].a];
-    const double k = law->stiffness * dp_of(c, a) / law->spacing;
+    const double k = law->stiffness * c->width[point] / law->spacing;
     const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
     return (struct pair){
-        .reach = law->reach,
+        .room = room,
         .stiffness = CONTACT_HALF * k,
         .damping = CONTACT_HALF * law->damping * critical,
         .friction = law->friction,
@@ -48,22 +48,22 @@ SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_
     };
 }
 
-/* T-61: k r0^2 (r/r0 - 1 - ln(r/r0)), infinite where the distance r vanishes. */
+/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where nothing is left of the room R; r = contact_left. */
 SPHFSI_INLINE double touch_energy(const struct pair *q, double r)
 {
-    if (!(r < q->reach)) return 0;
-    const double s = r / q->reach;
-    return q->stiffness * square(q->reach) * (s - 1 - elementary_log(s));
+    if (!(r < q->room)) return 0;
+    const double s = r / q->room;
+    return q->stiffness * square(q->room) * (s - 1 - elementary_log(s));
 }
 
-/* The derivative of the potential, k r0 (r0/r - 1), and its second derivative, k (r0/r)^2. */
+/* The derivative of the potential, k R (R/r - 1), and its second derivative, k (R/r)^2. */
 SPHFSI_INLINE double elastic_force(const struct pair *q, double r)
 {
-    return q->stiffness * q->reach * (q->reach / r - 1);
+    return q->stiffness * q->room * (q->room / r - 1);
 }
 SPHFSI_INLINE double elastic_stiffness(const struct pair *q, double r)
 {
-    return q->stiffness * square(q->reach / min2(r, q->reach));
+    return q->stiffness * square(q->room / min2(r, q->room));
 }
 
 /* Component k of a vector's part across the direction n. */

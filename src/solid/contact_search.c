@@ -53,13 +53,21 @@ void contact_grid_find(const struct contact_grid *g, double x, double y, double 
 
 /* --- pairs --- */
 
-struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t edge)
+/* The place on an edge where the distance less the reach is smallest if the reach rises by `rise` from a
+ * to b (T-61c). */
+static struct contact_foot foot_of(const struct contact *c, int32_t point, int32_t edge,
+                                   double rise)
 {
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double ex = c->x[b] - c->x[a], ey = c->y[b] - c->y[a], length2 = ex * ex + ey * ey;
     const double px = c->x[point] - c->x[a], py = c->y[point] - c->y[a];
     struct contact_foot f = {.x = px, .y = py};
-    if (length2 > 0) f.at = min2(1, max2(0, (px * ex + py * ey) / length2));
+    if (length2 > 0) f.at = (px * ex + py * ey) / length2;
+    if (length2 > rise * rise)
+        f.at += fabs(px * ey - py * ex) / length2 * rise / sqrt(length2 - rise * rise);
+    else if (rise != 0)
+        f.at = rise > 0;
+    f.at = min2(1, max2(0, f.at));
     /* At an end of an edge: bitwise equal to the result of the neighbouring edge. */
     if (f.at == 1) {
         f.x = c->x[point] - c->x[b];
@@ -69,6 +77,22 @@ struct contact_foot contact_foot(const struct contact *c, int32_t point, int32_t
         f.y -= f.at * ey;
     }
     f.distance = sqrt(f.x * f.x + f.y * f.y);
+    return f;
+}
+
+struct contact_foot contact_nearest(const struct contact *c, int32_t point, int32_t edge)
+{
+    return foot_of(c, point, edge, 0);
+}
+
+struct contact_foot contact_foot(const struct contact *c, const struct contact_law *law,
+                                 int32_t point, int32_t edge)
+{
+    const double at_a = contact_reach(c, law, point, c->edge[edge].a);
+    const double at_b = contact_reach(c, law, point, c->edge[edge].b);
+    struct contact_foot f = foot_of(c, point, edge, at_b - at_a);
+    f.reach = f.at == 1 ? at_b : at_a + f.at * (at_b - at_a);
+    f.room = min2(at_a, at_b);
     return f;
 }
 
@@ -101,14 +125,15 @@ struct contact_law contact_pair_law(const struct contact *c, int32_t point, int3
 {
     const struct contact_edge *const e = &c->edge[edge];
     struct contact_law law = c->law[c->body[point] * (c->n_solids + c->n_walls) + c->body[e->a]];
+    law.first = (double)INFINITY;
     if (!law.on) return law;
     if (c->group[point] == c->group[e->a])
         law.on = !began_within(c, point, edge, c->body[point]);
     else if (held_together(c, point, edge))
         law.on = false;
     else if (c->began_group[point] == c->group[e->a])
-        law.reach = min2(law.reach, c->began[point]);
-    law.on = law.on && law.reach > 0;
+        law.first = c->began[point];
+    law.on = law.on && law.first > 0;
     return law;
 }
 
@@ -167,7 +192,8 @@ static void keep_pair(void *context, int32_t edge)
     const struct contact_law law = contact_pair_law(c, l->point, edge);
     if (!law.on) return;
     const double margin = c->margin[contact_with(c, l->point, edge)];
-    if (!(contact_foot(c, l->point, edge).distance < law.reach + margin)) return;
+    const struct contact_foot foot = contact_foot(c, &law, l->point, edge);
+    if (!(foot.distance < foot.reach + margin)) return;
     if (c->n_pairs == c->most_pairs && !grow(c)) {
         c->list_full = true;
         return;

@@ -138,8 +138,8 @@ static void set_shares(struct contact *c)
 static enum err points_create(struct contact *c, struct arena *a, size_t n, struct diag *d)
 {
     int32_t **const number[] = {&c->index, &c->body, &c->group, &c->began_group};
-    double **const place[] = {&c->X,  &c->Y,    &c->x,    &c->y,     &c->vx,
-                              &c->vy, &c->at_x, &c->at_y, &c->began, &c->share};
+    double **const place[] = {&c->X,    &c->Y,    &c->x,     &c->y,     &c->vx,    &c->vy,
+                              &c->at_x, &c->at_y, &c->began, &c->share, &c->outer, &c->width};
     for (size_t k = 0; k < COUNT_OF(number); k++)
         if (!(*number[k] = arena_alloc(a, n, sizeof(int32_t), "contact", d))) return ERR_MEMORY;
     for (size_t k = 0; k < COUNT_OF(place); k++)

@@ -94,9 +94,19 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Overlaps in spacings. The law is infinite at 1, which the step bound excludes. */
+#define OVERLAP_WARNING 0.5
+#define OVERLAP_LIMIT 0.98
+
+bool guards_contact_hard(const struct simulation *s)
+{
+    return s->solid.contact && s->contact.deepest.overlap >= OVERLAP_WARNING;
+}
+
 bool guards_strain_due(const struct simulation *s)
 {
-    const bool now = !(s->effects & FX_FLUID) || s->state.steps % CHECK_INTERVAL == 0;
+    const bool now =
+        !(s->effects & FX_FLUID) || s->state.steps % CHECK_INTERVAL == 0 || guards_contact_hard(s);
     return s->effects & FX_SOLID && now;
 }
 
@@ -136,10 +146,6 @@ static struct finding too_fast(const struct simulation *s, const struct particle
     }
     return (struct finding){-1, "", 0};
 }
-
-/* Overlaps in spacings. The law is infinite at 1, which the step bound excludes. */
-#define OVERLAP_WARNING 0.5
-#define OVERLAP_LIMIT 0.98
 
 static enum err check_contact(struct simulation *s, struct diag *d)
 {

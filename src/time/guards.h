@@ -24,6 +24,9 @@ void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag 
 /* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
 int64_t monitor_crossed(const struct simulation *s, int64_t *first);
 
+/* Whether surfaces in contact are pressed harder than the modulus of contact. */
+bool guards_contact_hard(const struct simulation *s);
+
 /* Whether the check after this step reads the solid's gradients, which must then be up to date. */
 bool guards_strain_due(const struct simulation *s);
 

@@ -36,14 +36,20 @@ static void advance_lone(struct simulation *s, double dt, int n)
     }
 }
 
-/* When a contact is near, each step is chosen separately and may be shorter than planned. Returns
- * the time advanced, or 0 if all steps were as long as planned. */
-static double advance_near(struct simulation *s, double dt, int n)
+/* When a contact is near, each step is chosen separately and may be shorter than planned. Where surfaces
+ * are pressed so hard that the material may give way, the guards judge each step. Returns the time
+ * advanced, or 0 if all *n steps were as long as planned. */
+static double advance_near(struct simulation *s, double dt, int *n)
 {
     double gone = 0;
     bool shorter = false;
-    for (int k = 0; k < n; k++) {
+    for (int k = 0; k < *n; k++) {
         if (k) timestep_watch_contact(s, s->solid.time, SOLID_BATCH);
+        if (k && guards_contact_hard(s)) {
+            shorter = true;
+            *n = k;
+            break;
+        }
         const bool cut = !(s->scene->numerics.fixed_step > 0) && s->dt_solid < dt;
         const double now = cut ? s->dt_solid : dt;
         advance_lone(s, now, 1);
@@ -105,14 +111,14 @@ void solid_only_step(struct simulation *s, double t_limit)
     const double left = t_limit - st->time, steps = max2(1, ceil(left / bound - 1e-6));
     const double dt = steps <= EQUAL_STEPS ? left / steps : bound;
     const bool hits = steps <= batch;
-    const int n = hits ? (int)steps : batch;
+    int n = hits ? (int)steps : batch;
     const bool cut = dt < bound * (1 - 1e-9);
     if (cut) s->dt_bound[BOUND_output] = dt;
     if (external) external_for_step(s, dt);
     double gone = 0;
     if (external) book_external(s, 0.5 * dt);
     if (near)
-        gone = advance_near(s, dt, n);
+        gone = advance_near(s, dt, &n);
     else
         advance_lone(s, dt, n);
     if (external) book_external(s, (gone > 0 ? gone : dt) - 0.5 * dt);

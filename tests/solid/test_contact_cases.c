@@ -40,8 +40,8 @@ static bool stopped(double time)
 }
 
 /* A disc without damping meets a floor at a tenth of its speed of sound: what is missing of its energy
- * afterwards is the error of the time integration, and its momentum is turned round. The restitution is
- * that of a real disc, which goes on ringing. */
+ * afterwards is the error of the time integration, and its momentum is turned round. It goes on ringing: the
+ * restitution is 0.948 by finite elements of the same equations (tools/verify_contact_reference.py). */
 static void test_restitution_of_a_disc(void)
 {
     RIG_OPEN_SOLID("dp = 5 mm\nend_time = 1\n[wall floor]\nshape = box -0.1, -0.02, 0.1, 0\n"
@@ -54,8 +54,8 @@ static void test_restitution_of_a_disc(void)
     const struct ledger row = simulation_ledger(&rig.sim);
     const double back = mean(0, p->vy);
     TEST_ASSERT_TRUE(row.contact == 0 && back > 0);
-    assert_at_most(0.01 * before, fabs(row.dissipated), "energy that does not close");
-    assert_near(0.15, 0.85, back / 3, "restitution");
+    assert_at_most(2e-4 * before, fabs(row.dissipated), "energy that does not close");
+    assert_near(0.005, 0.948, back / 3, "restitution");
     assert_at_most(1e-3, fabs(mean(0, p->vx)), "speed along the floor");
 }
 
@@ -125,10 +125,11 @@ static void test_energy_of_friction(void)
 }
 
 /* Three blocks on each other, the upper ones not above each other, sink by their strain and by dp p/E at
- * each interface, and stay there for 10 s. */
+ * each interface, and stay there for 10 s. Their weight grows over 0.5 s: at once it would make them
+ * bounce. */
 static void test_stack_at_rest(void)
 {
-    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\ngravity = 0, -9.81\n"
+    RIG_OPEN_SOLID("dp = 1 cm\nend_time = 1\ngravity = 0, -9.81*min(1, t/0.5)\n"
                    "[wall floor]\nshape = box -0.1, -0.03, 0.2, 0\n"
                    "[solid a]\nshape = box 0, 0, 0.08, 0.05\ndensity = 1000\nyoung = 1 MPa\n"
                    "poisson = 0.3\n"
@@ -146,8 +147,8 @@ static void test_stack_at_rest(void)
     }
     rig_run(&rig, 10);
     for (int k = 0; k < 3; k++) {
-        assert_at_most(1e-5, hypot(mean(k, p->ux) - x[k], mean(k, p->uy) - y[k]), "creep in 5 s");
-        assert_at_most(1e-5, hypot(mean(k, p->vx), mean(k, p->vy)), "speed");
+        assert_at_most(1e-6, hypot(mean(k, p->ux) - x[k], mean(k, p->uy) - y[k]), "creep in 5 s");
+        assert_at_most(1e-6, hypot(mean(k, p->vx), mean(k, p->vy)), "speed");
     }
 }
 
@@ -280,23 +281,16 @@ static void test_wall_into_a_clamp(void)
 }
 
 /* Line contact: half of the width 2 b over which a disc of radius R touches a flat under a load P per
- * depth, and
- * how much its centre comes nearer to the flat (Johnson, Contact Mechanics, 1985, Eqs. 4.43 and
- * 5.57), with the
- * compliance of half a spacing of contact under the largest pressure 2 P/(pi b): the other half is
- * disc. */
-static double approach(double load, double R, double young, double poisson, double dp)
+ * depth, and how much its centre comes nearer to the flat (Johnson, Contact Mechanics, 1985, Eqs. 4.43 and
+ * 5.57). */
+static double approach(double load, double R, double young, double poisson)
 {
     const double plane = young / (1 - poisson * poisson), b = sqrt(4 * load * R / (M_PI * plane));
-    const double layer = 0.5 * dp * 2 * load / (M_PI * b * young);
-    return load / (M_PI * plane) * (2 * log(4 * R / b) - 1) + layer;
+    return load / (M_PI * plane) * (2 * log(4 * R / b) - 1);
 }
 
-/* A disc between a floor and a plate that comes down slowly. On the lattice it begins with a flat of
- * sqrt(R dp) on
- * both sides of its lowest point, so that the indentation is known to half a spacing. The slope of the
- * load over it depends on b as 1/(ln(4 R/b) - 1), where a third more of b is an eighth: that is
- * allowed. */
+/* A disc between a floor and a plate that comes down slowly: by 1.00 and 2.20 spacings, of which the loads
+ * are those of 0.995 and 2.22 (measured). */
 static void test_line_contact(void)
 {
     RIG_OPEN_SOLID("dp = 2.5 mm\nend_time = 1\n[wall floor]\nshape = box -0.05, -0.01, 0.05, 0\n"
@@ -313,10 +307,10 @@ static void test_line_contact(void)
         load[k] = (rig.sim.state.wall_work - work) / (0.05 * 0.02);
         gone[k] = 0.05 * (from + 0.01);
     }
-    const double exact[2] = {2 * approach(load[0], 0.05, 1e6, 0.3, 2.5e-3),
-                             2 * approach(load[1], 0.05, 1e6, 0.3, 2.5e-3)};
-    assert_near(2.5e-3, exact[1], gone[1], "indentation");
-    assert_near(0.125 * (exact[1] - exact[0]), exact[1] - exact[0], gone[1] - gone[0],
+    const double exact[2] = {2 * approach(load[0], 0.05, 1e6, 0.3),
+                             2 * approach(load[1], 0.05, 1e6, 0.3)};
+    assert_near(0.05 * 2.5e-3, exact[1], gone[1], "indentation");
+    assert_near(0.03 * (exact[1] - exact[0]), exact[1] - exact[0], gone[1] - gone[0],
                 "indentation between two loads");
 }
 
