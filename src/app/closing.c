@@ -112,6 +112,21 @@ static void halve_steps(const struct simulation *s, char setting[64])
         snprintf(setting, 64, "numerics.solid_safety=%.4g", 0.5 * n->solid_safety);
 }
 
+/* How a run goes on that a guard has stopped. */
+enum remedy {
+    SHORTER_STEPS,
+    OTHER_CASE, /* from the checkpoint, once the case is changed as the message says */
+    OTHER_START /* the same from the start: a checkpoint keeps its speed of sound and its state */
+};
+
+static enum remedy remedy_for(const struct simulation *s)
+{
+    const struct scene *const scene = s->scene;
+    const bool fast = s->effects & FX_FLUID && scene->given_speed > SPEED_WARNING * scene->c0;
+    if (fast || (s->state.steps <= 1 && scene->numerics.fixed_step == 0)) return OTHER_START;
+    return s->guard.case_at_fault ? OTHER_CASE : SHORTER_STEPS;
+}
+
 void closing_command(const struct sphfsi_options *o, const struct simulation *s, const char *folder,
                      const char *checkpoint, bool guard)
 {
@@ -122,15 +137,22 @@ void closing_command(const struct sphfsi_options *o, const struct simulation *s,
     next_folder(folder, next);
     add(&w, "", name);
     add(&w, "", o->case_path);
-    add(&w, guard ? "--fork" : "--restart", guard ? checkpoint : NULL);
+    const enum remedy remedy = guard ? remedy_for(s) : OTHER_CASE;
+    if (!guard) add(&w, "--restart", NULL);
+    if (guard && remedy != OTHER_START) add(&w, "--fork", checkpoint);
     for (int k = 0; k < o->n_sets; k++) add(&w, "--set", o->sets[k]);
     halve_steps(s, setting);
-    if (guard) add(&w, "--set", setting);
+    if (guard && remedy == SHORTER_STEPS) add(&w, "--set", setting);
     snprintf(number, sizeof number, "%.12g", o->until); /* as session_time rounds it */
     if (o->until > 0) add(&w, "--until", number);
     snprintf(number, sizeof number, "%d", o->threads);
     if (o->threads > 0) add(&w, "--threads", number);
     if (guard || o->out || o->fork) add(&w, "--out", guard ? next : folder);
-    if (w.n < w.size) session_result(o, "to go on: %s", w.text);
+    if (w.n < w.size)
+        session_result(o, "%s: %s",
+                       !guard || remedy == SHORTER_STEPS ? "to go on"
+                       : remedy == OTHER_CASE            ? "change the case, then go on"
+                                                         : "change the case, then start again",
+                       w.text);
     free(w.text);
 }

@@ -137,6 +137,7 @@ static void warn_of_absorb(struct reader *r, const struct scene_open *o, int ind
 static void warn_of_sound(struct reader *r, const struct scene_open *o, double largest)
 {
     const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;
+    if (o->kind == OPEN_VELOCITY) r->scene->given_speed = max2(r->scene->given_speed, largest);
     if (o->kind == OPEN_VELOCITY && c0 > 0 && largest > SPEED_WARNING * c0)
         case_warn(r, o->common->line,
                   "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "

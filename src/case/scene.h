@@ -328,6 +328,8 @@ struct scene {
     struct scene_lattice lattice, *solid_lattice; /* of fluid and walls; [n_solid] */
     double h, c0,
         rho0; /* smoothing length; speed of sound and density of the fluid (0: no fluid) */
+    double
+        given_speed; /* the largest that walls, open boundaries and the start give the fluid, m/s */
     double domain_lower[2], domain_upper[2]; /* in effect */
     bool packed;      /* fluid beside edges that are not along its lattice (T-80) */
     bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */

@@ -159,6 +159,7 @@ static void warn_of_motion(const struct sampler *g, enum kind kind, int section,
         low[1] = min2(low[1], p->y[k]), high[1] = max2(high[1], p->y[k]);
     }
     const double speed = low[0] <= high[0] ? largest_speed(s, motion, low, high, &time) : 0;
+    g->scene->given_speed = max2(s->given_speed, speed);
     if (!(speed > SPEED_WARNING * s->c0)) return;
     char place[LOCATION_TEXT];
     scene_location(s, s->motion[motion].common.line, place);

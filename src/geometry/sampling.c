@@ -337,6 +337,7 @@ void scene_check_rest(struct scene *s, enum scene_rest rest, struct diag *d)
     if (!err && rest == REST_PLACES) err = geometry_merge(&g, &points);
     if (!err && rest == REST_PLACES) err = geometry_open(&g);
     if (!err && rest == REST_PLACES) err = geometry_extent(&g);
+    if (!err && rest == REST_PLACES) err = geometry_check_joined(&g);
     (void)err; /* the case has failed already */
     arena_free(&g.temp);
 }
@@ -350,9 +351,11 @@ enum err scene_sample(struct scene *s, struct diag *d)
     if (!err) err = geometry_pack(&g);
     if (!err) err = geometry_open(&g);
     if (!err) err = geometry_extent(&g);
+    if (!err) err = geometry_check_joined(&g);
     if (!err) err = geometry_problems(&g);
     if (!err) err = geometry_warn_of_gaps(&g);
     if (!err) err = geometry_warn_of_doubts(&g);
+    if (!err) geometry_warn_of_speeds(&g);
     arena_free(&g.temp);
     return err;
 }

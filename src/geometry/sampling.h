@@ -97,6 +97,12 @@ enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 /* Effective domain; probes inside their bodies; initial values finite. */
 enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
+/* Bodies that are bonded touch (geometry/joined.c). */
+enum err geometry_check_joined(struct sampler *g) SPHFSI_CHECKED;
+
+/* Warns of speeds that the materials cannot follow (geometry/fast.c). */
+void geometry_warn_of_speeds(struct sampler *g);
+
 /* Warns of bodies that are probably a mistake (geometry/doubts_solid.c). */
 enum err geometry_warn_of_bodies(struct sampler *g) SPHFSI_CHECKED;
 

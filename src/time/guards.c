@@ -67,13 +67,25 @@ static bool fluid_sound(struct simulation *s)
     "probably because fluid particles entered a wall or solid earlier in the run; wall_repulsion " \
     "= 0.1 or diffusion_form = antuono prevents that"
 
+static enum err complain_of_fluid(const struct simulation *s, struct finding f, struct diag *d)
+{
+    const double given = s->scene->given_speed;
+    char cause[200];
+    if (!(given > SPEED_WARNING * s->scene->c0))
+        return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
+    snprintf(cause, sizeof cause,
+             "the case gives the fluid up to %.4g m/s, but its speed of sound is only %.4g m/s; "
+             "check that speed, or use sound_speed = %.3g or more",
+             given, s->scene->c0, 10 * given);
+    return complain(s, KIND_FLUID, f, cause, d);
+}
+
 static enum err check_fluid(struct simulation *s, struct diag *d)
 {
     if (!fluid_sound(s)) {
         const struct finding f =
             find_invalid(&s->kind[KIND_FLUID], s->guard.speed_limit, s->guard.dens_limit);
-        if (f.at >= 0)
-            return complain(s, KIND_FLUID, f, s->guard.warned_crossing ? STRAY : UNSTABLE, d);
+        if (f.at >= 0) return complain_of_fluid(s, f, d);
     }
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
@@ -158,7 +170,8 @@ static enum err check_contact(struct simulation *s, struct diag *d)
         return ERR_OK;
     contact_name(&s->contact, at->body, one);
     contact_name(&s->contact, at->other, other);
-    if (at->overlap >= OVERLAP_LIMIT)
+    s->guard.case_at_fault = at->overlap >= OVERLAP_LIMIT;
+    if (s->guard.case_at_fault)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
@@ -238,21 +251,25 @@ static enum err check_step(struct simulation *s, struct diag *d)
 
 /* No fluid would interact with walls at positions that are not numbers, and no message would say
  * so. */
-static enum err check_motion(const struct simulation *s, struct diag *d)
+static enum err check_motion(struct simulation *s, struct diag *d)
 {
     for (int k = 0; k < s->wall_motion.n; k++) {
         const struct moving_wall *const b = &s->wall_motion.body[k];
         const struct motion_state *const m = &b->placed;
         const double sum = m->d[0] + m->d[1] + m->v[0] + m->v[1] + m->a[0] + m->a[1] + m->angle +
                            m->rate + m->angular_acceleration;
-        if (!isfinite(sum))
-            return diag_fail(
-                d, ERR_GUARD,
-                "t = %.6g s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
-                "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite",
-                s->state.time, s->scene->motion[b->motion].common.name,
-                s->scene->wall[b->section].common.name, m->d[0], m->d[1], m->v[0], m->v[1], m->a[0],
-                m->a[1]);
+        if (isfinite(sum)) continue;
+        const struct scene_motion *const motion = &s->scene->motion[b->motion];
+        char place[LOCATION_TEXT];
+        scene_location(s->scene, motion->common.line, place);
+        s->guard.case_at_fault = true;
+        return diag_fail(
+            d, ERR_GUARD,
+            "%s: t = %.6g s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
+            "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite, so change "
+            "its expression or table there",
+            place, s->state.time, motion->common.name, s->scene->wall[b->section].common.name,
+            m->d[0], m->d[1], m->v[0], m->v[1], m->a[0], m->a[1]);
     }
     return ERR_OK;
 }

@@ -66,6 +66,7 @@ struct guard {
     double step_limit;  /* s: a smaller step stops the run */
     bool warned_speed, warned_dens, warned_det, warned_step, warned_crossing, warned_energy,
         warned_contact;
+    bool case_at_fault; /* what stopped the run would stop it with shorter steps, too */
 };
 
 enum bound {

@@ -50,6 +50,50 @@ grep -q '"exit_reason": "finished"' "b c-3/summary.json" || fail "the fork has n
 got=$(command 2 ./sphfsi thrown.cfg --quiet --out t)
 is "$got" "./sphfsi thrown.cfg --fork $(newest t) --set numerics.solid_safety=0.45 --out t-2"
 
+# Where shorter steps would stop it again: contact at its limit, a motion that is not finite at a time
+# between those that are checked before the run, and a speed that the case gives.
+others() { sed -n 's/^change the case, then //p' out; }
+cat >met.cfg <<'END'
+dp = 1 cm
+end_time = 0.1
+[solid block]
+shape = box 0, 0, 0.1, 0.1
+velocity = 0, -500
+density = 1000
+young = 1e5
+poisson = 0.3
+[wall floor]
+shape = box -0.1, -0.12, 0.2, -0.08
+END
+command 2 ./sphfsi met.cfg --quiet --out m >/dev/null
+is "$(others)" "go on: ./sphfsi met.cfg --fork $(newest m) --out m-2"
+cat >moved.cfg <<'END'
+dp = 1 cm
+end_time = 0.5
+[fluid w]
+shape = box 0, 0, 0.1, 0.1
+sound_speed = 10
+[wall side]
+shape = box -0.04, 0, 0, 0.1
+motion = m
+[motion m]
+kind = expression
+x = -0.01*t*(t - 0.07003)/(t - 0.07003)
+[output]
+probe_interval = 0.07003
+ledger_interval = 0.07003
+END
+command 2 ./sphfsi moved.cfg --quiet --out n >/dev/null
+is "$(others)" "go on: ./sphfsi moved.cfg --fork $(newest n) --out n-2"
+grep -q '^sphfsi: moved.cfg:9: t = 0.07003 s: \[motion m\] gives \[wall side\]' err || fail "$(cat err)"
+sed 's/^x = .*/x = 9*t/
+s/^shape = box -0.04.*/&\nshape = box 0.1, 0, 0.14, 0.1\nshape = box -0.04, -0.04, 0.14, 0/' \
+    moved.cfg >fast.cfg
+command 2 ./sphfsi fast.cfg --quiet --out f >/dev/null
+is "$(others)" "start again: ./sphfsi fast.cfg --out f-2"
+grep -q 'the case gives the fluid up to 9 m/s, but its speed of sound is only 10 m/s' err ||
+    fail "$(cat err)"
+
 # stop NAME ARGUMENTS...: the command of a run that a signal ends. There is nothing to mend: it restarts.
 stop() {
     local name=$1
