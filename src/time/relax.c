@@ -3,6 +3,7 @@
  * maximum, all velocities are set to zero. Forces are those at t = 0, because each step begins
  * before that and the clock is set back after it. */
 #include "time/relax.h"
+#include "base/elementary.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -137,6 +138,72 @@ static enum err check_fall(const struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+/* Fluid that falls within the domain is never faster, on the mean, than after a fall through all of it.
+ * One that is faster falls through periodic sides for ever. */
+static enum err check_held_fluid(const struct simulation *s, struct diag *d)
+{
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const struct scene *const scene = s->scene;
+    double g[2], mean[2] = {0, 0}, size[2];
+    char place[LOCATION_TEXT];
+    if (!(s->effects & FX_FLUID)) return ERR_OK;
+    scene_location(scene, scene->fluid[0].common.line, place);
+    if (p->n == 0)
+        return diag_fail(d, ERR_GUARD,
+                         "%s: [relax]: all fluid has left the domain: nothing holds it, so there "
+                         "is no state of rest; put a [wall] below it, or leave [relax] out",
+                         place);
+    for (int64_t i = 0; i < p->n; i++) mean[0] += p->vx[i], mean[1] += p->vy[i];
+    for (int c = 0; c < 2; c++) size[c] = scene->domain_upper[c] - scene->domain_lower[c];
+    scene_gravity_at(scene, 0, g);
+    const double pull = elementary_hypot(g[0], g[1]), high = elementary_hypot(size[0], size[1]);
+    const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)p->n);
+    if (!(pull > 0 && fall > sqrt(2 * pull * high))) return ERR_OK;
+    return diag_fail(d, ERR_GUARD,
+                     "%s: [relax]: the fluid falls with %.3g m/s on the mean, more than a fall "
+                     "through the whole domain gives: nothing holds it, so there is no state of "
+                     "rest; put a [wall] below it, or leave [relax] out",
+                     place, fall);
+}
+
+/* What the guards say of a search has its own time instead of that before t = 0. */
+static void tell_time(const struct simulation *s, const char *text, char *to, size_t size)
+{
+    const char *const at = strstr(text, "t = -"), *const end = at ? strstr(at, " s") : NULL;
+    if (!end)
+        snprintf(to, size, "%s", text);
+    else
+        snprintf(to, size, "%.*swhile rest is sought, after %.3g s%s", (int)(at - text), text,
+                 s->state.relax_time, end + 2);
+}
+
+struct listener {
+    const struct simulation *s;
+    const struct diag *of;
+};
+
+static void pass_on(void *context, const char *text)
+{
+    const struct listener *const l = context;
+    char told[sizeof l->of->text];
+    tell_time(l->s, text, told, sizeof told);
+    l->of->warn(l->of->warn_context, told);
+}
+
+/* A step of which the guards speak as of one of the search. */
+static enum err search_step(struct simulation *s, double limit, struct diag *d)
+{
+    struct diag own = {.code = ERR_OK};
+    struct listener l = {s, d};
+    if (!d) return simulation_step(s, limit, d);
+    if (d->warn) own.warn = pass_on, own.warn_context = &l;
+    const enum err e = simulation_step(s, limit, &own);
+    if (!e) return e;
+    char told[sizeof own.text];
+    tell_time(s, own.text, told, sizeof told);
+    return diag_fail(d, e, "%s", told);
+}
+
 enum err relax_step(struct simulation *s, struct diag *d)
 {
     enum { BATCH = 16 }; /* steps of a solid alone in a call */
@@ -147,16 +214,20 @@ enum err relax_step(struct simulation *s, struct diag *d)
     st->time = begin;
     if (s->effects & FX_CLAMP_MOTION) solid_place_clamps(&s->solid, &s->kind[KIND_SOLID], begin);
     if (s->effects & FX_MOTION) move_walls(s, begin);
-    const enum err e = simulation_step(s, begin + 1e6 * limit, d);
+    const enum err e = search_step(s, begin + 1e6 * limit, d);
     const double elapsed = st->time - begin;
     st->time = 0;
     st->substeps_needed = max2(st->substeps_needed, 0);
     st->gain_since = max2(st->gain_since, 0);
     TRY(e);
+    s->guard.case_at_fault = true; /* for what follows */
     TRY(check_fall(s, d));
+    TRY(check_held_fluid(s, d));
     judge(s, elapsed);
     const double longest = st->relax_longest, most = s->scene->relax.limit * longest;
-    if (st->relaxed || st->relax_swings == 0 || st->relax_time < most) return ERR_OK;
+    const bool goes_on = st->relaxed || st->relax_swings == 0 || st->relax_time < most;
+    s->guard.case_at_fault = !goes_on;
+    if (goes_on) return ERR_OK;
     return diag_fail(
         d, ERR_GUARD,
         "[relax]: no state of rest within %.3g s (`limit` = %g times the longest time of %.3g s "
@@ -197,4 +268,8 @@ void relax_text(const struct simulation *s, char text[RELAX_TEXT])
             "between two stops, the speed stayed below %g of its largest value",
             st->relax_time, (long long)st->relax_swings, st->relax_time - st->relax_quiet,
             s->scene->relax.tolerance);
+    const size_t n = strlen(text);
+    if (st->lost > 0)
+        snprintf(text + n, RELAX_TEXT - n, "; %lld fluid particles have left the domain meanwhile",
+                 (long long)st->lost);
 }

@@ -15,7 +15,7 @@ enum err relax_step(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 /* All steps of the search. */
 enum err relax_to_rest(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
-enum { RELAX_TEXT = 240 };
+enum { RELAX_TEXT = 320 };
 /* Says how far the search has come. */
 void relax_progress(const struct simulation *s, char text[RELAX_TEXT]);
 /* Says what was found and by which criterion. */

@@ -135,6 +135,34 @@ static void test_a_search_can_be_continued(void)
     TEST_ASSERT_EQUAL_HEX64(whole, simulation_hash(&rig.sim));
 }
 
+/* Out of the domain, or through its periodic sides. */
+static void test_fluid_that_nothing_holds(void)
+{
+#define FALLING \
+    HEAD "gravity = 0, -9.81\n[fluid w]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 20\n[relax]\n"
+    rig_open(&rig, FALLING, NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, ":5: [relax]: all fluid has left"),
+                                 rig.diag.text);
+    TEST_ASSERT_TRUE(rig.sim.guard.case_at_fault);
+    rig_open(&rig, FALLING "[domain]\nlower = 0, 0\nupper = 0.1, 0.1\nperiodic = xy\n", NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_to_rest(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, ":5: [relax]: the fluid falls with 1.6"),
+                                 rig.diag.text);
+#undef FALLING
+}
+
+/* Not the time before t = 0 at which its steps are computed. */
+static void test_guards_say_the_time_of_the_search(void)
+{
+    rig_open(&rig, dam, NULL);
+    TEST_ASSERT_EQUAL_INT(ERR_OK, relax_step(&rig.sim, &rig.diag));
+    rig.sim.kind[KIND_FLUID].vx[7] = (double)NAN;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, relax_step(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_STRING_LEN_MESSAGE("while rest is sought, after 0.0", rig.diag.text, 31,
+                                         rig.diag.text);
+}
+
 static void test_no_rest_is_said(void)
 {
     rig_open(&rig, hanging, "relax.limit=0.5", NULL);
@@ -202,6 +230,8 @@ int main(void)
     RUN_TEST(test_forces_are_those_at_the_start);
     RUN_TEST(test_a_search_can_be_continued);
     RUN_TEST(test_no_rest_is_said);
+    RUN_TEST(test_fluid_that_nothing_holds);
+    RUN_TEST(test_guards_say_the_time_of_the_search);
     RUN_TEST(test_a_body_that_falls_has_no_rest);
     RUN_TEST(test_verlet_and_what_is_said);
     return UNITY_END();
