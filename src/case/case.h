@@ -74,6 +74,7 @@ struct reader {
     struct case_section *sections; /* the first one is the top of the file */
     struct constant
         *constants;       /* constants, and the numbers at the top, which can be used as names */
+    const char *misnamed; /* a constant that has the name of a unit or a function */
     int depth;            /* of constants that depend on constants */
     bool cause_named;     /* the message names the invalid constant */
     bool in_lost_section; /* after a section header that is invalid */

@@ -3,6 +3,8 @@
  * them. */
 #include "case/case.h"
 
+#include <math.h>
+
 bool scene_gravity_varies(const struct scene *s)
 {
     const struct scene_expr *const e = &s->top.gravity_in_time;
@@ -43,6 +45,28 @@ static void warn_of_end(const struct scene *s, int line, struct diag *d)
               table->y[last], table->t[last]);
 }
 
+/* An accelerometer at rest shows gravity, which the table would add a second time. */
+static void warn_of_double(const struct scene *s, int line, struct diag *d)
+{
+    const struct scene_table *const table = &s->gravity_data;
+    const double *const g = s->top.gravity;
+    const double size2 = square(g[0]) + square(g[1]);
+    double sum[2] = {0, 0}, time = table->t[table->n - 1] - table->t[0];
+    for (int k = 0; k + 1 < table->n; k++) {
+        const double half = 0.5 * (table->t[k + 1] - table->t[k]) / time;
+        sum[0] += half * (table->x[k] + table->x[k + 1]);
+        sum[1] += half * (table->y[k] + table->y[k + 1]);
+    }
+    if (!(size2 > 0 && fabs(sum[0] * g[0] + sum[1] * g[1]) > 0.9 * size2)) return;
+    char place[LOCATION_TEXT];
+    scene_location(s, line, place);
+    diag_warn(d,
+              "%s: gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
+              "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
+              "out of one of them",
+              place, s->top.gravity_file, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
+}
+
 enum err gravity_load(struct scene *s, struct diag *d)
 {
     static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
@@ -52,5 +76,6 @@ enum err gravity_load(struct scene *s, struct diag *d)
     const int line = given ? given->line : 0;
     TRY(table_load(s, &s->gravity_data, &kind, s->top.gravity_file, line, "gravity_file", d));
     warn_of_end(s, line, d);
+    warn_of_double(s, line, d);
     return ERR_OK;
 }

@@ -60,9 +60,11 @@ int slice_count(struct slice text, char separator)
 static enum err collect_constant(struct reader *r, const struct entry *e)
 {
     const char *const meaning = expr_reserved(e->key);
-    if (meaning)
+    if (meaning) {
+        r->misnamed = e->key;
         return bad_entry(r, e, "a constant cannot be named `%s`: that is %s; rename it", e->key,
                          meaning);
+    }
     if (param_find(SECTION_top, e->key))
         return bad_entry(
             r, e,
@@ -200,9 +202,22 @@ static const char *unit_left_out(struct reader *r, char text[300])
     return "";
 }
 
+/* Whether a value has the name of a constant that cannot have it, as in `s, 2*s`. */
+static bool uses_misnamed(const struct reader *r, const struct entry *e)
+{
+    const size_t length = r->misnamed ? strlen(r->misnamed) : 0;
+    for (const char *at = e->value; length && (at = strstr(at, r->misnamed)) != NULL; at++) {
+        const bool begins = at == e->value || !(isalnum((unsigned char)at[-1]) || at[-1] == '_');
+        const char after = at[length];
+        if (begins && !(isalnum((unsigned char)after) || after == '_')) return true;
+    }
+    return false;
+}
+
 /* A consequence of a problem already reported is not reported again. */
 enum err case_bad_expression(struct reader *r, const struct entry *e, const char *why)
 {
+    if (uses_misnamed(r, e)) return ERR_INPUT;
     if (r->cause_named && r->n_problems > 0) return ERR_INPUT;
     char unit[300];
     const bool slashes = strstr(e->value, "//") && !strstr(why, "comment");
@@ -245,6 +260,7 @@ enum err case_check_dim(struct reader *r, const struct entry *e, const struct di
                         const char *unit)
 {
     if (dim_fits(dim, unit)) return ERR_OK;
+    if (uses_misnamed(r, e)) return ERR_INPUT;
     char have[DIM_TEXT], want[DIM_TEXT], left_out[300];
     dim_text(dim, have);
     unit_dim_text(unit, want);

@@ -66,7 +66,7 @@ static enum err allocate_sections(struct reader *r)
  * not, since two bodies cannot be in the same place. */
 static enum err inherit(struct reader *r, int section)
 {
-    const struct case_section *to = &r->sections[section];
+    struct case_section *to = &r->sections[section];
     const struct param *like = param_find((enum section_id)to->id, "like");
     const struct entry *e = NULL;
     for (int k = 0; like && k < r->n_entries; k++)
@@ -84,6 +84,9 @@ static enum err inherit(struct reader *r, int section)
         const size_t head = sizeof(struct scene_section_common);
         memcpy(target + head, source + head, section_table[to->id].size - head);
         memset(target + like->offset, 0, SCENE_TEXT);
+        for (int n = 0; n < section; n++) /* what that section lacks is told of it alone */
+            to->incomplete |= r->sections[n].id == to->id && r->sections[n].index == k &&
+                              (r->sections[n].incomplete || r->sections[n].invalid);
         for (int p = 0; p < PARAM_COUNT; p++)
             if ((int)param_table[p].section == to->id && param_table[p].type == PARAM_SHAPES)
                 memset(target + param_table[p].offset, 0, sizeof(struct shape_list));
@@ -113,8 +116,6 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
                          called->key, called->section == SECTION_top ? "at the top" : "in [",
                          called->section == SECTION_top ? "" : section_table[called->section].word,
                          called->section == SECTION_top ? "" : "]");
-    if (near.name)
-        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
     for (int k = 0; k < PARAM_COUNT; k++)
         if (strcmp(param_table[k].key, e->key) == 0) {
             const bool top = param_table[k].section == SECTION_top;
@@ -122,6 +123,8 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
                              top ? "at the top of the file" : "in [",
                              top ? "" : section_table[param_table[k].section].word, top ? "" : "]");
         }
+    if (near.name)
+        return bad_entry(r, e, "unknown key `%s` %s; did you mean `%s`?", e->key, place, near.name);
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 
@@ -328,8 +331,9 @@ static enum err read_file(FILE *file, const char *path, char **text, struct diag
     if (length == n) return ERR_OK;
     int line = 1;
     for (size_t k = 0; k < length; k++) line += (*text)[k] == '\n';
-    return diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; a case file is plain text", path,
-                     line);
+    const bool wide = memcmp(*text, "\xFF\xFE", 2) == 0 || memcmp(*text, "\xFE\xFF", 2) == 0;
+    return diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; a case file is plain text%s", path,
+                     line, wide ? ", not UTF-16: save it as UTF-8" : "");
 }
 
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,

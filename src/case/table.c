@@ -11,6 +11,9 @@
 
 enum { MAX_ROWS = 1000000 };
 
+/* A table this many times as long as the run has mostly another unit of time. */
+enum { LONG_TABLE = 100 };
+
 /* The columns are separated by commas or blanks. */
 
 struct table_file {
@@ -20,6 +23,13 @@ struct table_file {
     const struct table_kind *kind;
     struct diag *diag;
 };
+
+static bool decimal_comma(const char *text)
+{
+    for (const char *c = text; (c = strchr(c, ',')) != NULL; c++)
+        if (c > text && c[-1] >= '0' && c[-1] <= '9' && c[1] >= '0' && c[1] <= '9') return true;
+    return false;
+}
 
 /* 1: a row; 0: end of the file; -1: failed, in the diag. Lines that begin with # are comments, and
  * so is a header that begins with a letter. */
@@ -31,8 +41,11 @@ static int read_row(struct table_file *t, double row[3])
         t->line++;
         const size_t length = strlen(text);
         if (memchr(text + length + 1, 0, sizeof text - length - 1)) {
-            diag_add(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text", t->path,
-                     t->line);
+            diag_add(t->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text%s", t->path,
+                     t->line,
+                     strncmp(text, "\xFF\xFE", 2) == 0 || strncmp(text, "\xFE\xFF", 2) == 0
+                         ? ", not UTF-16: save it as UTF-8"
+                         : "");
             return -1;
         }
         const char *at = text + strspn(text, " \t\r\n");
@@ -44,6 +57,14 @@ static int read_row(struct table_file *t, double row[3])
             return -1;
         }
         if (!*at || *at == '#' || head) continue;
+        /* 0,5;1 has two columns for one reader, three for another. */
+        if (decimal_comma(at) && (strchr(at, ';') || strchr(at, '\t'))) {
+            diag_add(t->diag, ERR_INPUT,
+                     "%s:%d: commas and %s: if a comma stands for a decimal point, write a point, "
+                     "as in 0.5; if not, separate the columns by one of the two",
+                     t->path, t->line, strchr(at, ';') ? "semicolons" : "tabs");
+            return -1;
+        }
         for (int k = 0; k < 3; k++) {
             char *end;
             row[k] = strtod(at, &end);
@@ -127,6 +148,12 @@ enum err table_load(struct scene *s, struct scene_table *table, const struct tab
     struct table_file t = {file, name, 0, kind, d};
     const enum err err = read_table(s, table, &t);
     fclose(file);
+    const double last = err ? 0 : table->t[table->n - 1];
+    if (last > LONG_TABLE * s->top.end_time)
+        diag_warn(d,
+                  "%s: %s = %.200s lasts until t = %g s, of which the run uses the first %g s "
+                  "(end_time): its times are in seconds, not in milliseconds",
+                  place, key, name, last, s->top.end_time);
     return err;
 }
 

@@ -35,6 +35,8 @@ static const struct {
     {"dp: 1\n", NULL, "bad.cfg:1: `dp: 1` is neither `key = value` nor `[section]`; write = for :"},
     {TOP "[numerics]\nintegrator = verlet\n" SOLID, NULL,
      "bad.cfg:4: unknown key `integrator` in [numerics]; it belongs at the top of the file"},
+    {TOP "friction = 0.3\n" SOLID, NULL,
+     "bad.cfg:3: unknown key `friction` at the top of the file; it belongs in [contact]"},
     {TOP SOLID, "young=1", "--set young=1: unknown key or constant `young`; write `a.young`"},
     {TOP "[solids a]\n", NULL, "bad.cfg:3: unknown section [solids]; did you mean [solid]?"},
     {TOP "[zebra]\n", NULL,

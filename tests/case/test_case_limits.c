@@ -298,6 +298,9 @@ static void test_tables(void)
         {"0, 1e-3, 0\n1, 0, 0\n", "test_case_limits.tmp:1: the first row must have"},
         {"-1, 0, 0\n1, 0, 0\n", "test_case_limits.tmp:1: the first row must have"},
         {"0, 0, 0\n", "needs two rows or more; there is 1"},
+        {"0;0;0\n1;0,5;0\n", "test_case_limits.tmp:2: commas and semicolons: if a comma stands"},
+        {"0\t0\t0\n0,5\t0\n", "test_case_limits.tmp:2: commas and tabs"},
+        {"0,\t0,\t0\n1,\t0,\t0\n", NULL},
         {"# nothing\n", "needs two rows or more; there are 0"},
     };
     for (size_t k = 0; k < COUNT_OF(row); k++) {
@@ -310,6 +313,30 @@ static void test_tables(void)
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, load_table("0 0 0\n1 0\0 0\n", 13));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "test_case_limits.tmp:2: a zero byte"),
                                  diag.text);
+}
+
+static void test_gravity_tables_that_are_hardly_meant(void)
+{
+    static const struct {
+        const char *rows, *warning;
+    } row[] = {
+        {"0, 0, -9.81\n0.5, 1, -9.81\n2, 0, -9.81\n",
+         "l.cfg:4: gravity_file = test_case_limits.tmp has a mean of (0.5, -9.81) m/s^2, so it "
+         "seems to contain gravity"},
+        {"0, 0, -8\n0.5, 1, 8\n2, 0, 0\n", NULL},
+        {"0, 0, 0\n10, 1, 0\n101, 0, 0\n",
+         "gravity_file = test_case_limits.tmp lasts until t = 101 s, of which the run uses the "
+         "first 1 s"},
+        {"0, 0, 0\n10, 1, 0\n99, 0, 0\n", NULL},
+    };
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        FILE *file = fopen("test_case_limits.tmp", "w");
+        fputs(row[k].rows, file);
+        fclose(file);
+        takes(TOP "gravity = 0, -9.81\ngravity_file = test_case_limits.tmp\n" WATER);
+        const char *const found = strstr(warned, row[k].warning ? row[k].warning : "gravity_file");
+        TEST_ASSERT_TRUE_MESSAGE(!found == !row[k].warning, warned);
+    }
 }
 
 static void test_long_lines_and_long_tables(void)
@@ -351,6 +378,7 @@ int main(void)
     RUN_TEST(test_paths_that_are_too_long);
     RUN_TEST(test_a_file_that_is_too_long);
     RUN_TEST(test_tables);
+    RUN_TEST(test_gravity_tables_that_are_hardly_meant);
     RUN_TEST(test_long_lines_and_long_tables);
     RUN_TEST(test_a_folder_is_no_table);
     return UNITY_END();

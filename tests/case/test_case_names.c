@@ -82,11 +82,26 @@ static void test_a_folder_is_no_file(void)
     TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 
+/* What a section lacks that others are like is told of it alone; so is a constant that cannot have its name,
+ * without its uses. */
+static void test_what_follows_from_a_problem_is_none(void)
+{
+    refuses_all(TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\n"
+                    "density 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+                    "[solid b]\nlike = a\nshape = box 0.1, 0, 0.11, 20 mm\n"
+                    "[solid c]\nlike = b\nshape = box 0.2, 0, 0.21, 20 mm\n",
+                "bad.cfg:5: `density 1000` is neither `key = value` nor `[section]`\n");
+    refuses_all(TOP "[constants]\ns = 20 mm\nH = 2*s\n[solid a]\nshape = box 0, 0, 2*s, s\n"
+                    "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n",
+                "bad.cfg:4: a constant cannot be named `s`: that is a unit; rename it\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_names_are_checked_beside_wrong_values);
     RUN_TEST(test_a_probe_needs_its_place);
+    RUN_TEST(test_what_follows_from_a_problem_is_none);
     RUN_TEST(test_a_key_by_the_name_of_other_programs);
     RUN_TEST(test_a_comment_of_other_languages_behind_a_wrong_unit);
     RUN_TEST(test_a_folder_is_no_file);
