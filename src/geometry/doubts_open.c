@@ -7,20 +7,6 @@
 
 #include <math.h>
 
-/* Whether fluid somewhere has nothing beside it. */
-static bool has_free_surface(const struct point_index *of)
-{
-    const double dp = of->scene->top.dp;
-    for (int64_t k = 0; k < of->n; k++)
-        for (int side = 0; side < 4 && of->bit[k] == POINT_FLUID; side++) {
-            const double step = side % 2 ? 1.2 * dp : -1.2 * dp;
-            const double at[2] = {of->x[k] + (side < 2 ? step : 0),
-                                  of->y[k] + (side < 2 ? 0 : step)};
-            if (point_index_at(of, at, dp, POINT_ANY) < 0) return true;
-        }
-    return false;
-}
-
 /* Fluid in front of the line beyond its end, and neither wall nor buffer behind the line there. */
 static void warn_of_end(const struct sampler *g, const struct point_index *of,
                         const struct scene_open *o, bool last)
@@ -74,7 +60,7 @@ static void warn_of_balance(const struct sampler *g, const struct point_index *o
     for (int64_t k = 0; k < of->n; k++) n += of->bit[k] == POINT_FLUID;
     double time;
     const double volume = (double)n * square(s->top.dp), more = surplus(s, volume, &time);
-    if (more == 0 || has_free_surface(of)) return;
+    if (more == 0 || !s->full) return;
     const struct scene_open o = scene_open_at(s, scene_open_count(s) - 1);
     char place[LOCATION_TEXT];
     scene_location(s, o.common->line, place);
@@ -125,6 +111,7 @@ enum err geometry_warn_of_open(struct sampler *g)
     struct point_index points;
     if (scene_open_count(s) == 0 || s->n_fluid == 0) return ERR_OK;
     TRY(point_index_create(&points, g));
+    g->scene->full = !point_index_surface(&points);
     for (int k = 0; k < scene_open_count(s); k++) {
         const struct scene_open o = scene_open_at(s, k);
         for (int last = 0; last < 2; last++) warn_of_end(g, &points, &o, last);

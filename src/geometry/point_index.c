@@ -60,3 +60,16 @@ int64_t point_index_at(const struct point_index *of, const double at[2], double 
         }
     return -1;
 }
+
+bool point_index_surface(const struct point_index *of)
+{
+    const double dp = of->scene->top.dp;
+    for (int64_t k = 0; k < of->n; k++)
+        for (int side = 0; side < 4 && of->bit[k] == POINT_FLUID; side++) {
+            const double step = side % 2 ? 1.2 * dp : -1.2 * dp;
+            const double at[2] = {of->x[k] + (side < 2 ? step : 0),
+                                  of->y[k] + (side < 2 ? 0 : step)};
+            if (point_index_at(of, at, dp, POINT_ANY) < 0) return true;
+        }
+    return false;
+}

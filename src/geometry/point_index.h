@@ -24,4 +24,7 @@ enum err point_index_create(struct point_index *to, struct sampler *g) SPHFSI_CH
 /* A point of these kinds within a distance of at most dp; -1: none. */
 int64_t point_index_at(const struct point_index *of, const double at[2], double within, int kinds);
 
+/* Whether fluid somewhere has nothing beside it. */
+bool point_index_surface(const struct point_index *of);
+
 #endif

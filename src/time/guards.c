@@ -274,10 +274,37 @@ static enum err check_motion(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
+enum { VOIDS_INTERVAL = 256 };
+#define VOIDS_SHARE 0.01
+
+/* In a full channel fluid is missing only where its pressure has fallen below zero, which opens voids. */
+static void check_voids(struct simulation *s, struct diag *d)
+{
+    const struct scene *const scene = s->scene;
+    const struct particles *const p = &s->kind[KIND_FLUID];
+    const double area = square(scene->top.dp);
+    double volume = 0, margin = 0; /* a buffer has a row more or less */
+    if (!scene->full || s->guard.warned_voids || s->state.steps % VOIDS_INTERVAL) return;
+    for (int64_t i = 0; i < p->n; i++) volume += area * (p->m ? p->m[i] : 1) / (1 + p->dens[i]);
+    for (int k = 0; k < scene_open_count(scene); k++)
+        margin += scene->top.dp * scene_open_at(scene, k).length;
+    const double start = area * (double)scene->points[KIND_FLUID].n, missing = start - volume;
+    if (!(missing > VOIDS_SHARE * start + margin)) return;
+    s->guard.warned_voids = true;
+    diag_warn(d,
+              "t = %.6g s: %.2g %% of the channel is empty: voids have opened where the pressure "
+              "of the fluid fell below zero, and the flow round them is wrong. Only differences of "
+              "pressure act on it, so give the open boundaries a `pressure` that is higher by "
+              "about rho v^2/2 = %.3g Pa, by the largest speed so far",
+              s->state.time, 100 * missing / start,
+              0.5 * scene->rho0 * square(s->state.speed_high));
+}
+
 enum err guards_check(struct simulation *s, struct diag *d)
 {
     if (s->effects & FX_MOTION) TRY(check_motion(s, d));
     if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
+    if (!(s->effects & FX_MOTION)) check_voids(s, d);
     if (s->effects & FX_SOLID) TRY(check_solid(s, d));
     TRY(guards_energy(s, d));
     return check_step(s, d);

@@ -396,6 +396,34 @@ static void test_warnings_before_the_end(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
 }
 
+/* A full channel from which fluid is missing; not one with a surface, nor at a step between checks. */
+static void test_voids_in_a_full_channel(void)
+{
+    static const char channel[] =
+        "dp = 1 cm\nend_time = 1\n[fluid w]\nshape = box 0, 0, 0.5, 0.1\nmax_speed = 1\n"
+        "density_diffusion = 0.1\nvelocity = 0.5, 0\n[wall w]\nshape = box -0.1, -0.04, 0.6, 0\n"
+        "shape = box -0.1, %g, 0.6, 0.14\n[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nspeed = 0.5\n"
+        "[outflow o]\nfrom = 0.5, 0\nto = 0.5, 0.1\npressure = 0\n";
+    for (int open = 0; open < 2; open++) {
+        char text[sizeof channel + 20];
+        snprintf(text, sizeof text, channel, open ? 0.12 : 0.1);
+        rig_open(&rig, text, NULL);
+        rig_steps(&rig, 1, 1);
+        rig.diag = (struct diag){.warn = note};
+        struct particles *const p = &rig.sim.kind[KIND_FLUID];
+        const int64_t n = p->n;
+        for (int k = 0; k < 3; k++) {
+            p->n = k == 0 ? n - n / 50 : n - n / 10; /* a row of the buffers is no void */
+            rig.sim.state.steps = k == 1 ? 511 : 512;
+            warnings = 0;
+            TEST_ASSERT_EQUAL_INT(ERR_OK, guards_check(&rig.sim, &rig.diag));
+            TEST_ASSERT_EQUAL_INT_MESSAGE(k == 2 && !open, warnings, warning);
+        }
+        p->n = n;
+    }
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "of the channel is empty: voids"), warning);
+}
+
 static void test_substeps_without_end(void)
 {
     rig.sim.substeps = 10001;
@@ -435,6 +463,7 @@ int main(void)
     RUN_TEST(test_a_gain_between_bodies);
     RUN_TEST(test_what_may_help_is_said);
     RUN_TEST(test_warnings_before_the_end);
+    RUN_TEST(test_voids_in_a_full_channel);
     RUN_TEST(test_substeps_without_end);
     RUN_TEST(test_a_run_stops_at_once);
     return UNITY_END();
