@@ -223,6 +223,14 @@ def panels_of(columns):
     return [panels[key] for key in sorted(panels, key=lambda key: key[0])]
 
 
+def without_turns(column, value):
+    """An angle from -pi to pi is interrupted where it goes on at the other end, instead of joined."""
+    value = np.array(value, dtype=float)
+    if column.endswith("_angle_rad"):
+        value[1:][np.abs(np.diff(value)) > np.pi] = np.nan
+    return value
+
+
 def draw_panel(axes, columns, curves, refs):
     """The columns of one unit; gives its factor and name. Each of several runs has its colour."""
     size = max(np.abs(value).max() for column in columns for _, _, value in curves[column])
@@ -237,8 +245,10 @@ def draw_panel(axes, columns, curves, refs):
         for k, (run, time, value) in enumerate(curves[column]):
             name = words.rpartition(" (")[0] + (f", {run.label()}" if several else "")
             colour = COLOURS[(k if several else c) % len(COLOURS)]
-            style = DASHES[(c - 1) % len(DASHES)] if several and c else "-"
-            axes.plot(time, scale * value, color=colour, linestyle=style, zorder=3, label=name)
+            repeated = c if several else c // len(COLOURS)  # with a colour that others have, too
+            style = DASHES[(repeated - 1) % len(DASHES)] if repeated else "-"
+            axes.plot(time, scale * without_turns(column, value), color=colour, linestyle=style,
+                      zorder=3, label=name)
             if run.failure():
                 axes.plot(time[-1], scale * value[-1], "x", color=colour, markersize=8,
                           markeredgewidth=2, zorder=5)

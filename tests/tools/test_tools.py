@@ -180,6 +180,13 @@ def test_probes(tmp):
     labels = [axes.get_ylabel() for axes in figure.axes]
     assert labels == ["displacement (mm)", "P pressure (Pa)", "wave front (m)", "force (N/m)"], labels
     assert units["M1_dy_m"] == (1e3, "mm") and units["load_fx_N_per_m"] == (1, "N/m"), units
+    many = [f"p{k}_vx_m_per_s" for k in range(8)] + ["p_angle_rad"]
+    turning = np.where(t < 0.2, 3.1, -3.1)
+    panels, _ = draw_probes.draw_panels(many, {name: [(runs[0], t, turning)] for name in many}, [])
+    looks = {(line.get_color(), line.get_linestyle()) for line in panels.axes[0].get_lines()[:8]}
+    assert len(looks) == 8, looks
+    speed, angle = (axes.get_lines()[0].get_ydata() for axes in panels.axes)
+    assert np.isnan(angle).sum() == 1 and not np.isnan(speed).any()
     mixed = {"a_level_m": "level", "b_front_m": "front", "c_cx_m": "position", "c_cy_m": "position",
              "s_sxx_Pa": "stress", "s_sxy_Pa": "stress", "s_mises_Pa": "stress", "P_p_Pa": "pressure",
              "post_elastic_J_per_m": "energy", "e_Exx_SI": "strain", "e_Eyy_SI": "strain",
