@@ -430,7 +430,9 @@ static void say_error(const struct scene *s, enum kind kind, int body, const cha
     char range[64];
     snprintf(range, sizeof range, band.low < 0.9 * band.high ? "%.2g %% to %.2g %%" : "%.2g %%",
              band.low, band.high);
-    if (!isfinite(band.low))
+    const bool moves =
+        kind == KIND_SOLID && s->solid[body].clamp.n == 0 && !scene_is_bonded(s, body);
+    if (moves || !isfinite(band.low))
         session_say(
             o,
             "  %s: %.0f particles across; error unknown, because docs/accuracy.md has no case of "

@@ -2,7 +2,7 @@
  * Bodies that can be simulated but are probably a mistake: clamped all over, without a clamp, far too
  * soft or light. Each gets a warning with the consequence and the remedy. */
 #include "geometry/near.h"
-#include "geometry/sampling.h"
+#include "geometry/point_index.h"
 #include "base/elementary.h"
 
 #include "case/case.h"
@@ -22,31 +22,82 @@ static void warn_of_contact(struct sampler *g)
               "each other and through walls; periodic = none enables contact");
 }
 
-/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load, unless it
- * begins with a velocity. */
-static void warn_of_loose_bodies(struct sampler *g)
+/* What keeps a body from falling. */
+enum hold { LOOSE, STANDS, HELD };
+
+/* Whether a particle of a body has a wall, or a body that does not fall itself, next below it. */
+static bool stands(const struct point_index *of, const char *hold, int body)
+{
+    const struct scene *const s = of->scene;
+    const double dp = s->top.dp, g = elementary_hypot(s->top.gravity[0], s->top.gravity[1]);
+    for (int64_t k = 0; k < of->n && g > 0; k++) {
+        if (of->kind[k] != KIND_SOLID || of->section[k] != body) continue;
+        const double at[2] = {of->x[k] + dp * s->top.gravity[0] / g,
+                              of->y[k] + dp * s->top.gravity[1] / g};
+        const int64_t below = point_index_at(of, at, 0.9 * dp, POINT_BODY);
+        if (below < 0) continue;
+        if (of->kind[below] == KIND_WALL) return true;
+        if (of->section[below] != body && hold[of->section[below]] != LOOSE) return true;
+    }
+    return false;
+}
+
+/* Clamps hold bodies, and bonds those that are joined to them. Others stand on walls and on bodies that do
+ * not fall. */
+static void find_holds(const struct point_index *of, char *hold)
+{
+    const struct scene *const s = of->scene;
+    const bool meets = effects_of_scene(s) & FX_CONTACT;
+    for (int k = 0; k < s->n_solid; k++) hold[k] = s->solid[k].clamp.n ? HELD : LOOSE;
+    for (int round = 0; round < s->n_solid; round++)
+        for (int k = 0; k < s->n_solid; k++) {
+            if (hold[k] == LOOSE && meets && stands(of, hold, k)) hold[k] = STANDS;
+            if (!s->solid[k].joined[0]) continue;
+            const int to = scene_find_solid(s, s->solid[k].joined);
+            hold[k] = hold[to] = hold[k] > hold[to] ? hold[k] : hold[to];
+        }
+}
+
+static void warn_of_loose(const struct sampler *g, int body, enum hold hold)
 {
     const struct scene *const s = g->scene;
-    for (int k = 0; k < s->n_solid; k++) {
-        const struct scene_solid *const b = &s->solid[k];
-        if (b->clamp.n || b->joined[0] || b->velocity.e[0]) continue;
-        bool loaded = false;
-        for (int m = 0; m < s->n_load; m++) loaded |= scene_find_solid(s, s->load[m].body) == k;
-        const bool falls = b->gravity && effects_of_scene(s) & FX_GRAVITY;
-        if (!falls && !loaded) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, b->common.line, place);
-        if (falls)
-            diag_warn(g->diag,
-                      "%s: [solid %s] has no clamp, and gravity acts on it, so it falls unless "
-                      "fluid carries it; give it a `clamp`, or gravity = off",
-                      place, b->common.name);
-        else
-            diag_warn(g->diag,
-                      "%s: [solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
-                      "give it a `clamp`",
-                      place, b->common.name);
-    }
+    const struct scene_solid *const b = &s->solid[body];
+    const bool falls = b->gravity && effects_of_scene(s) & FX_GRAVITY;
+    bool loaded = false;
+    char place[LOCATION_TEXT];
+    for (int m = 0; m < s->n_load; m++) loaded |= scene_find_solid(s, s->load[m].body) == body;
+    scene_location(s, b->common.line, place);
+    if (falls && hold == LOOSE)
+        diag_warn(g->diag,
+                  "%s: [solid %s] has no clamp, and gravity acts on it, so it falls unless fluid "
+                  "carries it; give it a `clamp`, or gravity = off",
+                  place, b->common.name);
+    else if (falls && s->n_fluid > 0)
+        diag_warn(g->diag,
+                  "%s: [solid %s] has no clamp and only stands on what is below it, so fluid may "
+                  "move it; give it a `clamp` if it is fixed",
+                  place, b->common.name);
+    else if (loaded && hold == LOOSE)
+        diag_warn(g->diag,
+                  "%s: [solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
+                  "give it a `clamp`",
+                  place, b->common.name);
+}
+
+/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load, unless it
+ * begins with a velocity. */
+static enum err warn_of_loose_bodies(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    struct point_index points;
+    char *const hold = arena_alloc(&g->temp, (size_t)s->n_solid, sizeof *hold, "points", g->diag);
+    if (!hold) return ERR_MEMORY;
+    TRY(point_index_create(&points, g));
+    find_holds(&points, hold);
+    for (int k = 0; k < s->n_solid; k++)
+        if (hold[k] != HELD && !s->solid[k].joined[0] && !s->solid[k].velocity.e[0])
+            warn_of_loose(g, k, hold[k]);
+    return ERR_OK;
 }
 
 /* Extent along gravity of a section's particles, times the size of gravity: the pressure of its weight over
@@ -233,7 +284,7 @@ static void warn_of_other_motions(struct sampler *g)
 enum err geometry_warn_of_bodies(struct sampler *g)
 {
     warn_of_contact(g);
-    warn_of_loose_bodies(g);
+    if (g->scene->n_solid > 0) TRY(warn_of_loose_bodies(g));
     warn_of_light_bodies(g);
     warn_of_soft_bodies(g);
     TRY(warn_of_full_clamps(g));

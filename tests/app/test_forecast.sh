@@ -87,6 +87,8 @@ grep -q '^  baffle: 4 particles across: error of the tip displacement about [0-9
     fail "no word of the body's error: $(cat "$work/said")"
 grep -q 'Dam break and elastic gate\|warning.*interval' "$work/said" &&
     fail "rows of other cases, or a false warning"
+"$SPHFSI" --explain tests/stability/wedge.cfg 2>&1 | grep -q '^  wedge: .* error unknown, because' ||
+    fail "an error of the tip of a body that moves freely"
 "$SPHFSI" --explain cases/templates/baffle.cfg --set output.ledger_interval=1e-9 \
     --set baffle.damping_time=0.01 --set numerics.fixed_step=1e-6 >"$work/said" 2>&1
 for key in ledger_interval 'damping_time = 0.01' 'fixed_step limits'; do

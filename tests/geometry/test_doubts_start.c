@@ -119,6 +119,33 @@ static void test_a_body_that_is_thrown(void)
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "has no clamp"), warnings);
 }
 
+static void test_bodies_that_stand(void)
+{
+#define RUBBER "density = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+#define BED "[wall bed]\nshape = box -0.1, -0.02, 0.3, 0\n"
+#define LOW "[solid low]\nshape = box 0, 0, 0.05, 0.05\n" RUBBER
+#define HIGH "[solid high]\nshape = box 0.02, 0.05, 0.06, 0.1\n" RUBBER
+    read(HEAD HIGH LOW BED);
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD LOW HIGH);
+    expect("start.cfg:4: [solid low] has no clamp, and gravity acts on it, so it falls");
+    expect("start.cfg:9: [solid high] has no clamp, and gravity acts on it, so it falls");
+    /* Bonded to a clamped body, on either side of the bond. */
+    read(HEAD LOW "clamp = box 0, 0, 0.05, 0.01\n" HIGH "joined = low\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD LOW HIGH "joined = low\nclamp = box 0.02, 0.09, 0.06, 0.1\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+    read(HEAD LOW HIGH "joined = low\n");
+    expect("[solid low] has no clamp, and gravity acts on it, so it falls");
+    /* Water pushes what only stands. */
+    read(HEAD LOW BED
+         "[fluid water]\nsound_speed = 10\nsurface = 0.05\nshape = box 0.1, 0, 0.3, 0.05\n");
+    expect("[solid low] has no clamp and only stands on what is below it, so fluid may move it");
+    /* Without contact there is nothing to stand on. */
+    read(HEAD LOW BED "[contact any]\nenabled = off\n");
+    expect("[solid low] has no clamp, and gravity acts on it, so it falls");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -128,5 +155,6 @@ int main(void)
     RUN_TEST(test_an_inflow_above_the_surface);
     RUN_TEST(test_probes_inside_a_wall);
     RUN_TEST(test_a_body_that_is_thrown);
+    RUN_TEST(test_bodies_that_stand);
     return UNITY_END();
 }

@@ -28,7 +28,7 @@ says 0 'numerics.cfl = 0.5 is above 0.2' column.cfg integrator=verlet numerics.c
 says 0 'numerics.cfl = 0.5 is above 0.4' column.cfg integrator=symplectic numerics.cfl=0.5
 says 0 'numerics.cfl = 0.7 is above 0.6' column.cfg integrator=leapfrog numerics.cfl=0.7
 says 0 'has no clamp, and a .load. acts on it' free.cfg
-says 0 'has no clamp, and gravity acts on it' wedge.cfg
+says 0 'has no clamp, and gravity acts on it' settle.cfg
 says 0 'than the kernel.s reach .* numerics.sides = one prevents that' gate.cfg numerics.h_over_dp=2 \
     'thickness=15 mm'
 "$sphfsi" tests/stability/gate.cfg --set numerics.h_over_dp=2 --set 'thickness=15 mm' \
