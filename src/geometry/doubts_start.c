@@ -95,13 +95,24 @@ static double depth_of(const struct point_index *of, int fluid, const double dow
     return high - low + of->scene->top.dp;
 }
 
+/* The size of gravity without its part along periodic directions, in which it drives a flow, and its
+ * direction. */
+static double borne_gravity(const struct scene *s, double down[2])
+{
+    double g[2];
+    for (int c = 0; c < 2; c++) g[c] = scene_periodic(s, c) ? 0 : s->top.gravity[c];
+    const double size = elementary_hypot(g[0], g[1]);
+    for (int c = 0; c < 2; c++) down[c] = size > 0 ? g[c] / size : 0;
+    return size;
+}
+
 static void warn_of_weight(const struct sampler *g, const struct point_index *of, int fluid)
 {
     const struct scene *const s = g->scene;
     const struct scene_fluid *const f = &s->fluid[fluid];
-    const double size = elementary_hypot(s->top.gravity[0], s->top.gravity[1]);
+    double down[2];
+    const double size = borne_gravity(s, down);
     if (size == 0 || f->pressure.e[0]) return;
-    const double down[2] = {s->top.gravity[0] / size, s->top.gravity[1] / size};
     const bool held = stands(of, fluid, down);
     const double pressure = f->density * size * depth_of(of, fluid, down);
     char place[LOCATION_TEXT];

@@ -72,6 +72,23 @@ static void test_fluid_without_the_pressure_of_its_weight(void)
     expect("[fluid drop] has a `surface`, but stands on nothing: it begins with up to 490 Pa");
 }
 
+static void test_a_body_force_that_drives_a_periodic_flow(void)
+{
+#define ARRAY                                                                            \
+    "dp = 5 mm\nend_time = 1 s\n[wall post]\nshape = circle 0.05, 0.05, 0.02\n"          \
+    "[fluid water]\nsound_speed = 10\nshape = box 0, 0, 0.1, 0.1\nminus = circle 0.05, " \
+    "0.05, 0.02\n[domain]\nlower = 0, 0\nupper = 0.1, 0.1\nperiodic = xy\n"
+    read("gravity = 0.5, 0\n" ARRAY);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "weight"), warnings);
+    /* A film on a slope: its bed bears the part of gravity across it. */
+#define FILM                                                                                 \
+    "dp = 5 mm\nend_time = 1 s\ngravity = 3, -9\n[wall bed]\nshape = box 0, -0.02, 0.1, 0\n" \
+    "[domain]\nlower = 0, -0.1\nupper = 0.1, 0.2\nperiodic = x\n[fluid water]\n"             \
+    "sound_speed = 10\nshape = box 0, 0, 0.1, 0.05\n"
+    read(FILM);
+    expect("twice its 450 Pa; give it its `pressure`");
+}
+
 static void test_a_motion_near_the_speed_of_sound(void)
 {
 #define DRIVEN HEAD WATER "shape = box 0, 0, 0.1, 0.05\n" TANK "motion = shake\n"
@@ -151,6 +168,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_fluid_a_little_beside_its_wall);
     RUN_TEST(test_fluid_without_the_pressure_of_its_weight);
+    RUN_TEST(test_a_body_force_that_drives_a_periodic_flow);
     RUN_TEST(test_a_motion_near_the_speed_of_sound);
     RUN_TEST(test_an_inflow_above_the_surface);
     RUN_TEST(test_probes_inside_a_wall);
