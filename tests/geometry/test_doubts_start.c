@@ -1,31 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Starts that are hardly meant are warned of: fluid beside its container, fluid without its weight's
  * pressure, motions near the speed of sound, inflows above the surface, probes inside walls. */
-#include "geometry/load.h"
-#include "unity.h"
+#include "warned.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static struct scene scene;
-static char warnings[4096];
-
-static void note(void *context, const char *text)
-{
-    (void)context;
-    const size_t n = strlen(warnings);
-    snprintf(warnings + n, sizeof warnings - n, "%s\n", text);
-}
-
-static void read(const char *text)
-{
-    struct diag diag = {.warn = note};
-    scene_free(&scene);
-    warnings[0] = '\0';
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
-                                  scene_load_text(&scene, text, "start.cfg", 0, NULL, &diag),
-                                  diag.text);
-}
+static void read(const char *text) { read_as("start.cfg", text); }
 
 static void expect(const char *text)
 {

@@ -1,21 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Speeds that the materials cannot follow are warned of before a run, and known to it; bodies that are
  * joined but apart are refused where a case is drawn. */
-#include "geometry/load.h"
-#include "unity.h"
-
-#include <stdio.h>
-#include <string.h>
-
-static struct scene scene;
-static char warnings[4096];
-
-static void note(void *context, const char *text)
-{
-    (void)context;
-    const size_t n = strlen(warnings);
-    snprintf(warnings + n, sizeof warnings - n, "%s\n", text);
-}
+#include "warned.h"
 
 void setUp(void) { warnings[0] = '\0'; }
 
@@ -24,11 +10,7 @@ void tearDown(void) { scene_free(&scene); }
 /* A warning that has these words, or none at all. */
 static void warns(const char *text, const char *words)
 {
-    struct diag diag = {.warn = note};
-    scene_free(&scene);
-    warnings[0] = '\0';
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, "fast.cfg", 0, NULL, &diag),
-                                  diag.text);
+    read_as("fast.cfg", text);
     if (!words) {
         TEST_ASSERT_EQUAL_STRING("", warnings);
         return;
