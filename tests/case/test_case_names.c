@@ -14,9 +14,9 @@ void tearDown(void) {}
 
 static void refuses_all(const char *text, const char *want)
 {
-    char said[4000];
     struct scene s;
     struct diag d = {0};
+    char said[sizeof d.text + sizeof d.more];
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, scene_load_text(&s, text, "bad.cfg", 0, NULL, &d));
     snprintf(said, sizeof said, "%s\n%s", d.text, d.more);
     TEST_ASSERT_EQUAL_STRING(want, said);
