@@ -215,12 +215,22 @@ static enum err check_solid(struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-static const char *binding_bound(const struct simulation *s)
+static int binding_bound(const struct simulation *s)
 {
     int least = 0;
     for (int k = 1; k < BOUND_COUNT; k++)
         if (s->dt_bound[k] < s->dt_bound[least]) least = k;
-    return bound_names[least];
+    return least;
+}
+
+/* What lengthens a step that a bound limits. */
+static const char *step_remedy(const struct simulation *s, int bound)
+{
+    if (bound != BOUND_solid && bound != BOUND_contact)
+        return "a smaller cfl or a higher sound_speed may help";
+    if (s->effects & FX_FLUID && s->scene->numerics.multirate == MULTIRATE_OFF)
+        return "numerics.multirate = auto gives the solid steps of its own";
+    return "a finer dp or a stiffer body may help";
 }
 
 /* Steps that become too small, and sub-steps that become too many. */
@@ -240,11 +250,12 @@ static enum err check_step(struct simulation *s, struct diag *d)
                          "t = %.6g s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
                          s->state.time, s->state.dt);
+    const int bound = binding_bound(s);
     if (!s->guard.warned_step)
         diag_warn(d,
                   "t = %.6g s: the time step has fallen to %.3g s, limited by %s, and the run "
-                  "stops at %.3g s; a smaller cfl or a higher sound_speed may help",
-                  s->state.time, s->state.dt, binding_bound(s), limit);
+                  "stops at %.3g s; %s",
+                  s->state.time, s->state.dt, bound_names[bound], limit, step_remedy(s, bound));
     s->guard.warned_step = true;
     return ERR_OK;
 }

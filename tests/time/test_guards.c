@@ -394,6 +394,14 @@ static void test_warnings_before_the_end(void)
     char text[64];
     snprintf(text, sizeof text, "limited by %s", bound_names[2]);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, text), warning);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
+    /* Neither cfl nor sound_speed changes the step of a solid. */
+    rig.sim.dt_bound[2] = (double)INFINITY;
+    rig.sim.dt_bound[BOUND_contact] = 1e-9;
+    rig.sim.guard.warned_step = false;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, check());
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, "limited by contact"), warning);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warning, "a smaller cfl"), warning);
 }
 
 /* A full channel from which fluid is missing; not one with a surface, nor at a step between checks. */
