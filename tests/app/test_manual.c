@@ -64,6 +64,7 @@ static const char *companion(const struct param *p)
     if (is(p, "domain", "upper")) return "domain.lower=-0.2,-0.1";
     if (is(p, "solid", "minus") || is(p, "solid", "clamp"))
         return "solid more.shape=box 0, 0, 20 mm, 0.1 m";
+    if (is(p, "solid", "joined")) return "solid more.shape=box 0.52, 0, 0.54, 0.1";
     if (is(p, "solid", "clamp_motion")) return "solid more.clamp=box 0.7, 0, 0.72, 10 mm";
     if (is(p, "probe", "body")) return "probe more.point=0.51,0.1";
     if (is(p, "probe", "point")) return "probe more.quantity=pressure";

@@ -309,7 +309,7 @@ static void force_of_pair(const struct twin_solid *t, struct twin_solid_point *a
     a->ay += f[1] / body->density;
 }
 
-/* --- contact of boxes --- */
+/* --- contact of boxes that fit the lattice --- */
 
 /* Whether a body has a particle at a place of its lattice. */
 static bool has(const struct twin_solid *t, int body, double X, double Y)
@@ -349,7 +349,7 @@ static void give(const struct twin_solid *t, struct twin_solid_point *a, double 
 }
 
 /* What the place at the share s of the way from a to b does to p, times `sign`: half of k dp (dp/r - 1) with
- * k = stiffness E of the softer one, less the dashpot, and the friction, at most Coulomb's. */
+ * k = stiffness 2 E_A E_B/(E_A + E_B), less the dashpot, and the friction, at most Coulomb's. */
 static void touch(const struct twin_solid *t, struct twin_solid_point *p,
                   struct twin_solid_point *a, struct twin_solid_point *b, double s, double sign)
 {
@@ -357,7 +357,7 @@ static void touch(const struct twin_solid *t, struct twin_solid_point *p,
     const double x = p->x - (1 - s) * a->x - s * b->x, y = p->y - (1 - s) * a->y - s * b->y;
     const double r = hypot(x, y), V = t->dp * t->dp;
     if (r >= t->dp) return;
-    const double k = t->contact->stiffness * fmin(A->young, B->young);
+    const double k = t->contact->stiffness * 2 / (1 / A->young + 1 / B->young);
     const double m = 1 / (1 / (A->density * V) + 1 / (B->density * V)), c = sqrt(k * m);
     const double u = p->u - (1 - s) * a->u - s * b->u, v = p->v - (1 - s) * a->v - s * b->v;
     const double speed = (u * x + v * y) / r, across = (v * x - u * y) / r; /* along (-y, x)/r */
