@@ -60,6 +60,8 @@ void case_spoils_unknown(struct reader *r, enum section_id section, const char *
 
 enum scene_rest case_rest(const struct reader *r)
 {
+    /* A misspelled key may stand for `dp`, which is then not said to be missing. */
+    if (!(r->scene->top.dp > 0)) return REST_NOTHING;
     if (!r->checked || r->lost || r->shapes_wrong || r->n_problems >= CASE_MAX_PROBLEMS)
         return REST_NOTHING;
     return r->places_wrong ? REST_SHAPES : REST_PLACES;

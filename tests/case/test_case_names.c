@@ -96,6 +96,14 @@ static void test_what_follows_from_a_problem_is_none(void)
                 "bad.cfg:4: a constant cannot be named `s`: that is a unit; rename it\n");
 }
 
+/* Without `dp` nothing is sampled, also where an unknown key may stand for it. */
+static void test_shapes_without_their_spacing(void)
+{
+    refuses_all("tiAtle = x\nend_time = 1\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\n"
+                "sound_speed = 20\n",
+                "bad.cfg:1: unknown key `tiAtle` at the top of the file; did you mean `title`?\n");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -105,5 +113,6 @@ int main(void)
     RUN_TEST(test_a_key_by_the_name_of_other_programs);
     RUN_TEST(test_a_comment_of_other_languages_behind_a_wrong_unit);
     RUN_TEST(test_a_folder_is_no_file);
+    RUN_TEST(test_shapes_without_their_spacing);
     return UNITY_END();
 }
