@@ -164,7 +164,7 @@ says.
   of first order in dp. The load is a force: a traction on a turned lattice depends on how many
   particles its region holds, which was up to 2.5 % off here.
 * Contact acts at the outline as it is drawn (T-61b). A disc is not the steps of its lattice.
-* Between both loads of a disc between plates each contact gives way by 0.24, 0.48 and 0.96 dp. A
+* Between both loads of a disc between plates each contact is compressed by 0.24, 0.48 and 0.96 dp. A
   percent at 20 over the radius is 0.0024 dp.
 * The friction is 0.3 where nothing else is said. Coulomb friction between an elastic and a rigid
   body lets pulses of slip run along the joint below the angle of friction (Adams 1998; Ranjith and

@@ -119,7 +119,7 @@ def beam_elements(q, stiffness, length):
 
 def lying_beam(length, thick, young, poisson, weight, drop, n=200):
     """Heights of n + 1 points of the axis of a beam that is held level at one end and lies on a floor `drop`
-    below it: plane strain, shear coefficient 5/6, `weight` per length. The floor gives way by a thousandth of
+    below it: plane strain, shear coefficient 5/6, `weight` per length. The floor yields by a thousandth of
     `thick`."""
     plane = young / (1 - poisson ** 2)
     stiffness = plane * thick, 5 / 6 * young / (2 * (1 + poisson)) * thick, plane * thick ** 3 / 12

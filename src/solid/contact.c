@@ -16,8 +16,8 @@ static void point_force(const struct pair *q, const double offset[2], double rea
 {
     f[0] = f[1] = 0;
     const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
-                 left = r - (reach - q->room);
-    if (!(left < q->room) || left <= 0) return;
+                 left = r - (reach - q->least_reach);
+    if (!(left < q->least_reach) || left <= 0) return;
     const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
     const double normal = max2(0, elastic_force(q, left) - q->damping * along);
     f[0] = normal * n[0];
@@ -53,7 +53,7 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     if (!law.on) return false;
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
     if (!(foot.distance < foot.reach)) return false;
-    const struct pair q = pair_of(c, &law, point, edge, foot.room);
+    const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double s = foot.at, offset[2] = {foot.x, foot.y};
     double v[2], d[2], f[2], fa[2], fb[2];
@@ -77,8 +77,8 @@ static double place_energy(const struct contact *c, const struct pair *q, int32_
 {
     const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
                               c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
-    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->room);
-    if (!(left < q->room)) return 0;
+    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->least_reach);
+    if (!(left < q->least_reach)) return 0;
     const double sum = touch_energy(q, left);
     if (!(q->friction > 0) || left <= 0) return sum;
     const double n[2] = {offset[0] / r, offset[1] / r};
@@ -94,7 +94,7 @@ static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
     if (!law.on) return 0;
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
     if (!(foot.distance < foot.reach)) return 0;
-    const struct pair q = pair_of(c, &law, point, edge, foot.room);
+    const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double at_a = contact_reach(c, &law, point, a), at_b = contact_reach(c, &law, point, b);
     return place_energy(c, &q, point, a, b, foot.at, foot.reach) -
@@ -282,11 +282,11 @@ static double overlap_of(const struct contact *c, const struct contact_law *law,
 {
     const struct contact_edge *const e = &c->edge[edge];
     struct contact_law apart = *law;
-    apart.first = (double)INFINITY;
+    apart.began = (double)INFINITY;
     const double gap = law->reach - law->spacing;
-    const double room =
+    const double least_reach =
         min2(contact_reach(c, &apart, point, e->a), contact_reach(c, &apart, point, e->b));
-    return (overlap - gap) / (room - gap);
+    return (overlap - gap) / (least_reach - gap);
 }
 
 static void watch_pair(struct contact *c, const struct particles *p, int64_t pair, double longest,
@@ -295,19 +295,20 @@ static void watch_pair(struct contact *c, const struct particles *p, int64_t pai
     const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
     const struct contact_law law = contact_pair_law(c, point, edge);
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
-    const double r = foot.distance, left = contact_left(&foot), room = foot.room;
+    const double r = foot.distance, left = contact_left(&foot), least_reach = foot.least_reach;
     double v[2];
     relative_velocity(c, point, edge, foot.at, v);
     if (r > foot.reach + distance_near(c, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     c->near = true;
-    note_depth(c, point, edge, overlap_of(c, &law, point, edge, room - left));
+    note_depth(c, point, edge, overlap_of(c, &law, point, edge, least_reach - left));
     const double closing = r > 0 ? max2(0, -(v[0] * foot.x + v[1] * foot.y) / r) : 0;
     if (closing > 0)
         c->approach =
-            min2(c->approach, (max2(0, left - room) + ADVANCE * min2(left, room)) / closing);
-    const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, room));
-    if (then > NEAR * room) return;
-    const struct pair q = pair_of(c, &law, point, edge, room);
+            min2(c->approach,
+                 (max2(0, left - least_reach) + ADVANCE * min2(left, least_reach)) / closing);
+    const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, least_reach));
+    if (then > NEAR * least_reach) return;
+    const struct pair q = pair_of(c, &law, point, edge, least_reach);
     add_rows(c, p, pair, &q, &foot, then);
 }
 
@@ -397,8 +398,8 @@ void contact_name(const struct contact *c, int body, char text[CONTACT_NAME])
 
 /* --- start --- */
 
-/* Modulus of a layer between two surfaces that gives way as half a spacing of each body does, in series; a
- * wall does not. Each of two equal bodies gives half of the overlap. */
+/* Modulus of a layer between two surfaces that is as stiff as half a spacing of each body, in series; a
+ * wall is rigid. Of two equal bodies each is compressed by half of the overlap. */
 static double layer_modulus(const struct contact *c, int a, int b, double spacing)
 {
     const struct solid_body *const one = &c->solid->body[a];

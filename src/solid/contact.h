@@ -76,23 +76,23 @@ SPHFSI_INLINE double contact_reach(const struct contact *c, const struct contact
                                    int32_t point, int32_t end)
 {
     const double outer = max2(c->outer[point] + c->outer[end], -0.5 * law->spacing);
-    return min2(law->first, law->reach + outer);
+    return min2(law->began, law->reach + outer);
 }
 
 /* A place on an edge: 0 to 1 from a to b, the vector from there to the point, and the reach there. */
 struct contact_foot {
     double at, x, y, distance, reach;
-    double room; /* smallest reach on the edge: the overlap at which the law is infinite, m */
+    double least_reach; /* of both ends: R of T-61c, the overlap at which the law is infinite, m */
 };
 /* The nearest place, without a reach; the place where the distance less the reach is smallest. */
 struct contact_foot contact_nearest(const struct contact *c, int32_t point, int32_t edge);
 struct contact_foot contact_foot(const struct contact *c, const struct contact_law *law,
                                  int32_t point, int32_t edge);
 
-/* What is left of the room. */
+/* r of T-61c: the least reach less the overlap, m. */
 SPHFSI_INLINE double contact_left(const struct contact_foot *f)
 {
-    return f->distance - (f->reach - f->room);
+    return f->distance - (f->reach - f->least_reach);
 }
 
 /* Whether both parts of a pair belong to one group. */

@@ -59,7 +59,7 @@ static void slide(const struct contact *c, struct particles *p, int32_t point, i
 {
     const struct contact_law law = contact_pair_law(c, point, edge);
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
-    const struct pair q = pair_of(c, &law, point, edge, foot.room);
+    const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b, i = c->index[point];
     const double r = foot.distance, n[2] = {foot.x / r, foot.y / r};
     double v[2], d[2];

@@ -14,9 +14,9 @@
 
 /* Constants of a point and an edge. */
 struct pair {
-    double room;      /* overlap at which the energy is infinite, m */
-    double stiffness; /* force per overlap at first contact, N/m per depth */
-    double damping;   /* N s/m */
+    double least_reach; /* R of T-61c, the overlap at which the energy is infinite, m */
+    double stiffness;   /* force per overlap at first contact, N/m per depth */
+    double damping;     /* N s/m */
     double friction;
     double grip; /* of the dashpot that damps sticking, N s/m */
 };
@@ -34,13 +34,13 @@ SPHFSI_INLINE double dp_of(const struct contact *c, int body)
 /* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
  * mass m of the pair, m_a m_b/(m_a + m_b). */
 SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_law *law,
-                                  int32_t point, int32_t edge, double room)
+                                  int32_t point, int32_t edge, double least_reach)
 {
     const int a = c->body[point], b = c->body[c->edge[edge].a];
     const double k = law->stiffness * c->width[point] / law->spacing;
     const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
     return (struct pair){
-        .room = room,
+        .least_reach = least_reach,
         .stiffness = CONTACT_HALF * k,
         .damping = CONTACT_HALF * law->damping * critical,
         .friction = law->friction,
@@ -48,22 +48,22 @@ SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_
     };
 }
 
-/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where nothing is left of the room R; r = contact_left. */
+/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is R, the least reach; r = contact_left. */
 SPHFSI_INLINE double touch_energy(const struct pair *q, double r)
 {
-    if (!(r < q->room)) return 0;
-    const double s = r / q->room;
-    return q->stiffness * square(q->room) * (s - 1 - elementary_log(s));
+    if (!(r < q->least_reach)) return 0;
+    const double s = r / q->least_reach;
+    return q->stiffness * square(q->least_reach) * (s - 1 - elementary_log(s));
 }
 
 /* The derivative of the potential, k R (R/r - 1), and its second derivative, k (R/r)^2. */
 SPHFSI_INLINE double elastic_force(const struct pair *q, double r)
 {
-    return q->stiffness * q->room * (q->room / r - 1);
+    return q->stiffness * q->least_reach * (q->least_reach / r - 1);
 }
 SPHFSI_INLINE double elastic_stiffness(const struct pair *q, double r)
 {
-    return q->stiffness * square(q->room / min2(r, q->room));
+    return q->stiffness * square(q->least_reach / min2(r, q->least_reach));
 }
 
 /* Component k of a vector's part across the direction n. */

@@ -92,7 +92,7 @@ struct contact_foot contact_foot(const struct contact *c, const struct contact_l
     const double at_b = contact_reach(c, law, point, c->edge[edge].b);
     struct contact_foot f = foot_of(c, point, edge, at_b - at_a);
     f.reach = f.at == 1 ? at_b : at_a + f.at * (at_b - at_a);
-    f.room = min2(at_a, at_b);
+    f.least_reach = min2(at_a, at_b);
     return f;
 }
 
@@ -125,15 +125,15 @@ struct contact_law contact_pair_law(const struct contact *c, int32_t point, int3
 {
     const struct contact_edge *const e = &c->edge[edge];
     struct contact_law law = c->law[c->body[point] * (c->n_solids + c->n_walls) + c->body[e->a]];
-    law.first = (double)INFINITY;
+    law.began = (double)INFINITY;
     if (!law.on) return law;
     if (c->group[point] == c->group[e->a])
         law.on = !began_within(c, point, edge, c->body[point]);
     else if (held_together(c, point, edge))
         law.on = false;
     else if (c->began_group[point] == c->group[e->a])
-        law.first = c->began[point];
-    law.on = law.on && law.first > 0;
+        law.began = c->began[point];
+    law.on = law.on && law.began > 0;
     return law;
 }
 

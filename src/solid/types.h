@@ -137,10 +137,9 @@ struct solid {
 /* Constants of two bodies, of a body and a wall, or of a body and itself. */
 struct contact_law {
     bool on;
-    double spacing; /* mean of both spacings, m */
-    double reach;   /* distance below which they repel each other: the spacing and the gap, m */
-    double
-        first; /* of a pair that began nearer: the distance at which it began; else infinite, m */
+    double spacing;   /* mean of both spacings, m */
+    double reach;     /* distance below which they repel each other: the spacing and the gap, m */
+    double began;     /* of a pair that began nearer, its distance then; else infinite, m */
     double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
     double damping;   /* fraction of the critical damping */
     double friction;  /* Coulomb's coefficient */
@@ -194,10 +193,9 @@ struct contact {
     double *began;                   /* initial distance from another group if below the reach, m */
     int32_t *began_group;            /* and that group; -1: none */
     double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
-    double
-        *outer; /* how much further than half a spacing the outline is from the point, m, T-61b */
-    double most_outer;
-    double *width; /* length of outline that the point stands for, m, T-61 */
+    double *outer;     /* distance of the point from the outline less half a spacing, m, T-61b */
+    double most_outer; /* the largest of them, m */
+    double *width;     /* length of outline that the point stands for, m, T-61 */
     /* With friction, [n_solid_points], else NULL: displacement from the place where the point sticks, m, and
      * the group there; -1: it does not stick. */
     double *stick_x, *stick_y;

@@ -37,7 +37,7 @@ static void advance_lone(struct simulation *s, double dt, int n)
 }
 
 /* When a contact is near, each step is chosen separately and may be shorter than planned. Where surfaces
- * are pressed so hard that the material may give way, the guards judge each step. Returns the time
+ * are pressed so hard that the material may fail, the guards judge each step. Returns the time
  * advanced, or 0 if all *n steps were as long as planned. */
 static double advance_near(struct simulation *s, double dt, int *n)
 {

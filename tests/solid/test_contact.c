@@ -476,7 +476,7 @@ static void test_between(void)
 {
     RIG_OPEN_SOLID(TWO "between = b, w\nstiffness = 3\n", NULL);
     const struct contact_law *const law = rig.sim.contact.law; /* [a, b][a, b, w, v] */
-    /* Half a spacing of each body in series; a wall gives way by nothing. */
+    /* Half a spacing of each body in series; a wall is rigid. */
     assert_near(1e-6, 4e6 / 3, law[0 * 4 + 1].stiffness, "two bodies");
     assert_near(1e-6, 2 * 2e6, law[0 * 4 + 2].stiffness, "body and wall");
     assert_near(1e-6, 3 * 2 * 1e6, law[1 * 4 + 2].stiffness, "body and wall of the section");

@@ -1,26 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Contact between checks: which pairs are listed, for how long the list holds, what is near, what a clamp
  * holds together. */
-#include "rig.h"
+#include "contact_rig.h"
 #include "time/timestep.h"
-#include "unity.h"
 
 #include <math.h>
 
-static struct rig rig;
-static struct particles *p;
-static struct contact *c;
-
-void setUp(void) { rig_one_thread(); }
-void tearDown(void) { rig_close(&rig); }
-
-static void open_case(const char *text)
-{
-    RIG_OPEN_SOLID(text, NULL);
-    c = &rig.sim.contact;
-}
-
-#define RUBBER "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
 static const char blocks[] =
     "dp = 1 cm\nend_time = 1\n[solid a]\nshape = box 0, 0, 0.04, 0.04\n" RUBBER
     "[solid b]\nlike = a\nshape = box 0.1, 0.1, 0.14, 0.14\n";

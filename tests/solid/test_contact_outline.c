@@ -1,27 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * Contact at the outline of the shapes (T-61b): how far it is from the surface points, and that forces on
  * points and edges are those of a potential where both are not parallel. */
-#include "rig.h"
+#include "contact_rig.h"
 #include "time/timestep.h"
-#include "unity.h"
 
 #include <math.h>
 #include <stdio.h>
-
-static struct rig rig;
-static struct particles *p;
-static struct contact *c;
-
-void setUp(void) { rig_one_thread(); }
-void tearDown(void) { rig_close(&rig); }
-
-static void open_case(const char *text)
-{
-    RIG_OPEN_SOLID(text, NULL);
-    c = &rig.sim.contact;
-}
-
-#define RUBBER "density = 1000\nyoung = 1e6\npoisson = 0.3\n"
 
 /* On lattices that fit, whatever pieces the outline is made of. */
 static void test_nothing_is_added_on_a_lattice_that_fits(void)
