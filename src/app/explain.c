@@ -59,7 +59,6 @@ static void say_lattices(const struct scene *s, const struct sphfsi_options *o)
 /* What the scheme has set, as far as the case has left it. */
 static void say_scheme(const struct scene *c, const struct sphfsi_options *o)
 {
-    if (c->n_fluid == 0) return;
     char name[SCENE_NAME];
     param_choice_name(param_find(SECTION_top, "scheme"), c->top.scheme, name);
     session_say(o,

@@ -134,19 +134,58 @@ static void in_cell(const char *text, char *cell, size_t size)
     cell[at] = '\0';
 }
 
+/* A number or the name of a choice. */
+static void value_of(const struct param *p, double value, char *text, size_t size)
+{
+    char name[SCENE_NAME];
+    if (p->type == PARAM_CHOICE) {
+        param_choice_name(p, (int)value, name);
+        snprintf(text, size, "%s", name);
+    } else {
+        snprintf(text, size, "%g", value);
+    }
+}
+
+/* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value. */
+static void default_cell(const struct param *p, char *cell, size_t size)
+{
+    static const char *const kinds[] = {" with only solids", " with only fluid",
+                                        " with fluid and solids"};
+    double value[] = {p->number.value, p->number.value, p->number.value};
+    bool set = false, equal = true;
+    const int first = p->section == SECTION_fluid ? SCENE_FLUID : SCENE_SOLID,
+              step = p->section == SECTION_solid ? SCENE_COUPLED - SCENE_SOLID : 1;
+    for (int k = first; k <= SCENE_COUPLED; k += step) {
+        set |= scheme_sets(SCHEME_STANDARD, (enum scene_kind)k, p->section, p->key, &value[k]);
+        equal &= value[k] == value[first];
+    }
+    char paper[SCENE_TEXT], text[SCENE_NAME];
+    default_of(p, paper, sizeof paper);
+    const char *const tick = paper[0] ? "`" : "";
+    size_t at = 0;
+    for (int k = first; set && k <= (equal ? first : SCENE_COUPLED); k += step) {
+        value_of(p, value[k], text, sizeof text);
+        at += (size_t)snprintf(cell + at, size - at, "%s`%s`%s", k > first ? ", " : "", text,
+                               equal ? "" : kinds[k]);
+    }
+    if (p->number.needed)
+        snprintf(cell, size, "**needed**");
+    else
+        snprintf(cell + at, size - at, "%s%s%s%s", set ? "; `scheme = paper`: " : "", tick, paper,
+                 tick);
+}
+
 static void say_key(const struct param *p, const struct sphfsi_options *o)
 {
-    char type[64], fallback[SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
+    char type[64], fallback[3 * SCENE_TEXT], range[256], example[SCENE_TEXT], meaning[768];
     type_of(p, type, sizeof type);
-    default_of(p, fallback, sizeof fallback);
+    default_cell(p, fallback, sizeof fallback);
     range_of(p, range, sizeof range);
     manual_example(p, example, sizeof example);
     in_cell(p->meaning, meaning, sizeof meaning);
-    const char *const tick = fallback[0] ? "`" : "";
-    session_say(o, "| `%s` | %s | %s | %s%s%s | %s | %s | %s%s%s%s%s |", p->key, type,
-                pure(p) ? "" : p->unit, tick, p->number.needed ? "**needed**" : fallback, tick,
-                range, meaning, example[0] ? "`" : "", example[0] ? p->key : "",
-                example[0] ? " = " : "", example, example[0] ? "`" : "");
+    session_say(o, "| `%s` | %s | %s | %s | %s | %s | %s%s%s%s%s |", p->key, type,
+                pure(p) ? "" : p->unit, fallback, range, meaning, example[0] ? "`" : "",
+                example[0] ? p->key : "", example[0] ? " = " : "", example, example[0] ? "`" : "");
 }
 
 static void say_section(enum section_id id, const struct sphfsi_options *o)

@@ -110,7 +110,11 @@ const struct expr *param_in_time(const struct param *p, const void *section, int
 /* Whether a section has the default value of a key. */
 bool param_is_default(const struct param *p, const void *section);
 
-/* Whether the scene's `scheme` sets a key, and its value (case/presets.def). */
+/* Whether a scheme sets a key in a kind of scene, and its value (case/presets.def). */
+bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
+                 double *value);
+
+/* Whether the scene's `scheme` sets a key, and its value. */
 bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
                        double *value);
 

@@ -33,17 +33,23 @@ static bool preset_is_for(const struct preset *row, enum scene_kind kind)
     return row->kind == SCENE_EITHER ? kind != SCENE_SOLID : row->kind == (int)kind;
 }
 
-bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
-                       double *value)
+bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
+                 double *value)
 {
     for (size_t k = 0; k < COUNT_OF(presets); k++) {
         const struct preset *const row = &presets[k];
-        if (!row->of_scheme || row->choice != s->top.scheme || row->section != section) continue;
-        if (!preset_is_for(row, kind_of_scene(s)) || strcmp(row->key, key) != 0) continue;
+        if (!row->of_scheme || row->choice != (int)scheme || row->section != section) continue;
+        if (!preset_is_for(row, kind) || strcmp(row->key, key) != 0) continue;
         *value = row->value;
         return true;
     }
     return false;
+}
+
+bool scene_scheme_sets(const struct scene *s, enum section_id section, const char *key,
+                       double *value)
+{
+    return scheme_sets((enum scheme)s->top.scheme, kind_of_scene(s), section, key, value);
 }
 
 /* The value of a choice at the top of the file, before it is read; the reader reports an invalid

@@ -11,6 +11,19 @@ static struct vtensor2 gradient_at(const struct particles *p, int64_t i)
                              vset_double(p->Uyy[i])};
 }
 
+/* Those of `count` particles, in the first lanes; the others have none. */
+static struct vtensor2 gradients_at(const struct particles *p, int64_t i, int count)
+{
+    struct vtensor2 U = {{0}, {0}, {0}, {0}};
+    for (int l = 0; l < count; l++) {
+        U.xx[l] = p->Uxx[i + l];
+        U.xy[l] = p->Uxy[i + l];
+        U.yx[l] = p->Uyx[i + l];
+        U.yy[l] = p->Uyy[i + l];
+    }
+    return U;
+}
+
 void solid_cauchy(const struct solid *s, const struct particles *p, int64_t i, double sigma[4],
                   double *det)
 {
@@ -44,12 +57,16 @@ void solid_energy(const struct solid *s, const struct particles *p, int body, do
         const struct solid_body *const b = &s->body[pack->body];
         double locked[LANES_FLOAT] = {0};
         if (b->kappa > 0) s->sweeps->hourglass(s, pack, locked);
-        for (int l = 0; l < pack->lanes; l++) {
-            const struct vtensor2 U = gradient_at(p, pack->i + l);
-            const double det = vtensor2_det(deformation(U))[0];
-            *elastic += material_energy(b, U)[0] * square(b->dp);
-            *hourglass += locked[l];
-            if (!(det >= *det_low)) *det_low = det;
+        for (int first = 0; first < pack->lanes; first += LANES_DOUBLE) {
+            const int count =
+                pack->lanes - first < LANES_DOUBLE ? pack->lanes - first : LANES_DOUBLE;
+            const struct vtensor2 U = gradients_at(p, pack->i + first, count);
+            const vdouble psi = material_energy(b, U), det = vtensor2_det(deformation(U));
+            for (int l = 0; l < count; l++) {
+                *elastic += psi[l] * square(b->dp);
+                *hourglass += locked[first + l];
+                if (!(det[l] >= *det_low)) *det_low = det[l];
+            }
         }
     }
 }

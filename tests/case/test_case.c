@@ -208,9 +208,13 @@ static void test_scheme(void)
     TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.5);
     TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 0);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.35e-3, scene_solid_h(&scene, 0));
+    TEST_ASSERT_EQUAL_INT(LAW_NEO_HOOKEAN, scene.solid[0].law);
     parse(TOP BLOCK, 0, NULL);
     TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.35e-3, scene_solid_h(&scene, 0));
+    TEST_ASSERT_EQUAL_INT(LAW_NEO_HOOKEAN, scene.solid[0].law);
+    parse("scheme = paper\n" TOP BLOCK, 0, NULL);
+    TEST_ASSERT_EQUAL_INT(LAW_PAPER, scene.solid[0].law);
     parse("scheme = paper\n" TOP WATER, 0, NULL);
     TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 1.35);
     TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0);

@@ -175,7 +175,7 @@ static void test_stress_is_the_slope_of_the_energy(void)
 static void test_energy_of_small_strains(void)
 {
     uint64_t seed = 5;
-    const double e = 1e-5;
+    const double e = 1e-8;
     for (int turn = 0; turn < 20; turn++) {
         const struct tensor2 U = draw(&seed, e);
         for (int l = 0; l < 3; l++) {
@@ -185,8 +185,7 @@ static void test_energy_of_small_strains(void)
                 const double shear = 0.5 * (U.xy + U.yx);
                 const double W = 0.5 * lambda * square(U.xx + U.yy) +
                                  2 * (square(U.xx) + square(U.yy) + 2 * square(shear));
-                /* The neo-Hookean energy is a difference of numbers near 1: 1e-16 of the moduli. */
-                assert_near(100 * e * e * e + 1e-14, W, energy(&b, U), "W");
+                assert_near(100 * e * e * e, W, energy(&b, U), "W");
                 TEST_ASSERT_TRUE(energy(&b, (struct tensor2){0, 0, 0, 0}) == 0);
             }
         }
