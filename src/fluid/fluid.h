@@ -157,6 +157,7 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
+    bool keeps_slopes;  /* L-5a: the gradients of dens are those of an earlier evaluation */
     bool counts_touch;  /* the account reads the power of walls and structures of this evaluation */
     bool walls_placed;  /* walls rest, and their packed positions are valid */
     bool *near_dummies; /* [cells]: walls or structures in the nine cells around */

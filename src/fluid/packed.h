@@ -230,24 +230,29 @@ static void slopes_of_cell(const struct fluid *f, struct particles *p, const str
     }
 }
 
+/* Packs the gradients, now that no other cell reads those fields. */
+SPHFSI_INLINE void pack_slopes(const struct fluid *f, const struct particles *p,
+                               const struct cells *c, int32_t cell)
+{
+    const struct cell_list *const list = &c->kind[KIND_FLUID];
+    for (int32_t m = 0; m < list->count[cell]; m++) {
+        const int32_t i = list->start[cell] + m;
+        real *const own = cluster_packed(&f->packed[KIND_FLUID],
+                                         (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
+                          m % CLUSTER;
+        own[PACKED_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
+        own[PACKED_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
+    }
+}
+
 static void SWEEP(slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                           const struct cells *c)
 {
     const struct cell_list *list = &c->kind[KIND_FLUID];
     struct particles *const p = &kinds[KIND_FLUID];
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < list->n_active; k++) slopes_of_cell(f, p, c, list->active[k]);
-        /* Now that no other cell reads them. */
+    for (int32_t k = 0; k < (f->keeps_slopes ? 0 : list->n_active); k++)
+        slopes_of_cell(f, p, c, list->active[k]);
 #pragma omp parallel for schedule(static) num_threads(f->threads)
-    for (int32_t k = 0; k < list->n_active; k++) {
-        const int32_t cell = list->active[k];
-        for (int32_t m = 0; m < list->count[cell]; m++) {
-            const int32_t i = list->start[cell] + m;
-            real *const own = cluster_packed(&f->packed[KIND_FLUID],
-                                             (size_t)list->cluster[cell] + (size_t)m / CLUSTER) +
-                              m % CLUSTER;
-            own[PACKED_SLOPE_X * CLUSTER] = (real)(p->slope_x[i] * f->k.h);
-            own[PACKED_SLOPE_Y * CLUSTER] = (real)(p->slope_y[i] * f->k.h);
-        }
-    }
+    for (int32_t k = 0; k < list->n_active; k++) pack_slopes(f, p, c, list->active[k]);
 }

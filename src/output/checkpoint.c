@@ -438,7 +438,8 @@ enum err checkpoint_missed(const struct image *m, int64_t *snapshots, struct dia
 }
 
 /* In a fork: sets a field that the run of the checkpoint did not have. Reference positions are the present
- * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces. */
+ * ones; all else is zero: velocities of a wall that was at rest, interface impulses, mean forces, and
+ * gradients until they are found. */
 static void set_missing_field(struct particles *p, const struct field_info *info)
 {
     void *const data = field_array(p, info);
@@ -462,7 +463,8 @@ static enum err load_particles(const struct image *m, struct particles *p, enum 
         void *data = field_array(p, info);
         if (!data || info->keep != KEEP_STATE) continue;
         struct block b;
-        const unsigned optional = kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_HELD);
+        const unsigned optional =
+            kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_HELD | G_SLOPE);
         if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
             set_missing_field(p, info);
         else

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Evaluations of the rates, with moving walls, forces of the program and open boundaries; and the fluid's
  * advance, which all integrators share. */
+#include <math.h>
 #include <string.h>
 
+#include "particles/kernel.h"
 #include "time/integrators.h"
 
 double phase_add(struct simulation *s, enum phase phase, double since)
@@ -48,6 +50,17 @@ static void add_external(struct simulation *s, double time)
     s->fluid.extremes.acceleration2 = top;
 }
 
+/* L-5a: the gradients of the density are found once in the time in which sound crosses the kernel's reach.
+ * Verlet's even and odd steps would drift apart by it. */
+static bool keeps_slopes(const struct simulation *s, double time)
+{
+    const struct state *const st = &s->state;
+    const double interval = KERNEL_REACH * s->fluid.k.h / s->fluid.k.c0;
+    if (s->scene->top.integrator == INTEGRATOR_VERLET) return false;
+    if (time != st->time) return true; /* symplectic: the predictor's */
+    return st->steps > 0 && floor(time / interval) <= floor((time - st->dt) / interval);
+}
+
 void evaluate_fluid(struct simulation *s, double time)
 {
     s->state.evaluations++;
@@ -70,6 +83,7 @@ void evaluate_fluid(struct simulation *s, double time)
     }
     const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
     s->fluid.counts_touch = !predicts || time != s->state.time; /* symplectic: of the corrector */
+    if (s->effects & FX_ANTUONO) s->fluid.keeps_slopes = keeps_slopes(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
     if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
     if (s->external[KIND_FLUID].at) add_external(s, time);

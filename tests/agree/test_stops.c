@@ -219,7 +219,7 @@ static void every_integrator_at_a_single_rate(void)
                              NULL,
                              1,
                              {TINY, integrator, "numerics.verlet_reset=7", "numerics.multirate=off",
-                              "precision=double"}});
+                              "precision=double", "water.diffusion_form=antuono"}});
     }
 }
 

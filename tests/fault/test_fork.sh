@@ -54,6 +54,9 @@ grep -q '"start_time": 0.02' "$dir/stiff/summary.json" || fail "summary: start_t
 [ "$(sed -n 2p "$dir/stiff/probes.csv")" = "$(tail -n 1 "$run/probes.csv")" ] ||
     fail "the first row of the fork is not the last one before it"
 [ "$(wc -l <"$dir/stiff/probes.csv")" = 102 ] || fail "rows of the fork's probes.csv"
+# Gradients of the density that the run did not have.
+expect 0 "fork from $ckpt" "$case" --fork "$ckpt" --out "$dir/slopes" "${go[@]}" \
+    --set water.diffusion_form=antuono
 # A fork that changes nothing but where it begins goes the same way, by the folder's newest one.
 expect 0 'simulated' "$case" --threads 1 --until 0.03 --out "$dir/whole"
 expect 0 'fork from' "$case" --fork "$run" --out "$dir/same" "${go[@]}"

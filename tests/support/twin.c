@@ -321,7 +321,7 @@ static void solid_force(const struct twin *t, struct twin_point *s)
 void twin_evaluate(struct twin *t)
 {
     for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) state_of(t, &t->point[KIND_FLUID][i]);
-    for (int64_t i = 0; t->renormalised && i < t->n[KIND_FLUID]; i++)
+    for (int64_t i = 0; t->renormalised && !t->given_slopes && i < t->n[KIND_FLUID]; i++)
         renormalised_gradient(t, &t->point[KIND_FLUID][i]);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         for (int64_t i = 0; i < t->n[kind]; i++) extrapolate(t, &t->point[kind][i]);

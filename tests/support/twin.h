@@ -12,7 +12,7 @@ struct twin_point {
     double rho, p;         /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
     double px, py;         /* Pa/m: corrected gradients, of the pressure */
     double ux, uy, vx, vy; /* 1/s: and of the velocity */
-    double sx, sy;         /* kg/m^4: renormalised gradient of the density */
+    double sx, sy;         /* kg/m^4: renormalised gradient of the density, a result or given */
     double cx, cy, div_r;  /* 1/m, 1: gradient of the concentration, divergence of the positions */
     double m;              /* kg/m */
     double p_state;        /* Pa: of the equation of state alone */
@@ -34,6 +34,7 @@ struct twin {
     bool suction;      /* walls and structures may pull */
     bool one_sided;    /* each fluid particle meets its own pressure in them */
     bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
+    bool given_slopes; /* its gradients are given */
     bool corrected;    /* gradients of Negi and Ramachandran 2022 for Eqs. 4 */
     bool hydrostatic;  /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];
