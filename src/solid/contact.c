@@ -8,11 +8,10 @@
 
 /* --- forces of a pair --- */
 
-/* T-62 for a point at `offset` from a place on an edge where it repels it with the reach `reach`, with the
- * relative velocity v and the displacement d from the place where it sticks. The dashpot may reduce the
- * repulsion but not turn it into attraction. */
+/* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach `reach`, with
+ * the relative velocity v. The dashpot may reduce the repulsion but not turn it into attraction. */
 static void point_force(const struct pair *q, const double offset[2], double reach,
-                        const double v[2], const double d[2], double f[2])
+                        const double v[2], double f[2])
 {
     f[0] = f[1] = 0;
     const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
@@ -22,14 +21,6 @@ static void point_force(const struct pair *q, const double offset[2], double rea
     const double normal = max2(0, elastic_force(q, left) - q->damping * along);
     f[0] = normal * n[0];
     f[1] = normal * n[1];
-    if (!(q->friction > 0)) return;
-    double drag[2];
-    for (int k = 0; k < 2; k++)
-        drag[k] = q->stiffness * across(n, d, k) + q->grip * across(n, v, k);
-    const double size = sqrt(drag[0] * drag[0] + drag[1] * drag[1]);
-    const double less = size > q->friction * normal ? q->friction * normal / size : 1;
-    f[0] -= less * drag[0];
-    f[1] -= less * drag[1];
 }
 
 /* The same for an end of the edge. */
@@ -38,9 +29,7 @@ static void end_force(const struct contact *c, const struct contact_law *law, co
 {
     const double offset[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
     const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
-    double d[2];
-    contact_stick(c, point, end, end, 0, d);
-    point_force(q, offset, contact_reach(c, law, point, end), v, d, f);
+    point_force(q, offset, contact_reach(c, law, point, end), v, f);
 }
 
 /* T-61a: an edge acts with its full force, less the fraction that its end points exert, which the
@@ -56,10 +45,10 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double s = foot.at, offset[2] = {foot.x, foot.y};
-    double v[2], d[2], f[2], fa[2], fb[2];
+    double v[2], f[2], fa[2], fb[2];
     relative_velocity(c, point, edge, s, v);
-    contact_stick(c, point, a, b, s, d);
-    point_force(&q, offset, foot.reach, v, d, f);
+    point_force(&q, offset, foot.reach, v, f);
+    out->distance = foot.distance;
     end_force(c, &law, &q, point, a, fa);
     end_force(c, &law, &q, point, b, fb);
     for (int k = 0; k < 2; k++) {
@@ -71,21 +60,14 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     return true;
 }
 
-/* Of T-61 and of the spring of T-62 at a place of an edge where the reach is `reach`. */
+/* Of T-61 at a place of an edge where the reach is `reach`. */
 static double place_energy(const struct contact *c, const struct pair *q, int32_t point, int32_t a,
                            int32_t b, double s, double reach)
 {
     const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
                               c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
     const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->least_reach);
-    if (!(left < q->least_reach)) return 0;
-    const double sum = touch_energy(q, left);
-    if (!(q->friction > 0) || left <= 0) return sum;
-    const double n[2] = {offset[0] / r, offset[1] / r};
-    double d[2];
-    contact_stick(c, point, a, b, s, d);
-    const double pull = q->stiffness * elementary_hypot(across(n, d, 0), across(n, d, 1));
-    return sum + 0.5 * square(min2(pull, q->friction * elastic_force(q, left))) / q->stiffness;
+    return left < q->least_reach ? touch_energy(q, left) : 0;
 }
 
 static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
@@ -104,18 +86,6 @@ static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
 
 /* --- forces --- */
 
-static void add_force(struct contact *c, struct particles *p, int32_t point, const double f[2])
-{
-    if (point >= c->n_solid_points) {
-        c->power -= f[0] * c->vx[point] + f[1] * c->vy[point];
-        return;
-    }
-    const int32_t i = c->index[point];
-    const double per_mass = p->free[i] / c->solid->body[c->body[point]].mass;
-    p->sx[i] += f[0] * per_mass;
-    p->sy[i] += f[1] * per_mass;
-}
-
 static void list_if_stale(struct contact *c)
 {
     if (!c->stale) return;
@@ -124,17 +94,22 @@ static void list_if_stale(struct contact *c)
     contact_list(c);
 }
 
-void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time)
+/* All threads together. */
+static void find_forces(struct contact *c)
 {
-    (void)s;
-    contact_place(c, p, time);
-    contact_find_stick(c, p);
-    list_if_stale(c);
 #pragma omp for schedule(static)
     for (int64_t k = 0; k < c->n_pairs; k++) {
         struct contact_force *const f = &c->force[k];
         f->touches = pair_force(c, c->pair_point[k], c->pair_edge[k], f);
     }
+}
+
+void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time)
+{
+    (void)s;
+    contact_place(c, p, time);
+    list_if_stale(c);
+    find_forces(c);
     /* By one thread, in the order of the list: the same sums on any number of threads. */
 #pragma omp single
     {
@@ -144,10 +119,11 @@ void contact_forces(struct contact *c, const struct solid *s, struct particles *
             if (!f->touches) continue;
             const int32_t point = c->pair_point[k], a = c->edge[c->pair_edge[k]].a;
             c->touched |= c->body[a] < c->n_solids && c->body[point] != c->body[a];
-            add_force(c, p, point, f->p);
-            add_force(c, p, a, f->a);
-            add_force(c, p, c->edge[c->pair_edge[k]].b, f->b);
+            contact_add_force(c, p, point, f->p);
+            contact_add_force(c, p, a, f->a);
+            contact_add_force(c, p, c->edge[c->pair_edge[k]].b, f->b);
         }
+        contact_rub(c, p);
     }
 }
 
@@ -163,7 +139,6 @@ double contact_energy(struct contact *c, const struct particles *p, double time)
 {
     if (c->known && !c->near) return 0;
     contact_place(c, p, time);
-    contact_find_stick(c, p);
     if (c->known) {
         list_if_stale(c);
     } else {
@@ -174,7 +149,9 @@ double contact_energy(struct contact *c, const struct particles *p, double time)
     double sum = 0;
     for (int64_t k = 0; k < c->n_pairs; k++)
         sum += pair_energy(c, c->pair_point[k], c->pair_edge[k]);
-    return sum;
+    if (!c->press_head) return sum;
+    find_forces(c);
+    return sum + contact_friction_energy(c, p);
 }
 
 /* --- before a step --- */
@@ -257,7 +234,7 @@ static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
     const double both =
         moves_freely(c, p, k) + (1 - s) * moves_freely(c, p, e->a) + s * moves_freely(c, p, e->b);
     const double stiffness = own * both * elastic_stiffness(q, left);
-    const double damping = own * both * max2(q->damping, q->grip);
+    const double damping = own * both * q->damping;
     add_row(c, p, k, 1, stiffness, damping);
     add_row(c, p, e->a, 1 - s, stiffness, damping);
     add_row(c, p, e->b, s, stiffness, damping);
@@ -292,6 +269,7 @@ static double overlap_of(const struct contact *c, const struct contact_law *law,
 static void watch_pair(struct contact *c, const struct particles *p, int64_t pair, double longest,
                        double span)
 {
+    c->force[pair].near = false;
     const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
     const struct contact_law law = contact_pair_law(c, point, edge);
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
@@ -308,6 +286,8 @@ static void watch_pair(struct contact *c, const struct particles *p, int64_t pai
                  (max2(0, left - least_reach) + ADVANCE * min2(left, least_reach)) / closing);
     const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, least_reach));
     if (then > NEAR * least_reach) return;
+    c->force[pair].near = true;
+    c->force[pair].distance = r;
     const struct pair q = pair_of(c, &law, point, edge, least_reach);
     add_rows(c, p, pair, &q, &foot, then);
 }
@@ -338,14 +318,17 @@ static void watch_pairs(struct contact *c, const struct particles *p, double lon
 {
     memset(c->row, 0, (size_t)c->n_solid_points * sizeof *c->row);
     memset(c->row_damping, 0, (size_t)c->n_solid_points * sizeof *c->row);
+    if (c->hold) memset(c->hold, 0, (size_t)c->n_solid_points * sizeof *c->hold);
+    if (c->hold) memset(c->hold_damping, 0, (size_t)c->n_solid_points * sizeof *c->hold);
     for (int64_t first = 0, end; first < c->n_pairs; first = end) {
         for (end = first; end < c->n_pairs && c->pair_point[end] == c->pair_point[first]; end++)
             watch_pair(c, p, end, longest, span);
         watch_side(c, first, end);
+        contact_watch_friction(c, p, first, end);
     }
     for (int64_t k = 0; k < c->n_solid_points; k++) {
-        c->omega2 = max2(c->omega2, c->row[k]);
-        c->damping = max2(c->damping, c->row_damping[k]);
+        c->omega2 = max2(c->omega2, c->row[k] + (c->hold ? c->hold[k] : 0));
+        c->damping = max2(c->damping, c->row_damping[k] + (c->hold ? c->hold_damping[k] : 0));
     }
 }
 
@@ -408,6 +391,18 @@ static double layer_modulus(const struct contact *c, int a, int b, double spacin
     return 2 * spacing / yields;
 }
 
+/* Stiffness of the same layer in shear, in parts of that in compression. */
+static double layer_shear(const struct contact *c, int a, int b)
+{
+    const struct solid_body *const one = &c->solid->body[a], *const two = &c->solid->body[b];
+    double yields = one->dp / one->young, shears = one->dp / one->mu;
+    if (b < c->n_solids) {
+        yields += two->dp / two->young;
+        shears += two->dp / two->mu;
+    }
+    return yields / shears;
+}
+
 /* A pressure p leaves an overlap of spacing p/(stiffness E + p), E of the layer (T-61). */
 static void set_law(struct contact *c, const struct scene_contact *from, int a, int b)
 {
@@ -423,6 +418,7 @@ static void set_law(struct contact *c, const struct scene_contact *from, int a, 
         .spacing = spacing,
         .reach = reach,
         .stiffness = from->stiffness * layer_modulus(c, a, b, spacing),
+        .shear = layer_shear(c, a, b),
         .damping = from->damping,
         .friction = from->friction,
     };
@@ -539,5 +535,5 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
     TRY(create_list(c, a, d));
     drop_layers(c);
     note_beginnings(c);
-    return solid->stick_edge ? contact_stick_create(c, a, d) : ERR_OK;
+    return solid->stick_edge ? contact_friction_create(c, a, d) : ERR_OK;
 }

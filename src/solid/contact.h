@@ -57,12 +57,14 @@ void contact_list(struct contact *c);
  * again if some point has left the margin. All threads together. */
 void contact_place(struct contact *c, const struct particles *p, double time);
 
-/* Friction (solid/contact_friction.c): its memory; the displacement of each point from the place where it
- * sticks, all threads together; the same of a point relative to the place s of an edge from a to b. */
-enum err contact_stick_create(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;
-void contact_find_stick(struct contact *c, const struct particles *p);
-void contact_stick(const struct contact *c, int32_t point, int32_t a, int32_t b, double s,
-                   double d[2]);
+/* Friction (solid/contact_friction.c): its memory, also for a list of `most` pairs; adds its forces to those
+ * of the pairs; its energy, J/m; its part of the step bound, from the pairs of one point. */
+enum err contact_friction_create(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;
+bool contact_friction_grow(struct contact *c, int64_t most, struct diag *d);
+void contact_rub(struct contact *c, struct particles *p);
+double contact_friction_energy(struct contact *c, const struct particles *p);
+void contact_watch_friction(struct contact *c, const struct particles *p, int64_t first,
+                            int64_t end);
 
 /* How much further than half a spacing the outlines of the shapes are from the surface points. */
 enum err contact_find_outer(struct contact *c, struct arena *a, struct diag *d) SPHFSI_CHECKED;

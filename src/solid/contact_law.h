@@ -81,4 +81,18 @@ SPHFSI_INLINE void relative_velocity(const struct contact *c, int32_t point, int
     v[1] = c->vy[point] - ((1 - s) * c->vy[a] + s * c->vy[b]);
 }
 
+/* To a solid's particle, or to the power of moving walls. */
+SPHFSI_INLINE void contact_add_force(struct contact *c, struct particles *p, int32_t point,
+                                     const double f[2])
+{
+    if (point >= c->n_solid_points) {
+        c->power -= f[0] * c->vx[point] + f[1] * c->vy[point];
+        return;
+    }
+    const int32_t i = c->index[point];
+    const double per_mass = p->free[i] / c->solid->body[c->body[point]].mass;
+    p->sx[i] += f[0] * per_mass;
+    p->sy[i] += f[1] * per_mass;
+}
+
 #endif

@@ -168,7 +168,7 @@ static bool grow(struct contact *c)
     int32_t *const edge = arena_alloc(c->arena, (size_t)most, sizeof *edge, "contact", &d);
     struct contact_force *const force =
         arena_alloc(c->arena, (size_t)most, sizeof *force, "contact", &d);
-    if (!point || !edge || !force) return false;
+    if (!point || !edge || !force || !contact_friction_grow(c, most, &d)) return false;
     memcpy(point, c->pair_point, (size_t)c->n_pairs * sizeof *point);
     memcpy(edge, c->pair_edge, (size_t)c->n_pairs * sizeof *edge);
     c->pair_point = point;

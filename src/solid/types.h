@@ -141,6 +141,7 @@ struct contact_law {
     double reach;     /* distance below which they repel each other: the spacing and the gap, m */
     double began;     /* of a pair that began nearer, its distance then; else infinite, m */
     double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
+    double shear;     /* the same across the normal, in parts of it */
     double damping;   /* fraction of the critical damping */
     double friction;  /* Coulomb's coefficient */
 };
@@ -162,8 +163,8 @@ struct contact_grid {
 
 /* The forces of one pair: on the point and on both ends of the edge, N/m. */
 struct contact_force {
-    double p[2], a[2], b[2];
-    bool touches;
+    double p[2], a[2], b[2], distance;
+    bool touches, near; /* within this step */
 };
 
 /* The largest overlap of a step. */
@@ -196,10 +197,10 @@ struct contact {
     double *outer;     /* distance of the point from the outline less half a spacing, m, T-61b */
     double most_outer; /* the largest of them, m */
     double *width;     /* length of outline that the point stands for, m, T-61 */
-    /* With friction, [n_solid_points], else NULL: displacement from the place where the point sticks, m, and
-     * the group there; -1: it does not stick. */
-    double *stick_x, *stick_y;
-    int32_t *stick_group;
+    /* With friction, else NULL: lists of the forces on each solid point, three for each pair; an edge of
+     * each point; and what friction with walls adds to `row` and `row_damping`. */
+    int32_t *press_head, *press_next, *edge_at;
+    double *hold, *hold_damping;
     uint8_t *held; /* within the kernel of a clamped particle of its group */
     int64_t n_edges;
     struct contact_edge *edge;
