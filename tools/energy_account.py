@@ -132,9 +132,8 @@ def grid_lines(program):
             "",
             f"Median and largest gain by term: {typical}.", "",
             "Those above 1 %:", "", *(f"- {text}" for text in where), "",
-            "Light plates gain at the interface by the return of T-35b, a negative damping of 1 % of the",
-            "fluid's impedance (T-46g). Heavy ones gain by the law `paper`; with `law = svk` all terms gain",
-            "less than half of 1 %, with any step ([theory.md](theory.md), after T-46)."]
+            "These gain by the law `paper`; with `law = svk` all terms gain less than half of 1 %, with any",
+            "step ([theory.md](theory.md), after T-46)."]
 
 
 def main():

@@ -117,7 +117,7 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
             vreal stress = fx_pressure(s, &q);
             if (effects & FX_ONE_SIDED)
                 stress =
-                    q.p + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+                    stress + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
             if (effects & FX_REPULSION)
                 stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
             if (effects & FX_WALL_DAMPING)
@@ -292,6 +292,17 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particle
     }
 }
 
+/* The pressure on their side of a pair: that of T-10, or none where the fluid's own takes its place
+ * (L-6), and on a structure that of the interface impulse (T-35b). */
+SPHFSI_INLINE void pack_acting_pressure(const struct fluid *f, const struct particles *p,
+                                        const struct dummies *d, const double pressure[CLUSTER])
+{
+    double acting[CLUSTER];
+    gather(d, d->kind == KIND_SOLID ? p->interface_pressure : NULL, acting);
+    for (int r = 0; r < CLUSTER && !(f->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
+    pack_four(d, acting, PACKED_P);
+}
+
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
  * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
@@ -308,7 +319,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
-    pack_four(d, pressure, PACKED_P);
+    pack_acting_pressure(f, p, d, pressure);
     pack_four(d, dens, PACKED_DENS);
 }
 

@@ -167,8 +167,8 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     const vreal inv = vset(1) / (q.r2 + k->eta2);
     vreal stress = fx & FX_CORRECTED ? vset(0) : fx_pressure(a, &q);
     if (fx & FX_ONE_SIDED)
-        stress = a->p + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
-                                     lane(b, PACKED_LIFT_Y), k);
+        stress = stress + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
+                                       lane(b, PACKED_LIFT_Y), k);
     if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
     if (fx & FX_WALL_DAMPING) stress = stress + fx_wall_damping(lane(b, PACKED_NEAR), inv, q.vx, k);
     const vreal radial = q.slope * stress;

@@ -2,6 +2,7 @@
  * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
 #include "output/checkpoint.h"
 #include "base/elementary.h"
+#include "solid/interface.h"
 #include "time/account.h"
 
 #include <inttypes.h>
@@ -73,13 +74,12 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
     return ERR_OK;
 }
 
-/* Drops the interface impulse if the new case has no impedance interface, which would return it. */
+/* Drops the interface impulse if the new case has no impedance interface, which would give it on. */
 static void clear_interface_impulse(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    if (!p->interface_impulse_x || s->effects & FX_IMPEDANCE) return;
-    memset(p->interface_impulse_x, 0, (size_t)p->n * sizeof *p->interface_impulse_x);
-    memset(p->interface_impulse_y, 0, (size_t)p->n * sizeof *p->interface_impulse_y);
+    if (!p->interface_pressure || s->effects & FX_IMPEDANCE) return;
+    for (int64_t i = 0; i < p->n; i++) interface_forget(p, i);
 }
 
 /* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork without a

@@ -5,13 +5,21 @@
 
 #include "solid/solid.h"
 
+/* T-35b, after an evaluation of the fluid whose force acts for `kick`, s: takes the part of the
+ * interface impulse that this evaluation gives to the fluid off the force on the body. The rest
+ * waits. */
+void interface_settle(const struct solid *s, struct particles *p, double kick);
+
+/* Nothing waits for the fluid at particle i any more. */
+void interface_forget(struct particles *p, int64_t i);
+
 /* For use inside a parallel region: each ends with all threads together. */
 
-/* Before n sub-steps of dt: returns a fraction of the interface impulse and finds the wetted
- * normals. */
-void interface_begin(const struct solid *s, struct particles *p, double dt, int n);
+/* Before sub-steps of dt: finds the wetted normals. */
+void interface_begin(const struct solid *s, struct particles *p, double dt);
 
-/* After them: adds the impulse that they have exchanged to the interface impulse. */
+/* After them: adds the impulse that they have exchanged to the interface impulse, and to the
+ * pressure that gives it to the fluid. */
 void interface_end(const struct solid *s, struct particles *p);
 
 /* T-35a for one particle, after the kick of a sub-step; `before`: v . face before the kick. */

@@ -3,6 +3,7 @@
 
 #include "case/expr.h"
 #include "geometry/outline.h"
+#include "solid/interface.h"
 
 #include <math.h>
 
@@ -160,9 +161,7 @@ void loads_place_clamps(struct loads *v, struct particles *p, double time)
         p->uy[i] = at.x[1] - p->Y[i];
         p->vx[i] = at.v[0];
         p->vy[i] = at.v[1];
-        if (p->interface_impulse_x)
-            p->interface_impulse_x[i] = p->interface_impulse_y[i] =
-                0; /* a new clamp after a fork uses it */
+        if (p->interface_pressure) interface_forget(p, i); /* a new clamp after a fork has it */
     }
 }
 

@@ -419,7 +419,7 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     bool in_parts = false;
 #pragma omp parallel num_threads(s->threads) if (!calls_program(s))
     {
-        if (s->impedance > 0) interface_begin(s, p, dt, n);
+        if (s->impedance > 0) interface_begin(s, p, dt);
         if (s->impedance > 0 && s->loads) {
 #pragma omp single
             clear_driven_normals(s->loads, p);

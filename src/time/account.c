@@ -271,8 +271,8 @@ static void find_energies(struct simulation *s, struct energies of[ACCOUNT_ENTRI
 
 /* --- terms --- */
 
-/* Work that T-35b has still to take back from a body: the impulse at the velocity that the fluid
- * uses. */
+/* Work that the fluid has still to receive from a body: the impulse that waits (T-35b) at the
+ * velocity that the fluid uses. */
 static void find_interface_work(const struct simulation *s, double of[SCENE_MAX_SECTIONS])
 {
     const struct particles *const p = &s->kind[KIND_SOLID];

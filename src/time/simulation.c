@@ -112,6 +112,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (!(s->effects & FX_MULTIRATE))
         s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
     s->fluid.effects = s->effects;
+    s->solid.exchange_time = s->effects & FX_IMPEDANCE ? timestep_fluid_limit(s) : 0;
     s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     return ERR_OK;
 }

@@ -2,6 +2,7 @@
  * Symplectic predictor-corrector (Eqs. 22-24) of the paper: two evaluations a step. With solid
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
+#include "solid/interface.h"
 #include "time/filter.h"
 #include "time/booking.h"
 #include "time/integrators.h"
@@ -130,6 +131,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     evaluate_fluid(s, time + 0.5 * dt);
     book_midpoint(s, dt);
     clock = wall_clock();
+    if (s->effects & FX_IMPEDANCE) interface_settle(&s->solid, solid, dt);
     if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
+#include "solid/interface.h"
 #include "time/filter.h"
 #include "time/booking.h"
 #include "time/integrators.h"
@@ -72,6 +73,7 @@ void verlet_step(struct simulation *s, double t_limit)
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
         const int n = timestep_substeps(s, dt);
+        if (s->effects & FX_IMPEDANCE) interface_settle(&s->solid, &s->kind[KIND_SOLID], dt);
         if (s->effects & FX_FORCE_EXTRAPOLATION) extrapolate_force(s, 0.5 * (dt - dt / n));
         advance_solid(s, dt, n, false);
     }
