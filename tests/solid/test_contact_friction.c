@@ -208,6 +208,53 @@ static void test_bodies_that_turn_together(void)
     }
 }
 
+/* A point that slides rubs with the friction times its normal force, of which it gets its part where a
+ * wall's point presses an edge. */
+static void test_each_point_rubs_by_its_own_load(void)
+{
+    static struct force normal[COUNT_OF(force)];
+    static const int scene[] = {0, 2};
+    for (size_t k = 0; k < COUNT_OF(scene); k++) {
+        double most = 0, load = 0;
+        open_scene(scenes[scene[k]].text, 0.3);
+        put(0, -0.003, 0, 0);
+        for (int slides = 0; slides < 2; slides++) {
+            for (int64_t i = 0; i < p->n; i++) p->vx[i] = slides ? 100 : 0;
+            find_forces();
+            for (int64_t i = 0; i < p->n; i++) {
+                const struct force f = force[i];
+                const double n = hypot(normal[i].x, normal[i].y);
+                if (slides)
+                    most = fmax(most, fabs(hypot(f.x - normal[i].x, f.y - normal[i].y) - 0.3 * n));
+                else
+                    load = fmax(load, hypot(f.x, f.y));
+            }
+            for (int64_t i = 0; i < p->n && !slides; i++) normal[i] = force[i];
+        }
+        assert_at_most(1e-9 * load, most, scenes[scene[k]].name);
+    }
+}
+
+/* A spring stretched beyond the slider counts with what the slider bears: f^2/(2 k), of the stiffness in
+ * shear of both halves. */
+static void test_energy_of_the_slider(void)
+{
+    static const double stiffness = 2e6 / 2.6;
+    double whole[2], exact = 0;
+    for (int rubs = 0; rubs < 2; rubs++) {
+        open_scene(scenes[0].text, rubs ? 0.1 : 0);
+        put(0, -0.003, 0, 0);
+        find_forces();
+        contact_slide(c, p);
+        put(0.005, -0.003, 0, 0);
+        if (!rubs) find_forces();
+        for (int64_t i = 0; i < p->n && !rubs; i++)
+            exact += 0.005 * (force[i].x * force[i].x + force[i].y * force[i].y) / stiffness;
+        whole[rubs] = energy();
+    }
+    assert_near(1e-9 * exact, exact, whole[1] - whole[0], "energy");
+}
+
 /* What the run has gained at most since its energy was least, in parts of the kinetic energy at the
  * start. */
 static double gain_until(double time)
@@ -306,6 +353,8 @@ int main(void)
     RUN_TEST(test_force_of_the_energy);
     RUN_TEST(test_closed_path);
     RUN_TEST(test_bodies_that_turn_together);
+    RUN_TEST(test_each_point_rubs_by_its_own_load);
+    RUN_TEST(test_energy_of_the_slider);
     RUN_TEST(test_rolling_disc);
     RUN_TEST(test_throws);
     RUN_TEST(test_bound_of_friction);
