@@ -339,9 +339,6 @@ static bool lacks_potential(const struct simulation *s)
     return paper;
 }
 
-/* Whether friction acts, whose springs have no potential where their places move on a surface (T-62). */
-static bool rubs(const struct simulation *s) { return s->effects & FX_FRICTION && s->contact.near; }
-
 /* What makes the steps of a run smaller, and what else may help if the run gains energy. */
 static const char *step_key(const struct simulation *s)
 {
@@ -362,7 +359,6 @@ static const char *remedy_of(const struct simulation *s, const struct gain *g)
         return s->effects & FX_CONTACT && s->contact.near ? " or a larger gap in [contact]" : "";
     if (g->term == TERM_RESTARTS) return " or a larger verlet_reset";
     if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
-    if (g->term == TERM_SOLID && rubs(s)) return " or friction";
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
     return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
@@ -390,7 +386,6 @@ static const char *source_of(const struct simulation *s, const struct gain *g)
     };
     if (g->term == TERM_SOLID && lacks_potential(s))
         return "the solid's time integration or its stress, whose law paper has no potential";
-    if (g->term == TERM_SOLID && rubs(s)) return "the solid's stress, time integration or friction";
     return names[g->term];
 }
 

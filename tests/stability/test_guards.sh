@@ -68,7 +68,7 @@ velocity = -200*(x - 0.05), 0
 CASE
 
 # Energy: a step that is much too long. The account warns before the density stops the run.
-stopped energy 'The results may be invalid' 'the fluid is unstable' <<CASE
+stopped energy 'The results may be invalid' 'is unstable' <<CASE
 dp = 1 cm
 end_time = 0.5
 gravity = 9.81, 0

@@ -3,6 +3,7 @@
 
 #include "unity.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -348,10 +349,18 @@ static void give(const struct twin_solid *t, struct twin_solid_point *a, double 
     a->size += fabs(part) * hypot(f[0], f[1]) / mass;
 }
 
+/* What the other body does to a point: the sum of its normal forces; the edge nearest to it, of equally near
+ * ones the last. */
+struct press {
+    double f[2], distance;
+    struct twin_solid_point *a, *b;
+};
+
 /* What the place at the share s of the way from a to b does to p, times `sign`: half of k dp (dp/r - 1) with
- * k = stiffness 2 E_A E_B/(E_A + E_B), less the dashpot, and the friction, at most Coulomb's. */
+ * k = stiffness 2 E_A E_B/(E_A + E_B), less the dashpot. */
 static void touch(const struct twin_solid *t, struct twin_solid_point *p,
-                  struct twin_solid_point *a, struct twin_solid_point *b, double s, double sign)
+                  struct twin_solid_point *a, struct twin_solid_point *b, double s, double sign,
+                  struct press *on)
 {
     const struct scene_solid *const A = &t->body[p->body], *const B = &t->body[a->body];
     const double x = p->x - (1 - s) * a->x - s * b->x, y = p->y - (1 - s) * a->y - s * b->y;
@@ -360,35 +369,59 @@ static void touch(const struct twin_solid *t, struct twin_solid_point *p,
     const double k = t->contact->stiffness * 2 / (1 / A->young + 1 / B->young);
     const double m = 1 / (1 / (A->density * V) + 1 / (B->density * V)), c = sqrt(k * m);
     const double u = p->u - (1 - s) * a->u - s * b->u, v = p->v - (1 - s) * a->v - s * b->v;
-    const double speed = (u * x + v * y) / r, across = (v * x - u * y) / r; /* along (-y, x)/r */
+    const double speed = (u * x + v * y) / r;
     const double push =
         fmax(0, k * (t->dp * t->dp / r - t->dp) - 2 * t->contact->damping * c * speed);
-    const double on = t->contact->friction > 0 ? 1 : 0;
-    const double drag =
-        on * fmin(t->contact->friction * push, c * fabs(across)) * (across > 0 ? 1 : -1);
-    const double f[2] = {0.5 * sign * (push * x + drag * y) / r,
-                         0.5 * sign * (push * y - drag * x) / r};
+    const double f[2] = {0.5 * sign * push * x / r, 0.5 * sign * push * y / r};
     give(t, p, 1, f);
     give(t, a, s - 1, f);
     give(t, b, -s, f);
+    on->f[0] += f[0];
+    on->f[1] += f[1];
+    if (a != b && r <= on->distance) *on = (struct press){{on->f[0], on->f[1]}, r, a, b};
 }
 
-/* T-61a: all edges of other bodies, less the points where two of them meet. */
+/* T-62 to T-62d where a point has no place yet: half of a dashpot across the sum of the normal forces, at most
+ * Coulomb's friction. The edge moves, and bears the force, as if it reached to the point. In complex numbers. */
+static void rub(const struct twin_solid *t, struct twin_solid_point *p, const struct press *on)
+{
+    const struct scene_solid *const A = &t->body[p->body], *const B = &t->body[on->a->body];
+    const double k = t->contact->stiffness * 2 / (1 / A->young + 1 / B->young), V = t->dp * t->dp;
+    const double m = 1 / (1 / (A->density * V) + 1 / (B->density * V)), c = sqrt(k * m);
+    const double complex i = (double complex)I;
+    const double complex e = on->b->x - on->a->x + i * (on->b->y - on->a->y),
+                         turn = on->b->u - on->a->u + i * (on->b->v - on->a->v),
+                         at = (p->x - on->a->x + i * (p->y - on->a->y)) / e,
+                         v = p->u - on->a->u + i * (p->v - on->a->v) - at * turn,
+                         n = on->f[0] + i * on->f[1];
+    const double complex across = v - n * creal(v * conj(n)) / creal(n * conj(n));
+    double complex f = -0.5 * c * across;
+    const double most = t->contact->friction * cabs(n);
+    if (cabs(f) > most) f *= most / cabs(f);
+    const double complex on_b = -conj(at) * f, on_a = -f - on_b;
+    give(t, p, 1, (double[]){creal(f), cimag(f)});
+    give(t, on->b, 1, (double[]){creal(on_b), cimag(on_b)});
+    give(t, on->a, 1, (double[]){creal(on_a), cimag(on_a)});
+}
+
+/* T-61a: all edges of the other body, less the points where two of them meet. */
 static void touch_surfaces(const struct twin_solid *t, struct twin_solid_point *p)
 {
     if (!at_surface(t, p)) return;
+    struct press on = {.distance = INFINITY};
     for (int64_t i = 0; i < t->n; i++) {
         struct twin_solid_point *const a = &t->point[i];
         if (bonded(t, p->body, a->body) || !at_surface(t, a)) continue;
-        touch(t, p, a, a, 0, -1);
+        touch(t, p, a, a, 0, -1, &on);
         for (int64_t k = 0; k < i; k++) {
             struct twin_solid_point *const b = &t->point[k];
             if (!at_surface(t, b) || !is_edge(t, a, b)) continue;
             const double x = b->x - a->x, y = b->y - a->y;
             const double s = ((p->x - a->x) * x + (p->y - a->y) * y) / (x * x + y * y);
-            touch(t, p, a, b, fmin(1, fmax(0, s)), 1);
+            touch(t, p, a, b, fmin(1, fmax(0, s)), 1, &on);
         }
     }
+    if (on.a && hypot(on.f[0], on.f[1]) > 0) rub(t, p, &on);
 }
 
 void twin_solid_evaluate(struct twin_solid *t)

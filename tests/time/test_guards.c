@@ -346,22 +346,6 @@ static void test_a_gain_between_bodies(void)
     }
 }
 
-/* A disc that rolls with friction gains with any step. */
-static void test_friction_is_named_where_bodies_rub(void)
-{
-    for (int near = 0; near < 2; near++) {
-        rig.sim.guard.warned_energy = false;
-        rig.sim.effects |= FX_CONTACT | FX_FRICTION;
-        rig.sim.contact.near = near;
-        for (int k = 0; k < rig.scene.n_solid; k++) rig.scene.solid[k].law = LAW_SVK;
-        rig.sim.gain = (struct gain){.term = TERM_SOLID, .energy = 0.2, .available = 1};
-        rig.sim.checked = true;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
-        TEST_ASSERT_EQUAL(near, strstr(warning, "time integration or friction") != NULL);
-        TEST_ASSERT_EQUAL(near, strstr(warning, " or friction may help") != NULL);
-    }
-}
-
 static void advises(const char *text, const char *what, const char *set, const char *another)
 {
     rig_open(&rig, text, set, another, NULL);
@@ -485,7 +469,6 @@ int main(void)
     RUN_TEST(test_a_gain_that_lasts);
     RUN_TEST(test_terms_apart);
     RUN_TEST(test_a_gain_between_bodies);
-    RUN_TEST(test_friction_is_named_where_bodies_rub);
     RUN_TEST(test_what_may_help_is_said);
     RUN_TEST(test_warnings_before_the_end);
     RUN_TEST(test_voids_in_a_full_channel);
