@@ -381,8 +381,9 @@ static void touch(const struct twin_solid *t, struct twin_solid_point *p,
     if (a != b && r <= on->distance) *on = (struct press){{on->f[0], on->f[1]}, r, a, b};
 }
 
-/* T-62 to T-62d where a point has no place yet: half of a dashpot across the sum of the normal forces, at most
- * Coulomb's friction. The edge moves, and bears the force, as if it reached to the point. In complex numbers. */
+/* T-62 to T-62d where a point has no place yet: half of a dashpot across the sum of the normal forces, at
+ * most Coulomb's friction. The edge moves, and bears the force, as if it reached to the point. In complex
+ * numbers. */
 static void rub(const struct twin_solid *t, struct twin_solid_point *p, const struct press *on)
 {
     const struct scene_solid *const A = &t->body[p->body], *const B = &t->body[on->a->body];
