@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Evaluations of the rates, with moving walls, forces of the program and open boundaries; and the fluid's
  * advance, which all integrators share. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -58,7 +59,10 @@ static bool keeps_slopes(const struct simulation *s, double time)
     const double interval = KERNEL_REACH * s->fluid.k.h / s->fluid.k.c0;
     if (s->scene->top.integrator == INTEGRATOR_VERLET) return false;
     if (time != st->time) return true; /* symplectic: the predictor's */
-    return st->steps > 0 && floor(time / interval) <= floor((time - st->dt) / interval);
+    /* Not after the evaluation before: time - dt has errors of round-off, and may have passed a multiple
+     * of the interval that the step before had not reached. */
+    const double before = time - st->dt - 2 * DBL_EPSILON * time;
+    return st->steps > 0 && floor(time / interval) <= floor(before / interval);
 }
 
 void evaluate_fluid(struct simulation *s, double time)

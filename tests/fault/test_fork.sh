@@ -57,6 +57,11 @@ grep -q '"start_time": 0.02' "$dir/stiff/summary.json" || fail "summary: start_t
 # Gradients of the density that the run did not have.
 expect 0 "fork from $ckpt" "$case" --fork "$ckpt" --out "$dir/slopes" "${go[@]}" \
     --set water.diffusion_form=antuono
+# Places of friction that the run did not have.
+(cat "$case"; printf '[contact smooth]\nfriction = 0\n') >"$dir/smooth.cfg"
+expect 0 'simulated' "$dir/smooth.cfg" --threads 1 --until 0.01 --out "$dir/smooth"
+expect 0 'fork from' "$dir/smooth.cfg" --fork "$dir/smooth" --out "$dir/rough" --threads 1 --until 0.011 \
+    --set smooth.friction=0.1
 # A fork that changes nothing but where it begins goes the same way, by the folder's newest one.
 expect 0 'simulated' "$case" --threads 1 --until 0.03 --out "$dir/whole"
 expect 0 'fork from' "$case" --fork "$run" --out "$dir/same" "${go[@]}"
@@ -101,8 +106,11 @@ expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.02
 expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/single" \
     --set block.young=1e4 --set numerics.multirate=off
 expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/impulse"
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.0205 --out "$dir/short" \
+    --set numerics.multirate=on --set numerics.fixed_step=2e-5
 [ -n "$(momentum single)" ] || fail "no momentum in the ledger"
 [ "$(momentum soft)" = "$(momentum single)" ] || fail "an interface impulse stays"
+[ "$(momentum short)" = "$(momentum single)" ] || fail "an interface impulse stays for shorter steps"
 [ "$(momentum impulse)" != "$(momentum single)" ] || fail "no interface impulse, nothing tested"
 
 # --- fork: a wall that begins to move; one that would jump ---
