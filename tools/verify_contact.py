@@ -166,7 +166,7 @@ says.
 * Contact acts at the outline as it is drawn (T-61b). A disc is not the steps of its lattice.
 * Between both loads of a disc between plates each contact is compressed by 0.24, 0.48 and 0.96 dp. A
   percent at 20 over the radius is 0.0024 dp. By Johnson's half-width (4 P R/(pi E'))^1/2 the contact
-  is 3.4 and 5.1 spacings wide there, so the misses at 20 are a matter of resolution: at 40, where it
+  is 3.4 and 5.1 spacings wide there, so the misses at 20 are a matter of resolution. At 40, where it
   is 6.8 and 10, all turns keep the limit.
 * The friction is 0.3 where nothing else is said. Coulomb friction between an elastic and a rigid
   body lets pulses of slip run along the joint below the angle of friction (Adams 1998; Ranjith and

@@ -76,7 +76,7 @@ static void open_scene(const char *text, double friction)
     open_case(whole);
 }
 
-/* The last body's forces along the way from one place to another, J/m per unit of the way. */
+/* The last body's forces along the path from one place to another, J/m per unit of the path. */
 static double power_of(const double from[4], const double to[4], double size)
 {
     double sum = 0;
