@@ -130,6 +130,7 @@ static enum err check_fluid(struct reader *r, const struct scene_fluid *f, doubl
         {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
         {"density_diffusion", f->density_diffusion, first->density_diffusion},
         {"diffusion_form", f->diffusion_form, first->diffusion_form},
+        {"diffusion_limiter", f->diffusion_limiter, first->diffusion_limiter},
         {"gradients", f->gradients, first->gradients},
     };
     for (size_t j = 0; j < COUNT_OF(same); j++)

@@ -108,7 +108,7 @@ struct fluid_sweeps {
 #define PAIR_EFFECTS                                                                          \
     (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING |     \
      FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_ONE_SIDED | FX_CORRECTED | \
-     FX_MASSES)
+     FX_MASSES | FX_LIMITER)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 

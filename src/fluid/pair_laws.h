@@ -10,12 +10,15 @@
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
+/* (C_delta l/h)^2 of Meringolo et al. 2019 with C_delta = 6 and the reach of the kernel, l = 2h. */
+#define STRAIN_DIFFUSION (6 * KERNEL_REACH * 6 * KERNEL_REACH)
+
 /* The contribution of a pair to its receiver. The candidate gets the opposite, except for the rate
  * and div_r, which are even. With the volumes of both, over h^4. */
 struct exchange {
-    vreal ax, ay;                    /* Pa */
-    vreal rate;                      /* m/s */
-    vreal mixing;                    /* 1: of Eq. 6, without its factor 2 delta c0/(1 + dens_a) */
+    vreal ax, ay; /* Pa */
+    vreal rate;   /* m/s */
+    vreal mixing; /* of Eq. 6, without its factor 2/(1 + dens_a) and, unless limited, delta c0 */
     vreal grad_c_x, grad_c_y, div_r; /* 1: sums of slope xi and of slope |xi|^2 */
 };
 
@@ -28,6 +31,7 @@ struct vector_constants {
     vreal wall_damping;   /* zeta rho0 c0 of fx_wall_damping, Pa s/m */
     vreal lowest;         /* pressure of walls and structures, Pa */
     vreal gx, gy;         /* g h/c0^2: slope of the hydrostatic density, 1 */
+    vreal diffusion;      /* delta c0, m/s */
     vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
@@ -117,6 +121,16 @@ SPHFSI_INLINE void fx_beyond_linear(const struct receiver *a, struct pair *q)
     q->v = q->v - half * vfma(of_a->v_y + of_b->v_y, q->y, (of_a->v_x + of_b->v_x) * q->x);
 }
 
+/* Eq. 28b: the pair's rate of approach or separation. */
+SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }
+
+/* L-5b: the diffusivity over h. It is delta c0, but at most (C_delta l)^2/h times the rate of strain of the
+ * pair along its line (Meringolo et al. 2019). */
+SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
+{
+    return vmin(vset(STRAIN_DIFFUSION) * fx_approach(q, inv), k->diffusion);
+}
+
 /* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With
  * FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
  * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
@@ -129,7 +143,8 @@ SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q,
     if (fx & FX_ANTUONO)
         step = step - vset((real)0.5) *
                           vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
-    return step * (q->slope * (q->r2 * inv));
+    const vreal mixing = step * (q->slope * (q->r2 * inv));
+    return fx & FX_LIMITER ? mixing * fx_limiter(q, inv, k) : mixing;
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,
@@ -140,6 +155,3 @@ SPHFSI_INLINE void fx_concentration(const struct pair *q, struct exchange *e)
     e->grad_c_y = q->slope * q->y;
     e->div_r = q->slope * q->r2;
 }
-
-/* Eq. 28b: the pair's rate of approach or separation. */
-SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }

@@ -32,6 +32,7 @@ static struct vector_constants constants_of_sweep(const struct fluid *f)
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
+        .diffusion = vset((real)(fk->delta * fk->c0)),
         .eta2 = vset((real)ETA2),
     };
 }
@@ -80,7 +81,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
 {
     const struct fluid_constants *const k = &f->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
-    const double mix = 2 * k->delta * k->c0;
+    const double mix = fx & FX_LIMITER ? 2 : 2 * k->delta * k->c0;
     four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
     if (fx & FX_MASSES) { /* all sums contain the volume of the particle itself */

@@ -14,31 +14,34 @@ static const char scene[] =
     "[solid gate]\nshape = box 0.2, 0, 0.23, 0.2\nclamp = box 0.2, 0.17, 0.23, 0.2\n"
     "density = 1100\nyoung = 1e6\npoisson = 0.4\n";
 
-#define STANDARD "water.diffusion_form=antuono", "water.wall_repulsion=0.3", "water.wall_damping=1"
+#define STANDARD                                                                                  \
+    "water.diffusion_form=antuono", "water.diffusion_limiter=strain", "water.wall_repulsion=0.3", \
+        "water.wall_damping=1"
 
 /* The sets of effects of fluid/variants.def, as case files ask for them, and one without a kernel. */
 static const struct {
-    const char *name, *alpha, *delta, *set, *another, *third, *mass;
+    const char *name, *alpha, *delta, *set, *another, *third, *fourth, *mass;
     effect_set effects;
 } sets[] = {
-    {"bare", "0", "0", NULL, NULL, NULL, "equal", 0},
-    {"viscous", "0.05", "0", NULL, NULL, NULL, "equal", FX_VISCOSITY},
-    {"dam_break", "0.05", "0.1", NULL, NULL, NULL, "equal", FX_VISCOSITY | FX_DIFFUSION},
-    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL, NULL, "equal",
+    {"bare", "0", "0", NULL, NULL, NULL, NULL, "equal", 0},
+    {"viscous", "0.05", "0", NULL, NULL, NULL, NULL, "equal", FX_VISCOSITY},
+    {"dam_break", "0.05", "0.1", NULL, NULL, NULL, NULL, "equal", FX_VISCOSITY | FX_DIFFUSION},
+    {"sluice", "0.05", "0.1", "water.wall_repulsion=0.1", NULL, NULL, NULL, "equal",
      FX_VISCOSITY | FX_DIFFUSION | FX_REPULSION},
-    {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL, NULL, "equal",
+    {"hydrostatic", "0.05", "0.1", "water.diffusion_form=fourtakas", NULL, NULL, NULL, "equal",
      FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS},
     {"standard", "0.05", "0.1", STANDARD, "hydrostatic",
-     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_MASSES},
+     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING |
+         FX_MASSES},
     {"standard_inviscid", "0", "0.1", STANDARD, "hydrostatic",
-     FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_MASSES},
+     FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING | FX_MASSES},
     {"standard_equal", "0.05", "0.1", STANDARD, "equal",
-     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING},
+     FX_VISCOSITY | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING},
     {"standard_inviscid_equal", "0", "0.1", STANDARD, "equal",
-     FX_DIFFUSION | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING},
-    {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none", NULL, "equal",
+     FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_REPULSION | FX_WALL_DAMPING},
+    {"channel", "0", "0", "water.laminar_viscosity=1e-3", "tank.slip=none", NULL, NULL, "equal",
      FX_LAMINAR | FX_NO_SLIP},
-    {"any", "0", "0.1", NULL, NULL, NULL, "hydrostatic", ANY_EFFECTS},
+    {"any", "0", "0.1", NULL, NULL, NULL, NULL, "hydrostatic", ANY_EFFECTS},
 };
 
 static struct rig rig;
@@ -54,7 +57,7 @@ static uint64_t run(int set, const char *precision, bool generic)
     snprintf(mass, sizeof mass, "water.particle_mass=%s", sets[set].mass);
     rig_switches.generic_kernel = generic;
     rig_open(&rig, scene, precision, alpha, delta, mass, sets[set].set, sets[set].another,
-             sets[set].third, NULL);
+             sets[set].third, sets[set].fourth, NULL);
     rig_switches.generic_kernel = false;
     rig_steps(&rig, 40, 1);
     return simulation_hash(&rig.sim);

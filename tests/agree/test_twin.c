@@ -237,6 +237,8 @@ static void agree_for_all_effects(const char *precision, double tolerance)
     agree(scene, precision, "water.diffusion_form=antuono", "water.density_diffusion=0.5",
           tolerance);
     agree(channel, precision, "water.diffusion_form=antuono", "water.shifting=1", tolerance);
+    agree(scene, precision, "water.diffusion_limiter=strain", "water.density_diffusion=1",
+          tolerance);
     agree_with_earlier_slopes(scene, precision, tolerance);
     agree_with_earlier_slopes(channel, precision, tolerance);
     agree(channel, precision, "water.shifting=2", "water.artificial_viscosity=0", tolerance);

@@ -201,6 +201,7 @@ static void test_scheme(void)
     TEST_ASSERT_TRUE(scene.numerics.h_over_dp == 2);
     TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0.1);
     TEST_ASSERT_EQUAL_INT(DIFFUSION_ANTUONO, scene.fluid[0].diffusion_form);
+    TEST_ASSERT_EQUAL_INT(LIMITER_STRAIN, scene.fluid[0].diffusion_limiter);
     TEST_ASSERT_TRUE(scene.fluid[0].acoustic_damper == 4);
     TEST_ASSERT_EQUAL_INT(MASS_HYDROSTATIC, scene.fluid[0].particle_mass);
     TEST_ASSERT_TRUE(scene.fluid[0].wall_repulsion == 0.3);

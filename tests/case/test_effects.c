@@ -30,6 +30,8 @@ static const struct {
      FX_FLUID | FX_DIFFUSION | FX_FOURTAKAS, EFFECT_FOURTAKAS, "line 7: [fluid w] diffusion_form"},
     {TOP FLUID "density_diffusion = 0.1\ndiffusion_form = antuono\n",
      FX_FLUID | FX_DIFFUSION | FX_ANTUONO, EFFECT_ANTUONO, "line 7: [fluid w] diffusion_form"},
+    {TOP FLUID "density_diffusion = 0.1\ndiffusion_limiter = strain\n",
+     FX_FLUID | FX_DIFFUSION | FX_LIMITER, EFFECT_LIMITER, "line 7: [fluid w] diffusion_limiter"},
     {TOP FLUID "[inflow i]\nfrom = 0, 0.1\nto = 0, 0\nspeed = 1\n", FX_FLUID | FX_INFLOW,
      EFFECT_INFLOW, "line 6: [inflow i]"},
     {TOP FLUID "[outflow o]\nfrom = 0, 0.1\nto = 0, 0\npressure = 1\n", FX_FLUID | FX_OUTFLOW,
@@ -55,7 +57,8 @@ static const struct {
      "line 6: [fluid w] particle_mass"},
     /* The scheme calls for what it sets; masses where the fluid starts under pressure. */
     {TOP "scheme = standard\n" FLUID WALL,
-     FX_FLUID | FX_WALL | FX_DIFFUSION | FX_ANTUONO | FX_DAMPER | FX_REPULSION | FX_WALL_DAMPING,
+     FX_FLUID | FX_WALL | FX_DIFFUSION | FX_ANTUONO | FX_LIMITER | FX_DAMPER | FX_REPULSION |
+         FX_WALL_DAMPING,
      EFFECT_ANTUONO, "line 4: [fluid w] diffusion_form"},
     {TOP "scheme = standard\n" FLUID "density_diffusion = 0\nsurface = 0.1\n" PLAIN_SOLID,
      FX_FLUID | FX_SOLID | FX_COUPLING | FX_IMPEDANCE | FX_MASSES | FX_REPULSION | FX_WALL_DAMPING |

@@ -267,6 +267,28 @@ static void test_diffusion_spares_linear_densities(void)
     assert_near(1e-13 * size, 0, sum, "sum of V D");
 }
 
+/* L-5b: v.x = 0.003 m^2/s is a rate of strain of 0.003/1.01 1/s along the pair. So the diffusivity is
+ * (6*2)^2 * 0.003/1.01 = 0.4277228 m^2/s instead of 0.1 * 10 = 1: D_a = 1.8502011 kg/(m^3 s). Eq. 4a adds
+ * 0.003/0.4 times the 88.252976 of above. */
+static void test_diffusion_is_limited_by_the_strain(void)
+{
+    static const struct {
+        double u, v, drho;
+        const char *what;
+    } motions[] = {
+        {0, 0, 0, "at rest"},
+        {-1.6, 1.2, 0, "turning"},
+        {0.005, 0, 1.8502013370849513 - 0.6618973221527648, "slowly apart"},
+        {-0.005, 0, 1.8502013370849513 + 0.6618973221527648, "slowly together"},
+        {-2, 2, 4.325702200129168 - 88.2529762870353, "fast"},
+    };
+    for (size_t k = 0; k < COUNT_OF(motions); k++) {
+        place("w.density_diffusion=0.1", "w.diffusion_limiter=strain");
+        evaluate(motions[k].u, motions[k].v, 0, 0);
+        assert_near(1e-11, motions[k].drho, 1000 * p->ddens[a], motions[k].what);
+    }
+}
+
 /* Two particles span no plane: no gradient, and the pair diffuses by Eq. 6 as it stands. */
 static void test_gradient_of_a_pair_is_none(void)
 {
@@ -532,6 +554,7 @@ int main(void)
     RUN_TEST(test_diffusion_levels_densities);
     RUN_TEST(test_diffusion_spares_the_hydrostatic_part);
     RUN_TEST(test_diffusion_spares_linear_densities);
+    RUN_TEST(test_diffusion_is_limited_by_the_strain);
     RUN_TEST(test_gradient_of_a_pair_is_none);
     RUN_TEST(test_no_diffusion_is_the_limit);
     RUN_TEST(test_nothing_beyond_the_support);

@@ -61,6 +61,7 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .dp = scene->top.dp,
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
+                       .strained = f->diffusion_limiter == LIMITER_STRAIN,
                        .corrected = f->gradients == GRADIENTS_CORRECTED,
                        .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
     for (int axis = 0; axis < 2; axis++)
@@ -269,7 +270,11 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     /* The image in b has 2 v_b - v_a. */
     const double mirrored = t->corrected ? 0 : slip && t->one_sided ? 2 : 1;
     const double moved = mirrored * a->rho * V * (du * gx + dv * gy);
-    const double diffused = t->delta * t->h * t->c0 * V * psi * (-dx * gx - dy * gy);
+    double diffusivity = t->delta * t->h * t->c0;
+    /* (C_delta l)^2 times the strain rate along the line of the pair. */
+    if (t->strained)
+        diffusivity = fmin(diffusivity, pow(6 * 2 * t->h, 2) * fabs(vx) / (r * r + eta2));
+    const double diffused = diffusivity * V * psi * (-dx * gx - dy * gy);
     if (!slip && t->tensile > 0) {
         const double f = kernel(r, t->h) / kernel(t->dp, t->h);
         const double pull = fmax(-a->p, 0) + fmax(-b->p, 0);

@@ -33,6 +33,7 @@ struct twin {
     double period[2];  /* 0: none */
     bool suction;      /* walls and structures may pull */
     bool one_sided;    /* each fluid particle meets its own pressure in them */
+    bool strained;     /* the limit of Meringolo et al. 2019 for Eq. 6 */
     bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
     bool given_slopes; /* its gradients are given */
     bool corrected;    /* gradients of Negi and Ramachandran 2022 for Eqs. 4 */

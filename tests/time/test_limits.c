@@ -27,6 +27,7 @@ static const struct {
     {fluid, EFFECT_DIFFUSION, "w.density_diffusion=1e-300", ""},
     {fluid, EFFECT_FOURTAKAS, "w.density_diffusion=1e-300", "w.diffusion_form=fourtakas"},
     {fluid, EFFECT_ANTUONO, "w.density_diffusion=1e-300", "w.diffusion_form=antuono"},
+    {fluid, EFFECT_LIMITER, "w.density_diffusion=1e-300", "w.diffusion_limiter=strain"},
     {fluid, EFFECT_LAMINAR, "w.laminar_viscosity=1e-300", ""},
     {fluid, EFFECT_NO_SLIP, "w.laminar_viscosity=1e-300", "tank.slip=none"},
     {fluid, EFFECT_TENSILE, "w.tensile_control=1e-300", ""},
