@@ -321,6 +321,7 @@ static enum err build(struct simulation *s, struct diag *d)
         move_walls(s, 0);
     }
     TRY(choose_rate(s, d));
+    TRY(timestep_find_grid(s, d));
     simulation_warn_of_steps(s, d);
     set_guards(s);
     update_extremes(s);
@@ -431,6 +432,7 @@ static void show_strain(struct simulation *s)
 enum err simulation_step(struct simulation *s, double t_limit, struct diag *d)
 {
     s->solid.time = s->state.time;
+    t_limit = timestep_stop(s, t_limit);
     if (!(s->effects & FX_FLUID)) {
         const int64_t steps = s->state.steps;
         solid_only_step(s, t_limit);

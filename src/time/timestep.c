@@ -128,6 +128,9 @@ static const effect_set bound_effects[BOUND_COUNT] = {
 #undef FX_NONE
 };
 
+/* Relative rounding of the times at which rows are written. */
+#define OUTPUT_ROUNDING 1e-6
+
 static double bound_at(const struct simulation *s, int k, const struct fluid_extremes *now)
 {
     const bool fixed = s->scene->numerics.fixed_step > 0;
@@ -152,6 +155,80 @@ double timestep_courant(const struct simulation *s)
 bool timestep_beyond(const struct simulation *s, double cfl)
 {
     return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
+}
+
+/* The greatest common divisor of two times, up to their rounding. */
+static double common_divisor(double a, double b)
+{
+    const double rounding = OUTPUT_ROUNDING * min2(a, b);
+    while (b > rounding) {
+        const double rest = fmod(a, b);
+        a = b;
+        b = b - rest > rounding ? rest : 0;
+    }
+    return a;
+}
+
+/* Of the intervals of outputs shorter than `most`: the divisor, and the shortest of them. */
+struct grid {
+    double divisor, shortest;
+};
+
+static void refine_grid(struct grid *g, double interval, double most)
+{
+    if (!(interval > 0 && interval < most)) return;
+    g->divisor = g->divisor > 0 ? common_divisor(g->divisor, interval) : interval;
+    g->shortest = min2(g->shortest, interval);
+}
+
+static struct grid grid_of(const struct scene *c, double most)
+{
+    struct grid g = {0, (double)INFINITY};
+    refine_grid(&g, c->output.ledger_interval, most);
+    refine_grid(&g, c->output.snapshot_interval, most);
+    refine_grid(&g, c->output.checkpoint_interval, most);
+    if (c->n_probe > 0) refine_grid(&g, c->output.probe_interval, most);
+    for (int k = 0; k < c->n_probe; k++) refine_grid(&g, c->probe[k].interval, most);
+    return g;
+}
+
+static enum err refuse_outputs(const struct simulation *s, double step, struct diag *d)
+{
+    const struct scene_output *const out = &s->scene->output;
+    char place[LOCATION_TEXT];
+    scene_location(s->scene, scene_line(s->scene, SECTION_output, 0, "ledger_interval"), place);
+    return diag_fail(
+        d, ERR_INPUT,
+        "%s: outputs every %g s (ledger_interval), %g s (probe_interval) and %g s "
+        "(snapshot_interval), or of probes with an interval of their own, end steps at times "
+        "that differ by less than half a step of %.3g s. Such uneven steps can make "
+        "solids unstable (T-34b); choose intervals that are multiples of each other",
+        place, out->ledger_interval, out->probe_interval, out->snapshot_interval, step);
+}
+
+enum err timestep_find_grid(struct simulation *s, struct diag *d)
+{
+    const double fluid = s->effects & FX_FLUID ? timestep_fluid_limit(s) : (double)INFINITY;
+    const double step = s->effects & FX_MULTIRATE ? fluid : min2(fluid, s->dt_solid);
+    s->output_grid = 0;
+    if (!(s->effects & FX_SOLID)) return ERR_OK;
+    const double most[] = {(double)INFINITY, EQUAL_STEPS * step, FREQUENT_STEPS * step};
+    for (size_t k = 0; k < COUNT_OF(most); k++) {
+        const struct grid g = grid_of(s->scene, most[k]);
+        const double least = 0.5 * min2(step, g.shortest) * (1 - OUTPUT_ROUNDING);
+        if (g.divisor > 0 && g.divisor < least) continue;
+        if (g.divisor < g.shortest * (1 - OUTPUT_ROUNDING)) s->output_grid = g.divisor;
+        return ERR_OK;
+    }
+    return refuse_outputs(s, step, d);
+}
+
+double timestep_stop(const struct simulation *s, double t_limit)
+{
+    const double grid = s->output_grid;
+    if (grid == 0) return t_limit;
+    const double next = grid * (floor(s->state.time / grid + OUTPUT_ROUNDING) + 1);
+    return next < t_limit - OUTPUT_ROUNDING * grid ? next : t_limit;
 }
 
 double timestep_choose(struct simulation *s, double t_limit, bool *hits)

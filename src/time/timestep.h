@@ -8,6 +8,9 @@
 /* Steps before an output time that are made equal: one step more in so many is a small change. */
 enum { EQUAL_STEPS = 64 };
 
+/* Outputs that are fewer steps apart must have a common grid of times. Others disturb the steps rarely. */
+enum { FREQUENT_STEPS = 16 };
+
 /* Largest possible step of the fluid, s: Eq. 28b at rest. */
 double timestep_fluid_limit(const struct simulation *s);
 
@@ -18,6 +21,15 @@ bool timestep_beyond(const struct simulation *s, double cfl);
 
 /* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
 double timestep_added_mass(const struct simulation *s, int *lightest);
+
+/* T-34d: sets the grid of times, s, that has all outputs: the greatest common divisor of their
+ * intervals. If it is finer than half a step, of those shorter than EQUAL_STEPS steps, then of those
+ * shorter than FREQUENT_STEPS; fails if that is too fine as well. 0 without solids or if it is one of
+ * the intervals. */
+enum err timestep_find_grid(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+
+/* The time at which the coming steps end: the next of that grid, or t_limit if that is earlier. */
+double timestep_stop(const struct simulation *s, double t_limit);
 
 /* Chooses the next step from the fluid's last evaluation and the solid's bound. It ends no later
  * than t_limit, and exactly there after equal steps. Fills s->dt_bound; sets `*hits` if the step

@@ -6,6 +6,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static const char beam[] = "dp = 5 mm\nend_time = 1\n"
                            "[solid beam]\nshape = box 0, -0.02, 0.2, 0\n"
@@ -93,6 +94,73 @@ static void test_steps_are_equal(void)
     assert_near(1e-9, 1, least / most, "smallest over largest step");
 }
 
+/* --- outputs at two intervals (T-34d) --- */
+
+/* A plate between two bodies of water, with 7 sub-steps in a fluid step of 0.2 ms. */
+static const char plate[] =
+    "dp = 5 mm\nend_time = 60 ms\ngravity = 0, -9.81\n"
+    "[fluid left]\nshape = box 0, 0, 0.1, 0.1\nsound_speed = 15\nartificial_viscosity = 0.01\n"
+    "surface = 0.1\n[fluid right]\nlike = left\nshape = box 0.12, 0, 0.22, 0.1\nsurface = 0.1\n"
+    "[wall tank]\nshape = polyline thickness -0.02: 0, 0.2; 0, 0; 0.1, 0\n"
+    "shape = polyline thickness -0.02: 0.12, 0; 0.22, 0; 0.22, 0.2\n"
+    "[solid plate]\nshape = box 0.1, -0.02, 0.12, 0.12\nclamp = box 0.1, -0.02, 0.12, 0\n"
+    "density = 1100\nyoung = 2 MPa\npoisson = 0.3\n"
+    "[load hit]\nbody = plate\nshape = box 0.1, 0.09, 0.12, 0.13\n"
+    "force = 40*max(0, sin(pi*min(t/20e-3, 1))), 0\n"
+    "[probe top]\nbody = plate\npoint = 0.11, 0.12\n"
+    "[output]\nsnapshot_interval = 1\n";
+
+/* Rows of one file every 0.3 ms and of another every 0.5 ms. Without a common grid the steps between them are
+ * 0.15 and 0.1 ms long, and after 48 ms the plate has 12 times the energy that it was given. */
+static void test_rows_at_two_intervals_do_not_feed_the_solid(void)
+{
+    rig_open(&rig, plate, "output.ledger_interval=0.3 ms", "output.probe_interval=0.5 ms", NULL);
+    assert_near(1e-12, 1e-4, rig.sim.output_grid, "grid");
+    double least = INFINITY, most = 0;
+    for (int k = 1; k <= 570; k++) {
+        if (k % 3 && k % 5) continue;
+        while (rig.sim.state.time < k * 1e-4) {
+            rig_steps(&rig, 1, k * 1e-4);
+            least = fmin(least, rig.sim.state.dt);
+            most = fmax(most, rig.sim.state.dt);
+        }
+    }
+    assert_near(1e-9, 1, least / most, "smallest over largest step");
+    assert_at_most(0.01, rig.sim.state.gain_share, "gain");
+}
+
+/* The grid is the divisor of all intervals; of those below 64 and 16 steps, if it is too fine. */
+static void test_the_grid_of_outputs(void)
+{
+    static const struct {
+        const char *ledger, *probe, *snapshot;
+        double grid;
+    } row[] = {
+        {"0.5 ms", "1 ms", "10 ms", 0},      /* one of the intervals */
+        {"0.6 ms", "1 ms", "10 ms", 2e-4},   /* 0.2 ms */
+        {"0.6 ms", "1 ms", "9.1 ms", 1e-4},  /* half a step */
+        {"0.6 ms", "1 ms", "9.15 ms", 2e-4}, /* 46 steps: left out */
+        {"0.5 ms", "0.5 ms", "3.55 ms", 0},  /* 18 steps: left out */
+    };
+    for (size_t k = 0; k < COUNT_OF(row); k++) {
+        char set[3][64];
+        snprintf(set[0], sizeof set[0], "output.ledger_interval=%s", row[k].ledger);
+        snprintf(set[1], sizeof set[1], "output.probe_interval=%s", row[k].probe);
+        snprintf(set[2], sizeof set[2], "output.snapshot_interval=%s", row[k].snapshot);
+        rig_open(&rig, plate, set[0], set[1], set[2], NULL);
+        assert_near(1e-6 * row[k].grid, row[k].grid, rig.sim.output_grid, row[k].snapshot);
+    }
+}
+
+/* Below half a step there is no grid, and the case is refused. */
+static void test_outputs_without_a_grid_are_refused(void)
+{
+    char text[2000];
+    snprintf(text, sizeof text, "%s%s", plate,
+             "ledger_interval = 0.37 ms\nprobe_interval = 0.5 ms\n");
+    rig_refuses(text, "choose intervals that are multiples of each other");
+}
+
 int main(void)
 {
     rig_one_thread();
@@ -100,5 +168,8 @@ int main(void)
     RUN_TEST(test_a_pattern_of_steps_grows);
     RUN_TEST(test_output_times_do_not_feed_the_solid);
     RUN_TEST(test_steps_are_equal);
+    RUN_TEST(test_rows_at_two_intervals_do_not_feed_the_solid);
+    RUN_TEST(test_the_grid_of_outputs);
+    RUN_TEST(test_outputs_without_a_grid_are_refused);
     return UNITY_END();
 }
