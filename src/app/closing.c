@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "app/shell.h"
+#include "time/timestep.h"
 
 static void say_cost(const struct sphfsi_options *o, const struct simulation *s,
                      const struct record *r)
@@ -103,13 +104,9 @@ static void add(struct words *w, const char *option, const char *operand)
 /* Steps half as long, as a setting. */
 static void halve_steps(const struct simulation *s, char setting[64])
 {
-    const struct scene_numerics *const n = &s->scene->numerics;
-    if (n->fixed_step > 0)
-        snprintf(setting, 64, "numerics.fixed_step=%.4g", 0.5 * n->fixed_step);
-    else if (s->effects & FX_FLUID)
-        snprintf(setting, 64, "numerics.cfl=%.4g", 0.5 * n->cfl);
-    else
-        snprintf(setting, 64, "numerics.solid_safety=%.4g", 0.5 * n->solid_safety);
+    double half;
+    const char *const key = timestep_shorter(s, &half);
+    snprintf(setting, 64, "numerics.%s=%.4g", key, half);
 }
 
 /* How a run goes on that a guard has stopped. */

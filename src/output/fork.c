@@ -74,13 +74,11 @@ static enum err fork_clamps(struct simulation *s, const double *free, struct dia
     return ERR_OK;
 }
 
-/* Drops the interface impulse if the new case has no impedance interface, which would give it on, or if its
- * steps are shorter: with the last step in its kick, leapfrog would take off more than there is. */
+/* Drops the interface impulse if the new case has no impedance interface, which would give it on. */
 static void clear_interface_impulse(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    const bool fits = s->effects & FX_IMPEDANCE && s->state.dt <= s->solid.exchange_time;
-    if (!p->interface_pressure || fits) return;
+    if (!p->interface_pressure || s->effects & FX_IMPEDANCE) return;
     for (int64_t i = 0; i < p->n; i++) interface_forget(p, i);
 }
 

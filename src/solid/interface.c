@@ -37,6 +37,15 @@ void interface_settle(const struct solid *s, struct particles *p, double kick)
     }
 }
 
+void interface_rescale(struct particles *p, double share)
+{
+#pragma omp parallel for simd schedule(static)
+    for (int64_t i = 0; i < p->n; i++) {
+        p->interface_pressure[i] *= share;
+        if (p->interface_later) p->interface_later[i] *= share;
+    }
+}
+
 void interface_forget(struct particles *p, int64_t i)
 {
     p->interface_impulse_x[i] = p->interface_impulse_y[i] = p->interface_pressure[i] = 0;

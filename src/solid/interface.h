@@ -10,6 +10,10 @@
  * waits. */
 void interface_settle(const struct solid *s, struct particles *p, double kick);
 
+/* The pressure that gives the fluid what waits, times `share`: the time of the exchange has changed by the
+ * inverse. */
+void interface_rescale(struct particles *p, double share);
+
 /* Nothing waits for the fluid at particle i any more. */
 void interface_forget(struct particles *p, int64_t i);
 

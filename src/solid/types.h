@@ -127,7 +127,7 @@ struct solid {
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
     double
-        exchange_time; /* over which the fluid receives an interface impulse: its longest step, s */
+        exchange_time; /* over which the fluid receives an interface impulse, s: as in the state */
     double
         impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
     double work;   /* of walls, clamps and loads on the solid since the last query, J/m */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "time/simulation.h"
 #include "time/timestep.h"
@@ -339,18 +340,18 @@ static bool lacks_potential(const struct simulation *s)
     return paper;
 }
 
-/* What makes the steps of a run smaller, and what else may help if the run gains energy. */
-static const char *step_key(const struct simulation *s)
+/* What makes the gain less. The work of dummies does not depend on the step: fluid that is resolved better
+ * makes it less, also between bodies that meet. A step that no key of the case sets is named with its
+ * value. */
+static void text_of_less(const struct simulation *s, const struct gain *g, char text[64])
 {
-    if (s->scene->numerics.fixed_step > 0) return "fixed_step";
-    return s->effects & FX_FLUID ? "cfl" : "solid_safety";
-}
-
-/* The work of dummies does not depend on the step. Fluid that is resolved better makes it less, also between
- * bodies that meet. */
-static const char *less_of(const struct simulation *s, const struct gain *g)
-{
-    return g->term == TERM_ALL ? "dp" : step_key(s);
+    double half;
+    const char *const key = g->term == TERM_ALL ? "dp" : timestep_shorter(s, &half);
+    const bool given = s->scene->numerics.fixed_step > 0;
+    if (strcmp(key, "fixed_step") == 0 && !given)
+        snprintf(text, 64, "numerics.fixed_step = %.3g s", half);
+    else
+        snprintf(text, 64, "a smaller %s", key);
 }
 
 static const char *remedy_of(const struct simulation *s, const struct gain *g)
@@ -361,7 +362,7 @@ static const char *remedy_of(const struct simulation *s, const struct gain *g)
     if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
     if (!(s->effects & FX_COUPLING)) return "";
     if (s->scene->numerics.fixed_step > 0) return "";
-    return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : " or solid_safety";
+    return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : "";
 }
 
 /* Where most of a region's available energy is now. */
@@ -407,7 +408,7 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
 enum err guards_energy(struct simulation *s, struct diag *d)
 {
     const struct gain g = s->gain;
-    char text[400];
+    char text[400], less[64];
     if (!s->checked) return ERR_OK;
     s->checked = false;
     if (g.entry < 0) s->state.gain_since = s->state.time;
@@ -420,15 +421,15 @@ enum err guards_energy(struct simulation *s, struct diag *d)
     s->state.gain_share = max2(s->state.gain_share, share);
     if (share <= GAIN_WARNING) return ERR_OK;
     text_of_gain(s, &g, text);
+    text_of_less(s, &g, less);
     /* A gain at the interface, or by the law of the fluid, may be less than what the rest loses. */
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
-        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; a smaller %s%s may help", text,
-                         less_of(s, &g), remedy_of(s, &g));
+        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s%s may help", text, less,
+                         remedy_of(s, &g));
     if (s->guard.warned_energy) return ERR_OK;
     s->guard.warned_energy = true;
-    diag_warn(d, "%s. The results may be invalid; a smaller %s%s may help", text, less_of(s, &g),
-              remedy_of(s, &g));
+    diag_warn(d, "%s. The results may be invalid; %s%s may help", text, less, remedy_of(s, &g));
     return ERR_OK;
 }
 

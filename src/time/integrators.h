@@ -38,6 +38,9 @@ void update_extremes(struct simulation *s);
  * end, and mean acceleration (T-35). */
 void advance_solid(struct simulation *s, double dt, int n, bool centred);
 
+/* T-35b: the time over which the fluid receives the interface impulse follows the steps, here one of dt. */
+void follow_exchange(struct simulation *s, double dt);
+
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
 void find_external(struct simulation *s, enum kind kind, double time);
 

@@ -84,7 +84,10 @@ void leapfrog_step(struct simulation *s, double t_limit)
     update_fluid(s, dt, dt_old, st->dt_old);
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
-        if (s->effects & FX_IMPEDANCE) interface_settle(&s->solid, solid, 0.5 * (dt_old + dt));
+        if (s->effects & FX_IMPEDANCE) {
+            interface_settle(&s->solid, solid, 0.5 * (dt_old + dt));
+            follow_exchange(s, dt);
+        }
         weigh_force(solid, 0.5 * (dt_old + dt) / dt);
         advance_solid(s, dt, timestep_substeps(s, dt), true);
     }

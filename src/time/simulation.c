@@ -95,6 +95,15 @@ static const char *remedy_of_substeps(const struct simulation *s)
     return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
 }
 
+/* T-35b: begins with the longest possible step; a checkpoint has the time that its run had. */
+static void start_exchange(struct simulation *s)
+{
+    double *const time = &s->state.exchange_time;
+    if (!(s->effects & FX_IMPEDANCE)) *time = 0;
+    if (s->effects & FX_IMPEDANCE && *time == 0) *time = timestep_fluid_limit(s);
+    s->solid.exchange_time = *time;
+}
+
 /* Sub-steps help where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
@@ -112,7 +121,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (!(s->effects & FX_MULTIRATE))
         s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
     s->fluid.effects = s->effects;
-    s->solid.exchange_time = s->effects & FX_IMPEDANCE ? timestep_fluid_limit(s) : 0;
+    start_exchange(s);
     s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
     return ERR_OK;
 }
@@ -508,6 +517,7 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     }
     if (s->effects & FX_SOLID) {
         timestep_set_solid(s);
+        start_exchange(s);
         contact_forget(&s->contact, &s->kind[KIND_WALL]);
         solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards read the last gradients */
     }

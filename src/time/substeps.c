@@ -2,6 +2,7 @@
  * Steps of the solid within a step of the fluid, and what the fluid uses of the solid afterwards (T-35). */
 #include <math.h>
 
+#include "solid/interface.h"
 #include "time/filter.h"
 #include "time/booking.h"
 #include "time/integrators.h"
@@ -38,6 +39,13 @@ static void update_interface_state(struct simulation *s, double dt)
         p->wx[i] = (p->ux[i] - p->x0[i]) * per_dt + half * (p->ax[i] + since * p->jx[i]);
         p->wy[i] = (p->uy[i] - p->y0[i]) * per_dt + half * (p->ay[i] + since * p->jy[i]);
     }
+}
+
+void follow_exchange(struct simulation *s, double dt)
+{
+    const double before = s->state.exchange_time, now = max2(dt, before - dt);
+    interface_rescale(&s->kind[KIND_SOLID], before / now);
+    s->state.exchange_time = s->solid.exchange_time = now;
 }
 
 void advance_solid(struct simulation *s, double dt, int n, bool centred)

@@ -118,6 +118,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
     book_check(s);
+    if (s->effects & FX_IMPEDANCE) follow_exchange(s, dt); /* for the force of the corrector */
     predict_fluid(fluid, 0.5 * dt);
     if (coupled && multirate) extrapolate_solid(s, 0.5 * dt);
     if (coupled && !multirate) {

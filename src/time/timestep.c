@@ -157,6 +157,28 @@ bool timestep_beyond(const struct simulation *s, double cfl)
     return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
 }
 
+const char *timestep_shorter(const struct simulation *s, double *half)
+{
+    static const enum bound of_cfl[] = {BOUND_force, BOUND_acoustic, BOUND_damper};
+    const struct scene_numerics *const n = &s->scene->numerics;
+    /* Half of a bound must be below the last step. Before the first one nothing is known of it. */
+    const double much = s->state.dt > 0 ? 1.8 * s->state.dt : (double)INFINITY;
+    double fluid = (double)INFINITY;
+    for (size_t k = 0; k < COUNT_OF(of_cfl); k++) fluid = min2(fluid, s->dt_bound[of_cfl[k]]);
+    const bool fixed = n->fixed_step > 0, lone = !(s->effects & FX_FLUID);
+    const double solid = min2(s->dt_bound[BOUND_solid], s->dt_bound[BOUND_contact]);
+    if (!fixed && (lone || solid < min2(fluid, much))) {
+        *half = 0.5 * n->solid_safety;
+        return "solid_safety";
+    }
+    if (!fixed && fluid < much) {
+        *half = 0.5 * n->cfl;
+        return "cfl";
+    }
+    *half = 0.5 * (fixed ? n->fixed_step : s->state.dt);
+    return "fixed_step";
+}
+
 /* The greatest common divisor of two times, up to their rounding. */
 static double common_divisor(double a, double b)
 {

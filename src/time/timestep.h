@@ -31,6 +31,10 @@ enum err timestep_find_grid(struct simulation *s, struct diag *d) SPHFSI_CHECKED
 /* The time at which the coming steps end: the next of that grid, or t_limit if that is earlier. */
 double timestep_stop(const struct simulation *s, double t_limit);
 
+/* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step, with half of the
+ * last step, if neither cfl nor solid_safety sets that step. */
+const char *timestep_shorter(const struct simulation *s, double *half);
+
 /* Chooses the next step from the fluid's last evaluation and the solid's bound. It ends no later
  * than t_limit, and exactly there after equal steps. Fills s->dt_bound; sets `*hits` if the step
  * ends at t_limit. */

@@ -73,7 +73,10 @@ void verlet_step(struct simulation *s, double t_limit)
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) {
         const int n = timestep_substeps(s, dt);
-        if (s->effects & FX_IMPEDANCE) interface_settle(&s->solid, &s->kind[KIND_SOLID], dt);
+        if (s->effects & FX_IMPEDANCE) {
+            interface_settle(&s->solid, &s->kind[KIND_SOLID], dt);
+            follow_exchange(s, dt);
+        }
         if (s->effects & FX_FORCE_EXTRAPOLATION) extrapolate_force(s, 0.5 * (dt - dt / n));
         advance_solid(s, dt, n, false);
     }

@@ -353,6 +353,27 @@ static void test_small_surface_has_no_large_pressure(void)
     assert_near(1e-6 * fabs(pressure), pressure, solid->interface_pressure[0], "pressure");
 }
 
+/* T-35e: after short steps the time of the exchange falls by a step each, and grows to a longer step at once.
+ * The pressure times that time is what waits, however it changes. */
+static void test_the_exchange_follows_the_steps(void)
+{
+    static const double steps[] = {4e-4, 4e-4, 1e-9, 3e-4, 2e-4},
+                        left[] = {6e-4, 4e-4, 4e-4, 3e-4, 2e-4};
+    open("integrator=verlet", NULL);
+    rig.sim.state.exchange_time = 1e-3;
+    solid->interface_pressure[0] = 5;
+    solid->interface_later[0] = 3;
+    for (size_t k = 0; k < COUNT_OF(steps); k++) {
+        follow_exchange(&rig.sim, steps[k]);
+        const double now = rig.sim.solid.exchange_time;
+        assert_near(2e-9, left[k], now, "time");
+        TEST_ASSERT_TRUE(now == rig.sim.state.exchange_time);
+        assert_near(1e-15, 5e-3, solid->interface_pressure[0] * now, "waits");
+        assert_near(1e-15, 3e-3, solid->interface_later[0] * now, "waits for later");
+    }
+    open(NULL, NULL);
+}
+
 /* T-35a takes energy from the motion relative to the fluid's: its work less that of its impulse at
  * the velocity that the fluid has used is nowhere positive. */
 static void test_impedance_only_dissipates(void)
@@ -489,6 +510,7 @@ int main(void)
     RUN_TEST(test_verlet_receives_equal_parts);
     RUN_TEST(test_fluid_receives_the_impulse);
     RUN_TEST(test_small_surface_has_no_large_pressure);
+    RUN_TEST(test_the_exchange_follows_the_steps);
     RUN_TEST(test_impedance_only_dissipates);
     RUN_TEST(test_exchange_gains_little);
     RUN_TEST(test_verlet_stays_together);
