@@ -283,11 +283,9 @@ static double pairs_of(const struct simulation *s)
     const struct cell_list *const list = &s->cells.kind[KIND_FLUID];
     const struct cluster_boxes *const boxes = &s->fluid.packed[KIND_FLUID].boxes;
     const int32_t n = list->n_active;
-    const int32_t chunks = fluid_chunk_count(n, fluid_chunks_few(s->fluid.effects));
     int64_t clusters = 0;
-    for (int32_t m = 0; m < chunks; m++) {
-        const int32_t first = fluid_chunk_start(n, m, chunks),
-                      end = fluid_chunk_start(n, m + 1, chunks);
+    for (int32_t m = 0; m < fluid_chunk_count(n); m++) {
+        const int32_t first = fluid_chunk_start(n, m), end = fluid_chunk_start(n, m + 1);
         for (int32_t k = first; k < end; k++) {
             neighbour_clusters_collect_half(&around, boxes, &s->cells, KIND_FLUID, list->active[k],
                                             s->fluid.k.h, clusters_of(list, first, end));

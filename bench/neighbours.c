@@ -332,10 +332,8 @@ static void sweep_chunks(void)
     const struct cell_list *const listed = &grid.kind[KIND_FLUID];
     const int32_t n = listed->n_active;
     half_pairs = 0;
-    const int32_t chunks = fluid_chunk_count(n, false);
-    for (int32_t chunk = 0; chunk < chunks; chunk++) {
-        const int32_t begin = fluid_chunk_start(n, chunk, chunks),
-                      end = fluid_chunk_start(n, chunk + 1, chunks);
+    for (int32_t chunk = 0; chunk < fluid_chunk_count(n); chunk++) {
+        const int32_t begin = fluid_chunk_start(n, chunk), end = fluid_chunk_start(n, chunk + 1);
         if (begin == end) continue;
         const struct cluster_range range = clusters_of(listed, begin, end);
         for (int32_t k = begin; k < end; k++) {

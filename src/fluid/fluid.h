@@ -115,28 +115,19 @@ extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 /* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its
  * particles. The limits are a number of cells per chunk and multiples of a number of chunks, so
  * that threads have equal work. The order of sums follows from the chunks, not from the number of
- * threads. In chunks of a few cells most pairs are between chunks, and computed twice. So few cells
- * are swept in 8 or 16 chunks of at least 16 cells. These scenes have no use for more threads. */
-enum { CHUNK_CELLS = 64, CHUNKS = 24, CHUNK_LEAST_CELLS = 16, CHUNKS_OF_FEW = 8 };
-
-/* Whether few cells are swept in fewer chunks. Other forms of diffusion keep the bits of the paper's
- * cases. */
-SPHFSI_INLINE bool fluid_chunks_few(effect_set effects) { return effects & FX_ANTUONO; }
+ * threads. */
+enum { CHUNK_CELLS = 64, CHUNKS = 24 };
 
 /* The number of chunks of n active cells. */
-SPHFSI_INLINE int32_t fluid_chunk_count(int32_t n, bool few)
+SPHFSI_INLINE int32_t fluid_chunk_count(int32_t n)
 {
-    if (few && n < CHUNKS * CHUNK_LEAST_CELLS) {
-        const int32_t rounds = n / (CHUNKS_OF_FEW * CHUNK_LEAST_CELLS);
-        return (rounds < 1 ? 1 : rounds) * CHUNKS_OF_FEW;
-    }
     return (n + CHUNKS * CHUNK_CELLS - 1) / (CHUNKS * CHUNK_CELLS) * CHUNKS;
 }
 
-/* The first cell of the m-th of all chunks; chunks may be empty. */
-SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m, int32_t chunks)
+/* The first cell of the m-th chunk; chunks may be empty. */
+SPHFSI_INLINE int32_t fluid_chunk_start(int32_t n, int32_t m)
 {
-    return (int32_t)((int64_t)n * m / chunks);
+    return (int32_t)((int64_t)n * m / fluid_chunk_count(n));
 }
 
 /* Sums over pairs: of forces, of Eq. 4a, of Eq. 6, and for shifting; and their number. */

@@ -257,15 +257,15 @@ static void all_chunks(struct fluid *f, struct particles kinds[KIND_COUNT], cons
                        SWEEP(chunk) * chunk)
 {
     const int32_t n_active = c->kind[KIND_FLUID].n_active;
-    const int32_t shares = fluid_chunk_count(n_active, fluid_chunks_few(f->effects));
+    const int32_t shares = fluid_chunk_count(n_active);
     const struct vector_constants k = constants_of_sweep(f);
     double acceleration2 = 0, approach = 0;
 #pragma omp parallel for schedule(static) num_threads(f->threads) \
     reduction(max                                                 \
               : acceleration2, approach)
     for (int32_t m = 0; m < shares; m++) {
-        const int32_t first = fluid_chunk_start(n_active, m, shares),
-                      end = fluid_chunk_start(n_active, m + 1, shares);
+        const int32_t first = fluid_chunk_start(n_active, m),
+                      end = fluid_chunk_start(n_active, m + 1);
         if (first == end) continue;
         struct fluid_extremes top = {acceleration2, approach};
         chunk(f, &kinds[KIND_FLUID], c, first, end, &k, &top);

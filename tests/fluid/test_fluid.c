@@ -513,34 +513,22 @@ static void test_chunks_of_cells(void)
     const int32_t cells[] = {0, 1, 1535, 1536, 1537, 3072, 3073, 100000};
     const int32_t chunks[] = {0, 24, 24, 24, 48, 48, 72, 1584};
     for (size_t k = 0; k < COUNT_OF(cells); k++) {
-        TEST_ASSERT_EQUAL_INT32(chunks[k], fluid_chunk_count(cells[k], false));
+        TEST_ASSERT_EQUAL_INT32(chunks[k], fluid_chunk_count(cells[k]));
         if (cells[k] == 0) continue;
-        TEST_ASSERT_EQUAL_INT32(0, fluid_chunk_start(cells[k], 0, chunks[k]));
-        TEST_ASSERT_EQUAL_INT32(cells[k], fluid_chunk_start(cells[k], chunks[k], chunks[k]));
+        TEST_ASSERT_EQUAL_INT32(0, fluid_chunk_start(cells[k], 0));
+        TEST_ASSERT_EQUAL_INT32(cells[k], fluid_chunk_start(cells[k], chunks[k]));
         for (int32_t m = 0; m < chunks[k]; m++) {
-            const int32_t size = fluid_chunk_start(cells[k], m + 1, chunks[k]) -
-                                 fluid_chunk_start(cells[k], m, chunks[k]);
+            const int32_t size =
+                fluid_chunk_start(cells[k], m + 1) - fluid_chunk_start(cells[k], m);
             TEST_ASSERT_TRUE(size >= 0 && size <= 64);
         }
     }
-}
-
-/* With Antuono's diffusion at least 16 cells a chunk, if that leaves 8 chunks. */
-static void test_chunks_of_few_cells(void)
-{
-    const int32_t cells[] = {1, 127, 128, 255, 256, 383, 384, 1536, 1537};
-    const int32_t chunks[] = {8, 8, 8, 8, 16, 16, 24, 24, 48};
-    TEST_ASSERT_TRUE(fluid_chunks_few(FX_DIFFUSION | FX_ANTUONO));
-    TEST_ASSERT_FALSE(fluid_chunks_few(FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS));
-    for (size_t k = 0; k < COUNT_OF(cells); k++)
-        TEST_ASSERT_EQUAL_INT32(chunks[k], fluid_chunk_count(cells[k], true));
 }
 
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_chunks_of_cells);
-    RUN_TEST(test_chunks_of_few_cells);
     RUN_TEST(test_pressure);
     RUN_TEST(test_particles_of_unlike_mass);
     RUN_TEST(test_masses_carry_the_density);

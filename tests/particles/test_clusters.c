@@ -147,18 +147,16 @@ static void test_pairs_in_a_share_are_seen_once(void)
 /* Of any number of cells: all of them, once, in as many shares for 16 threads as for one. */
 static void test_shares_hold_all_cells(void)
 {
-    for (int32_t n = 1; n < 5000; n += n < 40 ? 1 : 37)
-        for (int few = 0; few < 2; few++) {
-            const int32_t shares = fluid_chunk_count(n, few);
-            TEST_ASSERT_EQUAL_INT(0, shares % (few ? CHUNKS_OF_FEW : CHUNKS));
-            TEST_ASSERT_EQUAL_INT(0, fluid_chunk_start(n, 0, shares));
-            TEST_ASSERT_EQUAL_INT(n, fluid_chunk_start(n, shares, shares));
-            for (int32_t m = 0; m < shares; m++) {
-                const int32_t cells =
-                    fluid_chunk_start(n, m + 1, shares) - fluid_chunk_start(n, m, shares);
-                TEST_ASSERT_TRUE(cells >= 0 && cells <= CHUNK_CELLS);
-            }
+    for (int32_t n = 1; n < 5000; n += n < 40 ? 1 : 37) {
+        const int32_t shares = fluid_chunk_count(n);
+        TEST_ASSERT_EQUAL_INT(0, shares % CHUNKS);
+        TEST_ASSERT_EQUAL_INT(0, fluid_chunk_start(n, 0));
+        TEST_ASSERT_EQUAL_INT(n, fluid_chunk_start(n, shares));
+        for (int32_t m = 0; m < shares; m++) {
+            const int32_t cells = fluid_chunk_start(n, m + 1) - fluid_chunk_start(n, m);
+            TEST_ASSERT_TRUE(cells >= 0 && cells <= CHUNK_CELLS);
         }
+    }
 }
 
 /* Shaken, and then strayed by as much as cells allow for. */
