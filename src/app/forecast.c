@@ -313,7 +313,7 @@ static double expected_step(const struct simulation *s)
 }
 
 /* Number of steps, which must end at every output time. Only the shortest interval counts, also of a probe
- * that has its own: the others are usually multiples of it. */
+ * that has its own, or the grid that has all of them (T-34d): the others are usually multiples of it. */
 static double count_steps(const struct simulation *s, double dt)
 {
     const struct scene_output *const out = &s->scene->output;
@@ -323,6 +323,7 @@ static double count_steps(const struct simulation *s, double dt)
         if (s->scene->probe[k].interval > 0) piece = min2(piece, s->scene->probe[k].interval);
     piece = min2(piece, min2(out->ledger_interval, out->snapshot_interval));
     if (out->checkpoint_interval > 0) piece = min2(piece, out->checkpoint_interval);
+    if (s->output_grid > 0) piece = s->output_grid;
     return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
 }
 
