@@ -330,7 +330,7 @@ static enum err build(struct simulation *s, struct diag *d)
         move_walls(s, 0);
     }
     TRY(choose_rate(s, d));
-    TRY(timestep_find_grid(s, d));
+    timestep_find_grid(s);
     simulation_warn_of_steps(s, d);
     set_guards(s);
     update_extremes(s);

@@ -59,6 +59,7 @@ struct simulation {
     bool
         cells_overfull; /* cells hold more particles than the sweeps support: evaluations do nothing */
     bool gravity_varies; /* with time */
+    bool uneven;         /* there is no such grid: the steps differ */
     double output_grid;  /* s, of all frequent outputs; 0: none is needed (T-34d) */
     struct {
         int64_t n;

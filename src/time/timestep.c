@@ -214,35 +214,22 @@ static struct grid grid_of(const struct scene *c, double most)
     return g;
 }
 
-static enum err refuse_outputs(const struct simulation *s, double step, struct diag *d)
-{
-    const struct scene_output *const out = &s->scene->output;
-    char place[LOCATION_TEXT];
-    scene_location(s->scene, scene_line(s->scene, SECTION_output, 0, "ledger_interval"), place);
-    return diag_fail(
-        d, ERR_INPUT,
-        "%s: outputs every %g s (ledger_interval), %g s (probe_interval) and %g s "
-        "(snapshot_interval), or of probes with an interval of their own, end steps at times "
-        "that differ by less than half a step of %.3g s. Such uneven steps can make "
-        "solids unstable (T-34b); choose intervals that are multiples of each other",
-        place, out->ledger_interval, out->probe_interval, out->snapshot_interval, step);
-}
-
-enum err timestep_find_grid(struct simulation *s, struct diag *d)
+void timestep_find_grid(struct simulation *s)
 {
     const double fluid = s->effects & FX_FLUID ? timestep_fluid_limit(s) : (double)INFINITY;
     const double step = s->effects & FX_MULTIRATE ? fluid : min2(fluid, s->dt_solid);
     s->output_grid = 0;
-    if (!(s->effects & FX_SOLID)) return ERR_OK;
+    if (!(s->effects & FX_SOLID)) return;
     const double most[] = {(double)INFINITY, EQUAL_STEPS * step, FREQUENT_STEPS * step};
     for (size_t k = 0; k < COUNT_OF(most); k++) {
         const struct grid g = grid_of(s->scene, most[k]);
         const double least = 0.5 * min2(step, g.shortest) * (1 - OUTPUT_ROUNDING);
         if (g.divisor > 0 && g.divisor < least) continue;
         if (g.divisor < g.shortest * (1 - OUTPUT_ROUNDING)) s->output_grid = g.divisor;
-        return ERR_OK;
+        return;
     }
-    return refuse_outputs(s, step, d);
+    s->uneven = true;
+    timestep_set_solid(s);
 }
 
 double timestep_stop(const struct simulation *s, double t_limit)
@@ -271,13 +258,20 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
     return equal;
 }
 
+/* The fraction of the solid's stable step that is used. At half of it uneven steps feed no oscillation that
+ * viscosity does not damp (T-34d). */
+static double solid_safety(const struct simulation *s)
+{
+    return s->scene->numerics.solid_safety * (s->uneven ? 0.5 : 1);
+}
+
 /* T-34c: the number of sub-steps goes down only after the solid's viscosity has dissipated enough.
  * An oscillation at the bound can gain that energy by fewer and then more sub-steps. Viscosity acts
  * on approaching pairs, half of the time. */
 static bool fewer_is_safe(const struct simulation *s, double fewer)
 {
     const struct state *const st = &s->state;
-    const double z = s->scene->numerics.solid_safety, less = z * fewer / (double)st->substeps_held;
+    const double z = solid_safety(s), less = z * fewer / (double)st->substeps_held;
     const double root = sqrt((1 + z) * (1 - less) / ((1 - z) * (1 + less)));
     const double gain = root - 1 / root; /* at least the logarithm of root^2 */
     return 0.5 * s->solid.damping_max * (st->time - st->substeps_needed) > gain;
@@ -301,8 +295,7 @@ void timestep_set_solid(struct simulation *s)
     const double step = s->solid.stable_step * s->state.solid_slowing;
     /* A fully clamped body has no bound, but a moving body may hit it. */
     const bool bounded = s->effects & FX_FLUID || isfinite(step);
-    s->dt_solid = s->dt_lone_solid =
-        s->scene->numerics.solid_safety * (bounded ? step : s->solid.paper_step);
+    s->dt_solid = s->dt_lone_solid = solid_safety(s) * (bounded ? step : s->solid.paper_step);
 }
 
 /* T-62a: eigenvalues of a sum are at most the sum of the largest ones. */
@@ -312,7 +305,7 @@ static double step_in_contact(const struct simulation *s)
     const double slowing = s->state.solid_slowing;
     const double step = solid_step_of(square(s->solid.omega_max / slowing) + c->omega2,
                                       s->solid.damping_max / slowing + c->damping);
-    return min2(s->scene->numerics.solid_safety * step, c->approach);
+    return min2(solid_safety(s) * step, c->approach);
 }
 
 bool timestep_watch_contact(struct simulation *s, double time, int steps)

@@ -24,9 +24,9 @@ double timestep_added_mass(const struct simulation *s, int *lightest);
 
 /* T-34d: sets the grid of times, s, that has all outputs: the greatest common divisor of their
  * intervals. If it is finer than half a step, of those shorter than EQUAL_STEPS steps, then of those
- * shorter than FREQUENT_STEPS; fails if that is too fine as well. 0 without solids or if it is one of
- * the intervals. */
-enum err timestep_find_grid(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
+ * shorter than FREQUENT_STEPS. 0 without solids or if it is one of the intervals. If that is too fine
+ * as well, sets s->uneven, and solids take half of their steps. */
+void timestep_find_grid(struct simulation *s);
 
 /* The time at which the coming steps end: the next of that grid, or t_limit if that is earlier. */
 double timestep_stop(const struct simulation *s, double t_limit);

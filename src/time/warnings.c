@@ -60,9 +60,25 @@ static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
               place, b->common.name, b->density / s->scene->rho0, fixed, bound);
 }
 
+static void warn_of_outputs(const struct simulation *s, struct diag *d)
+{
+    char place[LOCATION_TEXT];
+    const struct scene_output *const out = &s->scene->output;
+    if (!s->uneven) return;
+    scene_location(s->scene, scene_line(s->scene, SECTION_output, 0, "ledger_interval"), place);
+    diag_warn(
+        d,
+        "%s: outputs every %g s (ledger_interval), %g s (probe_interval), or of probes with an "
+        "interval of their own, fall between each other and make the steps uneven. So solids take "
+        "steps half as long, and the energy account is less exact; intervals that are multiples "
+        "of each other avoid that",
+        place, out->ledger_interval, out->probe_interval);
+}
+
 void simulation_warn_of_steps(const struct simulation *s, struct diag *d)
 {
     warn_of_fixed_step(s, d);
     warn_of_cfl(s, d);
     warn_of_light_bodies(s, d);
+    warn_of_outputs(s, d);
 }

@@ -152,13 +152,15 @@ static void test_the_grid_of_outputs(void)
     }
 }
 
-/* Below half a step there is no grid, and the case is refused. */
-static void test_outputs_without_a_grid_are_refused(void)
+/* Below half a step there is no grid: the solid takes half of its steps. With whole ones the plate has 12
+ * times its energy after 160 ms. */
+static void test_outputs_without_a_grid_halve_the_steps_of_the_solid(void)
 {
-    char text[2000];
-    snprintf(text, sizeof text, "%s%s", plate,
-             "ledger_interval = 0.37 ms\nprobe_interval = 0.5 ms\n");
-    rig_refuses(text, "choose intervals that are multiples of each other");
+    rig_open(&rig, plate, "output.ledger_interval=0.5 ms", "output.probe_interval=0.5 ms", NULL);
+    const double whole = rig.sim.dt_solid;
+    rig_open(&rig, plate, "output.ledger_interval=0.37 ms", "output.probe_interval=0.5 ms", NULL);
+    TEST_ASSERT_TRUE(rig.sim.uneven && rig.sim.output_grid == 0);
+    assert_near(1e-12 * whole, 0.5 * whole, rig.sim.dt_solid, "step of the solid");
 }
 
 int main(void)
@@ -170,6 +172,6 @@ int main(void)
     RUN_TEST(test_steps_are_equal);
     RUN_TEST(test_rows_at_two_intervals_do_not_feed_the_solid);
     RUN_TEST(test_the_grid_of_outputs);
-    RUN_TEST(test_outputs_without_a_grid_are_refused);
+    RUN_TEST(test_outputs_without_a_grid_halve_the_steps_of_the_solid);
     return UNITY_END();
 }
