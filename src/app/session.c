@@ -103,11 +103,11 @@ static enum err check_counts(const struct scene *scene, double until, struct dia
     return ERR_OK;
 }
 
-/* The interval nearest to `wish` that is a multiple or a whole fraction of `given`, if that is not 0: rows
- * that fall between each other make the steps uneven (T-34d). */
+/* The interval nearest to `wish` that is a multiple or a whole fraction of `given`, if that is not 0 or far
+ * longer: rows that fall between each other make the steps uneven (T-34d). */
 static double in_step_with(double given, double wish)
 {
-    if (given == 0) return wish;
+    if (given == 0 || given > EQUAL_STEPS * wish) return wish;
     const double many = round(max2(wish, given) / min2(wish, given));
     const double near = wish > given ? many * given : given / many;
     return fabs(near - wish) < 1e-9 * wish ? wish : near;
@@ -119,9 +119,12 @@ static enum err settle_times(struct scene *scene, double until, struct diag *d)
 {
     struct scene_output *out = &scene->output;
     const double end = scene->top.end_time;
-    const double probe = out->probe_interval, ledger = out->ledger_interval;
-    if (probe == 0) out->probe_interval = in_step_with(ledger, end / 1000);
-    if (ledger == 0) out->ledger_interval = in_step_with(probe, end / 1000);
+    struct output_interval given;
+    double first = 0; /* of the intervals that the case gives */
+    for (int k = 0; timestep_output(scene, k, &given); k++)
+        if (first == 0) first = given.interval;
+    if (out->probe_interval == 0) out->probe_interval = in_step_with(first, end / 1000);
+    if (out->ledger_interval == 0) out->ledger_interval = in_step_with(first, end / 1000);
     if (out->snapshot_interval == 0) out->snapshot_interval = end / 20;
     TRY(check_counts(scene, until, d));
     scene->top.end_time = session_time(until > 0 ? until : end);

@@ -59,8 +59,8 @@ struct simulation {
     bool
         cells_overfull; /* cells hold more particles than the sweeps support: evaluations do nothing */
     bool gravity_varies; /* with time */
-    bool uneven;         /* there is no such grid: the steps differ */
-    double output_grid;  /* s, of all frequent outputs; 0: none is needed (T-34d) */
+    int uneven; /* the output, from 1, that has no such grid with those before it; 0: none */
+    double output_grid; /* s, of all frequent outputs; 0: none is needed (T-34d) */
     struct {
         int64_t n;
         double *value;

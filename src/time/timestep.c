@@ -128,8 +128,8 @@ static const effect_set bound_effects[BOUND_COUNT] = {
 #undef FX_NONE
 };
 
-/* Relative rounding of the times at which rows are written. */
-#define OUTPUT_ROUNDING 1e-6
+/* Relative rounding of the intervals of outputs. */
+#define OUTPUT_ROUNDING 1e-9
 
 static double bound_at(const struct simulation *s, int k, const struct fluid_extremes *now)
 {
@@ -166,7 +166,7 @@ const char *timestep_shorter(const struct simulation *s, double *half)
     double fluid = (double)INFINITY;
     for (size_t k = 0; k < COUNT_OF(of_cfl); k++) fluid = min2(fluid, s->dt_bound[of_cfl[k]]);
     const bool fixed = n->fixed_step > 0, lone = !(s->effects & FX_FLUID);
-    const double solid = min2(s->dt_bound[BOUND_solid], s->dt_bound[BOUND_contact]);
+    const double solid = s->dt_bound[BOUND_solid];
     if (!fixed && (lone || solid < min2(fluid, much))) {
         *half = 0.5 * n->solid_safety;
         return "solid_safety";
@@ -191,53 +191,62 @@ static double common_divisor(double a, double b)
     return a;
 }
 
-/* Of the intervals of outputs shorter than `most`: the divisor, and the shortest of them. */
-struct grid {
-    double divisor, shortest;
-};
-
-static void refine_grid(struct grid *g, double interval, double most)
+bool timestep_output(const struct scene *c, int which, struct output_interval *out)
 {
-    if (!(interval > 0 && interval < most)) return;
-    g->divisor = g->divisor > 0 ? common_divisor(g->divisor, interval) : interval;
-    g->shortest = min2(g->shortest, interval);
+    enum { COMMON = 4 };
+    bool common = false; /* whether any probe has the common interval */
+    for (int k = 0; k < c->n_probe; k++) common |= !(c->probe[k].interval > 0);
+    const struct output_interval of_case[COMMON] = {
+        {SECTION_output, 0, "probe_interval", common ? c->output.probe_interval : 0},
+        {SECTION_output, 0, "ledger_interval", c->output.ledger_interval},
+        {SECTION_output, 0, "snapshot_interval", c->output.snapshot_interval},
+        {SECTION_output, 0, "checkpoint_interval", c->output.checkpoint_interval},
+    };
+    const int k = which - COMMON;
+    if (k >= c->n_probe) return false;
+    *out = k < 0 ? of_case[which]
+                 : (struct output_interval){SECTION_probe, k, "interval", c->probe[k].interval};
+    return true;
 }
 
-static struct grid grid_of(const struct scene *c, double most)
+/* The grid of outputs less than `most` apart, 0: none is needed. False if it is finer than half a step or
+ * half of the shortest interval; s->uneven is then the output that makes it so. */
+static bool find_grid(struct simulation *s, double step, double most)
 {
-    struct grid g = {0, (double)INFINITY};
-    refine_grid(&g, c->output.ledger_interval, most);
-    refine_grid(&g, c->output.snapshot_interval, most);
-    refine_grid(&g, c->output.checkpoint_interval, most);
-    if (c->n_probe > 0) refine_grid(&g, c->output.probe_interval, most);
-    for (int k = 0; k < c->n_probe; k++) refine_grid(&g, c->probe[k].interval, most);
-    return g;
+    double grid = 0, shortest = (double)INFINITY;
+    struct output_interval out;
+    for (int k = 0; timestep_output(s->scene, k, &out); k++) {
+        if (!(out.interval > 0 && out.interval < most)) continue;
+        grid = grid > 0 ? common_divisor(grid, out.interval) : out.interval;
+        shortest = min2(shortest, out.interval);
+        s->uneven = k + 1;
+        if (2 * grid < min2(step, shortest) * (1 - OUTPUT_ROUNDING)) return false;
+    }
+    s->uneven = 0;
+    s->output_grid = grid < shortest * (1 - OUTPUT_ROUNDING) ? grid : 0;
+    return true;
 }
 
 void timestep_find_grid(struct simulation *s)
 {
+    const double fixed = s->scene->numerics.fixed_step;
     const double fluid = s->effects & FX_FLUID ? timestep_fluid_limit(s) : (double)INFINITY;
-    const double step = s->effects & FX_MULTIRATE ? fluid : min2(fluid, s->dt_solid);
+    const bool together = !(s->effects & FX_MULTIRATE);
+    const double step = fixed > 0 ? fixed : together ? min2(fluid, s->dt_solid) : fluid;
     s->output_grid = 0;
     if (!(s->effects & FX_SOLID)) return;
-    const double most[] = {(double)INFINITY, EQUAL_STEPS * step, FREQUENT_STEPS * step};
-    for (size_t k = 0; k < COUNT_OF(most); k++) {
-        const struct grid g = grid_of(s->scene, most[k]);
-        const double least = 0.5 * min2(step, g.shortest) * (1 - OUTPUT_ROUNDING);
-        if (g.divisor > 0 && g.divisor < least) continue;
-        if (g.divisor < g.shortest * (1 - OUTPUT_ROUNDING)) s->output_grid = g.divisor;
-        return;
-    }
-    s->uneven = true;
+    if (find_grid(s, step, EQUAL_STEPS * step) || find_grid(s, step, FREQUENT_STEPS * step)) return;
     timestep_set_solid(s);
 }
 
 double timestep_stop(const struct simulation *s, double t_limit)
 {
-    const double grid = s->output_grid;
-    if (grid == 0) return t_limit;
-    const double next = grid * (floor(s->state.time / grid + OUTPUT_ROUNDING) + 1);
-    return next < t_limit - OUTPUT_ROUNDING * grid ? next : t_limit;
+    const double grid = s->output_grid, time = s->state.time;
+    if (grid == 0 || time < 0) return t_limit; /* no rows before t = 0 */
+    /* Outputs are at times of 12 digits. */
+    const double near = 1e-6 * grid + 1e-11 * time;
+    const double next = grid * (floor((time + near) / grid) + 1);
+    return next < t_limit - near ? next : t_limit;
 }
 
 double timestep_choose(struct simulation *s, double t_limit, bool *hits)

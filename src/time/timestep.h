@@ -22,10 +22,21 @@ bool timestep_beyond(const struct simulation *s, double cfl);
 /* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
 double timestep_added_mass(const struct simulation *s, int *lightest);
 
-/* T-34d: sets the grid of times, s, that has all outputs: the greatest common divisor of their
- * intervals. If it is finer than half a step, of those shorter than EQUAL_STEPS steps, then of those
- * shorter than FREQUENT_STEPS. 0 without solids or if it is one of the intervals. If that is too fine
- * as well, sets s->uneven, and solids take half of their steps. */
+/* An interval of outputs that the case may give: where, and its value, s; 0: there are none. */
+struct output_interval {
+    enum section_id section;
+    int index;
+    const char *key;
+    double interval;
+};
+
+/* The intervals of a case, which = 0, 1 ...; false after the last one. */
+bool timestep_output(const struct scene *c, int which, struct output_interval *out);
+
+/* T-34d: sets the grid of times, s, that has all outputs less than EQUAL_STEPS steps apart: the
+ * greatest common divisor of their intervals. If it is finer than half a step, of those less than
+ * FREQUENT_STEPS apart. 0 without solids or if it is one of the intervals. If that is too fine as
+ * well, s->uneven tells which, and solids take half of their steps. */
 void timestep_find_grid(struct simulation *s);
 
 /* The time at which the coming steps end: the next of that grid, or t_limit if that is earlier. */

@@ -60,19 +60,20 @@ static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
               place, b->common.name, b->density / s->scene->rho0, fixed, bound);
 }
 
+/* T-34d. The first of the other intervals is named. */
 static void warn_of_outputs(const struct simulation *s, struct diag *d)
 {
+    struct output_interval own, other;
     char place[LOCATION_TEXT];
-    const struct scene_output *const out = &s->scene->output;
-    if (!s->uneven) return;
-    scene_location(s->scene, scene_line(s->scene, SECTION_output, 0, "ledger_interval"), place);
+    if (!s->uneven || !timestep_output(s->scene, s->uneven - 1, &own)) return;
+    for (int k = 0; timestep_output(s->scene, k, &other) && !(other.interval > 0);) k++;
+    scene_location(s->scene, scene_line(s->scene, own.section, own.index, own.key), place);
     diag_warn(
         d,
-        "%s: outputs every %g s (ledger_interval), %g s (probe_interval), or of probes with an "
-        "interval of their own, fall between each other and make the steps uneven. So solids take "
-        "steps half as long, and the energy account is less exact; intervals that are multiples "
-        "of each other avoid that",
-        place, out->ledger_interval, out->probe_interval);
+        "%s: outputs with %s = %g s fall between those with %s = %g s and make the steps uneven. "
+        "So solids take steps half as long, and the energy account is less exact; intervals "
+        "that are multiples of each other avoid that",
+        place, own.key, own.interval, other.key, other.interval);
 }
 
 void simulation_warn_of_steps(const struct simulation *s, struct diag *d)

@@ -152,6 +152,25 @@ static void test_the_grid_of_outputs(void)
     }
 }
 
+/* Before t = 0, while rest is sought, no step ends at the grid, and late in a run times have 12 digits only.
+ * Intervals that drift apart have no grid. */
+static void test_times_on_the_grid(void)
+{
+    rig_open(&rig, plate, "output.ledger_interval=0.3 ms", "output.probe_interval=0.5 ms", NULL);
+    rig.sim.state.time = -0.5;
+    TEST_ASSERT_TRUE(timestep_stop(&rig.sim, 1) == 1);
+    rig.sim.state.time = 2.00000e5;
+    assert_near(1e-9, 2e5 + 1e-4, timestep_stop(&rig.sim, 2e5 + 3e-4), "next");
+    for (int k = 0; k < 3; k++) {
+        rig.sim.state.time = 2e5 + 1e-4 * k + 1e-7 * (k - 1);
+        const double limit = 2e5 + 1e-4 * (k + 1);
+        TEST_ASSERT_TRUE(timestep_stop(&rig.sim, limit) == limit);
+    }
+    rig_open(&rig, plate, "output.ledger_interval=0.3 ms", "output.probe_interval=0.50000005 ms",
+             NULL);
+    TEST_ASSERT_TRUE(rig.sim.uneven == 2);
+}
+
 /* Below half a step there is no grid: the solid takes half of its steps. With whole ones the plate has 12
  * times its energy after 160 ms. */
 static void test_outputs_without_a_grid_halve_the_steps_of_the_solid(void)
@@ -159,7 +178,8 @@ static void test_outputs_without_a_grid_halve_the_steps_of_the_solid(void)
     rig_open(&rig, plate, "output.ledger_interval=0.5 ms", "output.probe_interval=0.5 ms", NULL);
     const double whole = rig.sim.dt_solid;
     rig_open(&rig, plate, "output.ledger_interval=0.37 ms", "output.probe_interval=0.5 ms", NULL);
-    TEST_ASSERT_TRUE(rig.sim.uneven && rig.sim.output_grid == 0);
+    TEST_ASSERT_TRUE(rig.sim.uneven == 2 &&
+                     rig.sim.output_grid == 0); /* the second that is considered */
     assert_near(1e-12 * whole, 0.5 * whole, rig.sim.dt_solid, "step of the solid");
 }
 
@@ -172,6 +192,7 @@ int main(void)
     RUN_TEST(test_steps_are_equal);
     RUN_TEST(test_rows_at_two_intervals_do_not_feed_the_solid);
     RUN_TEST(test_the_grid_of_outputs);
+    RUN_TEST(test_times_on_the_grid);
     RUN_TEST(test_outputs_without_a_grid_halve_the_steps_of_the_solid);
     return UNITY_END();
 }
