@@ -205,8 +205,7 @@ def report(rows):
         f"Each plate is `tests/stability/thin.cfg` over {END:g} s with {HEIGHT:g} m of water on one side,\n"
         f"and none or {RIGHT[2]:g} m on the other. "
         "A cell has the three integrators from left to right,\nscheme `paper` below and `standard` above.\n"
-        f"Programs: {', '.join(versions)}; "
-        "a result is of the first one, unless its step has changed since.\n")
+        f"Programs: {', '.join(versions)}; a result is of one of them.\n")
 
 
 def draw(rows):
