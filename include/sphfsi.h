@@ -155,8 +155,10 @@ SPHFSI_API enum sphfsi_status sphfsi_create(struct sphfsi_simulation **result,
  * another thread is in a call; the simulation stays. */
 SPHFSI_API enum sphfsi_status sphfsi_free(struct sphfsi_simulation *s);
 
-/** Takes one time step, which ends at `limit` (s) at the latest. SPHFSI_INPUT: `limit` is not later than the
- * time. SPHFSI_GUARD: the state is not sound; the simulation can be read and freed, but not stepped. */
+/** Takes one time step, which ends at `limit` (s) at the latest. Limits at uneven distances of a few steps
+ * make uneven steps, in which a solid with sub-steps can gain energy (docs/theory.md, T-34b): give limits
+ * at equal distances, or at least 64 steps apart. SPHFSI_INPUT: `limit` is not later than the time.
+ * SPHFSI_GUARD: the state is not sound; the simulation can be read and freed, but not stepped. */
 SPHFSI_API enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit);
 
 /** Steps until the simulated time is exactly `time` (s). Errors as sphfsi_step. */

@@ -157,12 +157,22 @@ bool timestep_beyond(const struct simulation *s, double cfl)
     return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
 }
 
+/* The step that the bounds allow now, s: the last one may be short because an output followed it. INFINITY
+ * before the first step. */
+static double usual_step(const struct simulation *s)
+{
+    double step = s->state.dt > 0 ? s->state.dt_max : (double)INFINITY;
+    for (int k = 0; k < BOUND_COUNT && s->state.dt > 0; k++)
+        if (k != BOUND_output && k != BOUND_solid) step = min2(step, s->dt_bound[k]);
+    return step;
+}
+
 const char *timestep_shorter(const struct simulation *s, double *half)
 {
     static const enum bound of_cfl[] = {BOUND_force, BOUND_acoustic, BOUND_damper};
     const struct scene_numerics *const n = &s->scene->numerics;
-    /* Half of a bound must be below the last step. Before the first one nothing is known of it. */
-    const double much = s->state.dt > 0 ? 1.8 * s->state.dt : (double)INFINITY;
+    const double step = usual_step(s),
+                 much = 1.8 * step; /* half of a bound must be below the step */
     double fluid = (double)INFINITY;
     for (size_t k = 0; k < COUNT_OF(of_cfl); k++) fluid = min2(fluid, s->dt_bound[of_cfl[k]]);
     const bool fixed = n->fixed_step > 0, lone = !(s->effects & FX_FLUID);
@@ -175,7 +185,7 @@ const char *timestep_shorter(const struct simulation *s, double *half)
         *half = 0.5 * n->cfl;
         return "cfl";
     }
-    *half = 0.5 * (fixed ? n->fixed_step : s->state.dt);
+    *half = 0.5 * (fixed ? n->fixed_step : step);
     return "fixed_step";
 }
 

@@ -350,6 +350,7 @@ static void advises(const char *text, const char *what, const char *set, const c
 {
     rig_open(&rig, text, set, another, NULL);
     rig_steps(&rig, 1, 1);
+    rig_steps(&rig, 1, rig.sim.state.time + 1e-9); /* a short step before an output says nothing */
     simulation_refresh(&rig.sim);
     account_begin(&rig.sim);
     rig.sim.kind[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
