@@ -260,7 +260,8 @@ def impact_figure(report, sensors, curve):
     axes[0].set_ylabel(r"$p/(\rho g H)$")
     axes[2].legend(fontsize=7)
     return report.save(figure, "impact", "Pressures at the far wall, mean over 5 ms; the dashed "
-                                         "line is the measured peak")
+                                         "line is the measured peak, at 80 mm that of the "
+                                         "later wave")
 
 
 IMPACT = "impact peak at the lowest sensor within 25 % of the measured one, mean over 5 ms, {}"

@@ -222,6 +222,24 @@ def impact_of(limit):
 IMPACT = {"impulse": 1274, "before": 0.007, "after": 0.104, "peak": 18569}
 
 
+# Later peaks at 3, 30 and 80 mm over rho g H, t sqrt(g/H) of each: Lobovsky et al. 2014, H = 0.3 m, one run,
+# read from the curves that PySPH's examples/db_exp_data.py has.
+LATER = {"P1": (0.909, 5.97), "P3": (0.927, 5.95), "P4": (0.827, 5.99)}
+
+
+def measure_later_peaks(run):
+    p, H = run.table("probes.csv"), 0.3
+    t, rows = p["time_s"] * math.sqrt(G / H), []
+    for sensor, (peak, when) in LATER.items():
+        q = np.convolve(p[f"{sensor}_p_Pa"] / (1000 * G * H), np.ones(5) / 5, "same")  # 5 ms
+        late = (t > 5.2) & (t < t[-5])
+        rows += [(f"{sensor}: later peak, mean over 5 ms, % more than measured",
+                  100 * (float(q[late].max()) / peak - 1), 25),
+                 (f"{sensor}: time of the later peak, % late",
+                  100 * (float(t[late][np.argmax(q[late])]) / when - 1), None)]
+    return rows
+
+
 def measure_gate_impact(run):
     p = run.table("probes.csv")
     t, H = p["time_s"], 0.6
