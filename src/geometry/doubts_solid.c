@@ -78,10 +78,11 @@ static void warn_of_loose(const struct sampler *g, int body, enum hold hold)
                   "move it; give it a `clamp` if it is fixed",
                   place, b->common.name);
     else if (loaded && hold == LOOSE)
-        diag_warn(g->diag,
-                  "%s: [solid %s] has no clamp, and a [load] acts on it, so it is driven away; "
-                  "give it a `clamp`",
-                  place, b->common.name);
+        diag_warn(
+            g->diag,
+            "%s: [solid %s] has no clamp, and a [load] acts on it, so it is driven away unless "
+            "something stops it; give it a `clamp`",
+            place, b->common.name);
 }
 
 /* A body without a clamp moves away, which is seldom intended in a case with gravity or a load, unless it
