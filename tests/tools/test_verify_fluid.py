@@ -47,6 +47,20 @@ def test_a_travelling_wave():
     assert abs(fast - 0.5) < 1e-3 and abs(loss - 2) < 1e-3, (fast, loss)
 
 
+def test_runs_that_differ_in_round_off():
+    """Means with their scatter, and the worst run of what must not be."""
+    made = iter(((1, 0, 0.7, 2), (2, 3, 0.6, 1), (6, 1, 0.8, 0)))
+
+    def measure(_):
+        noise, inside, near, gap = next(made)
+        return [("noise", noise, 5), ("particles inside", inside, 0), ("nearest", near, None),
+                ("widest cavity", gap, 1)]
+    assert of.over(measure)([None] * 3) == [
+        ("noise, mean of 3", 3, 5), ("its standard deviation", math.sqrt(7), None),
+        ("particles inside, worst of 3", 3, 0), ("nearest, worst of 3", 0.6, None),
+        ("widest cavity, worst of 3", 2, 1)]
+
+
 def test_a_standing_wave():
     """Kinetic energy of a wave 1 % too fast whose amplitude loses 3 % a period."""
     k = 2 * math.pi / 0.9
