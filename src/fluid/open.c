@@ -415,35 +415,59 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k, struc
     return ERR_OK;
 }
 
-/* Distance of the last particle in the buffer column of i from the line. Particles from `fresh` on
- * are new. */
-static double last_of_column(const struct open *o, const struct particles *p, int64_t i,
-                             int64_t fresh, double dp)
+/* The strip of a buffer, one spacing wide along the normal, that a particle lies in, and its distance from
+ * the line. Every place on the line belongs to one strip, so fluid that returns adds none. */
+static int strip_of(const struct scene_open *b, const struct particles *p, int64_t i, double dp,
+                    double *in)
+{
+    double along;
+    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, in, &along);
+    return (int)floor(along / b->length * max2(1, round(b->length / dp)));
+}
+
+/* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are new. */
+static double last_of_strip(const struct open *o, const struct particles *p, int64_t i,
+                            int64_t fresh, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];
-    double last, own;
-    scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &last, &own);
+    double last, in;
+    const int own = strip_of(b, p, i, dp, &last);
     for (int64_t m = 0; m < o->n_members + p->n - fresh; m++) {
         const int64_t j = m < o->n_members ? o->member[m] : fresh + m - o->n_members;
-        double in, along;
-        if (p->open[j] != p->open[i]) continue;
-        scene_open_place(b, (const double[]){p->x[j], p->y[j]}, &in, &along);
-        if (fabs(along - own) < 0.5 * dp) last = min2(last, in);
+        if (p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own) last = min2(last, in);
     }
     return last;
 }
 
-/* T-54: behind a particle that enters, its column is filled to the depth of the buffer, each a
+/* T-54: behind a particle that enters, its strip is filled to the depth of the buffer, each a
  * spacing behind the last. Compressed fluid has smaller distances: the inflow is its density times
- * its velocity. */
-static enum err fill_column(struct open *o, const struct fluid_constants *k, struct particles *p,
-                            int64_t i, int64_t fresh, struct diag *d)
+ * its velocity. Above the level there is no water to follow one that had left over it. */
+static enum err fill_strip(struct open *o, const struct fluid_constants *k, struct particles *p,
+                           int64_t i, int64_t fresh, struct diag *d)
 {
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
     const double spacing = k->dp / (1 + p->dens[i]);
-    double in = last_of_column(o, p, i, fresh, k->dp) - spacing;
-    for (; in >= -o->boundary[p->open[i] - 1].depth; in -= spacing)
-        TRY(make_copy(o, k, p, i, in, d));
+    if (p->y[i] > b->level) return ERR_OK; /* NAN: none */
+    double in = last_of_strip(o, p, i, fresh, k->dp) - spacing;
+    for (; in >= -b->depth; in -= spacing) TRY(make_copy(o, k, p, i, in, d));
     return ERR_OK;
+}
+
+/* Whether a strip of the buffer into which fluid has come moves it out again: with a given velocity into the
+ * fluid it is full already, and two particles in one place would burst apart. */
+static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
+{
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    double in;
+    const int own = strip_of(b, p, i, dp, &in);
+    if (b->kind != OPEN_VELOCITY || p->y[i] > b->level) return false;
+    for (int64_t m = 0; m < o->n_members; m++) {
+        const int64_t j = o->member[m];
+        if (p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&
+            p->vx[j] * b->inward[0] + p->vy[j] * b->inward[1] > 0)
+            return true;
+    }
+    return false;
 }
 
 /* The boundary whose buffer contains fluid at x, from 1; 0: none. */
@@ -468,12 +492,14 @@ static bool stays(const struct open *o, const struct particles *p, int64_t i, do
     return in >= -b->depth - dp && along > 0 && along < b->length;
 }
 
-/* Removes the particles that have left their buffers. */
+/* Removes the particles that have left their buffers, and those that found no room in one. */
 static void end_particles(struct open *o, const struct fluid_constants *k, struct particles *p)
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < p->n; i++) {
-        if (p->open[i] && !stays(o, p, i, k->dp)) {
+        const bool crowded = p->open[i] < 0;
+        if (crowded) p->open[i] = -p->open[i];
+        if (crowded || (p->open[i] && !stays(o, p, i, k->dp))) {
             o->count[p->open[i] - 1][OPEN_LEFT]++;
             book_particle(o, k, p, i, -1);
             continue;
@@ -493,11 +519,12 @@ enum err open_exchange(struct open *o, const struct fluid_constants *k, struct p
         double in, along;
         if (p->open[i] == 0) {
             p->open[i] = buffer_at(o, x, k->dp);
+            if (p->open[i] && strip_is_full(o, p, i, k->dp)) p->open[i] = -p->open[i];
             continue;
         }
         scene_open_place(&o->boundary[p->open[i] - 1], x, &in, &along);
         if (in <= 0 || !stays(o, p, i, k->dp)) continue;
-        TRY(fill_column(o, k, p, i, n, d));
+        TRY(fill_strip(o, k, p, i, n, d));
         p->open[i] = 0;
     }
     end_particles(o, k, p);

@@ -3,7 +3,7 @@
  * particles treat them as fluid. With a given velocity they get their pressure from the fluid
  * across the line, with a given pressure their velocity. A buffer particle that crosses the line
  * becomes fluid, and a copy of it starts at the far end of the buffer. Fluid that crosses the line
- * joins the buffer, and is removed at its far end. */
+ * joins the buffer, and is removed at its far end; at once if the buffer brings fluid in there. */
 #ifndef SPHFSI_FLUID_OPEN_H
 #define SPHFSI_FLUID_OPEN_H
 

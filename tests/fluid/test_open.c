@@ -264,6 +264,26 @@ static void test_a_channel_with_a_level(void)
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
 }
 
+/* A surge that runs back over the inflow adds nothing to the discharge that is given. */
+static void test_a_surge_over_an_inflow(void)
+{
+    rig_open(&rig,
+             "dp = 0.025\nend_time = 10\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 1, 0.2\nsound_speed = 20\nsurface = 0.2\n"
+             "artificial_viscosity = 0.02\n[wall bed]\nshape = box -0.2, -0.1, 1.2, 0\n"
+             "[inflow in]\nfrom = 0, 0.4\nto = 0, 0\nspeed = 0.6*min(t, 1)\nlevel = 0.2\n"
+             "[outflow out]\nfrom = 1, 0\nto = 1, 0.4\nlevel = 0.2\n"
+             "[domain]\nlower = -0.4, -0.2\nupper = 1.4, 0.8\n",
+             NULL);
+    rig_run(&rig, 3);
+    const int64_t *const count = rig.sim.open.count[0];
+    const int64_t before = count[OPEN_ENTERED] - count[OPEN_LEFT];
+    rig_run(&rig, 4);
+    const double through =
+        square(0.025) * (double)(count[OPEN_ENTERED] - count[OPEN_LEFT] - before);
+    assert_near(0.05 * 0.12, 0.12, through, "discharge");
+}
+
 /* Where there is no place left the run stops and says which boundary fills it. */
 static void test_no_place_left(void)
 {
@@ -347,6 +367,7 @@ int main(void)
     RUN_TEST(test_sound_leaves);
     RUN_TEST(test_a_level);
     RUN_TEST(test_a_channel_with_a_level);
+    RUN_TEST(test_a_surge_over_an_inflow);
     RUN_TEST(test_no_place_left);
     RUN_TEST(test_members_are_checked);
     RUN_TEST(test_refused);
