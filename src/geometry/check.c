@@ -84,11 +84,19 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
     }
 }
 
-/* The area of a solid where no clamp holds it; the whole if clamps cover all of its particles. */
+/* Whether clamps hold a part of the solid: not all of it, nor a hinge, whose area is not that of its
+ * particles. */
+static bool clamp_takes_part(const struct region *region)
+{
+    enum { HINGE = 4 }; /* particles round a point */
+    return region->n_clamped > HINGE && region->n_clamped < region->n;
+}
+
+/* The area of a solid where no clamp holds it; else the whole. */
 static enum err free_area(struct sampler *g, const struct region *region, double *area)
 {
     const struct outlines *const minus = &region->minus, *const clamps = &region->clamps;
-    const bool part = region->n_clamped > 0 && region->n_clamped < region->n;
+    const bool part = clamp_takes_part(region);
     struct outlines cut = {.n = minus->n + (part ? clamps->n : 0)};
     cut.item = arena_alloc(&g->temp, (size_t)cut.n, sizeof *cut.item, "shapes", g->diag);
     if (!cut.item) return ERR_MEMORY;
@@ -104,7 +112,7 @@ static enum err check_area(struct sampler *g, const struct region *region)
 {
     static const double tolerance = 0.005;
     const struct scene_lattice *const l = &region->lattice;
-    const bool part = region->n_clamped > 0 && region->n_clamped < region->n;
+    const bool part = clamp_takes_part(region);
     const int64_t n = region->n - (part ? region->n_clamped : 0);
     double area;
     TRY(free_area(g, region, &area));

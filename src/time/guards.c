@@ -64,9 +64,9 @@ static bool fluid_sound(struct simulation *s)
 
 /* Molteni's diffusion wears off by the excess density of a front's first particle over the others',
  * until the particle lies in the bed that the front runs over. */
-#define STRAY                                                                                      \
-    "probably because fluid particles entered a wall or solid earlier in the run; wall_repulsion " \
-    "= 0.1 or diffusion_form = antuono prevents that"
+#define STRAY                                                                                \
+    "probably because fluid particles entered a wall or solid earlier in the run; a larger " \
+    "wall_repulsion or diffusion_form = antuono prevents that"
 
 static enum err complain_of_fluid(const struct simulation *s, struct finding f, struct diag *d)
 {
@@ -356,8 +356,13 @@ static void text_of_less(const struct simulation *s, const struct gain *g, char 
 
 static const char *remedy_of(const struct simulation *s, const struct gain *g)
 {
-    if (g->term == TERM_ALL)
-        return s->effects & FX_CONTACT && s->contact.near ? " or a larger gap in [contact]" : "";
+    if (g->term == TERM_ALL && s->effects & FX_CONTACT && s->contact.near)
+        return " or a larger gap in [contact]";
+    /* Without weight nothing holds fluid at a wall that moves back. */
+    if (g->term == TERM_ALL && !(s->effects & FX_GRAVITY) &&
+        s->scene->numerics.suction == SUCTION_OFF)
+        return " or numerics.suction = on";
+    if (g->term == TERM_ALL) return "";
     if (g->term == TERM_RESTARTS) return " or a larger verlet_reset";
     if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
     if (!(s->effects & FX_COUPLING)) return "";
@@ -466,15 +471,17 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, the first "
-            "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; wall_repulsion = 0.1, a thickness of "
+            "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; a larger wall_repulsion, a thickness "
+            "of "
             "three particles or a higher sound_speed may help",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], elementary_hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;
     s->guard.warned_crossing = true;
-    diag_warn(d,
-              "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
-              "run stops when more than 1 %% of the fluid has; wall_repulsion = 0.1 keeps it out",
-              s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
+    diag_warn(
+        d,
+        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
+        "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
+        s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
     return ERR_OK;
 }

@@ -25,6 +25,20 @@ static void test_a_sound_tank_gets_no_warning(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+/* Four particles about a point clamp the bar; one is a hinge, and its area is no doubt of either. */
+static void test_a_hinge_is_one_particle(void)
+{
+#define BAR "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST "clamp = circle 0.01, 0.09, "
+    read(HEAD BAR "0.71*dp\n");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "holds 4 particles of [solid bar]"), warnings);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "clamp = circle 0.0075, 0.0875, 0.6*dp"),
+                                 warnings);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "its area"), warnings);
+    read(HEAD "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST
+              "clamp = circle 0.0075, 0.0875, 0.6*dp\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
+}
+
 static void test_a_tank_without_a_floor(void)
 {
     /* All but the nine of each outer column that stand above the foot of a side. */
@@ -439,6 +453,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_sound_tank_gets_no_warning);
+    RUN_TEST(test_a_hinge_is_one_particle);
     RUN_TEST(test_a_tank_without_a_floor);
     RUN_TEST(test_surface_against_gravity_and_below_the_water);
     RUN_TEST(test_a_surface_above_the_water);

@@ -344,6 +344,15 @@ static void test_a_gain_between_bodies(void)
                                  : "; a smaller dp may help"),
             warning);
     }
+    rig.sim.guard.warned_energy = false;
+    rig.sim.effects &= ~(effect_set)FX_GRAVITY;
+    rig.sim.gain = (struct gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
+    rig.sim.contact.near = false;
+    rig.sim.checked = true;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning,
+                                        "; a smaller dp or numerics.suction = on may help"),
+                                 warning);
 }
 
 static void advises(const char *text, const char *what, const char *set, const char *another)
