@@ -185,8 +185,8 @@ def report(rows):
                for name in ("bends", "buckles", "is crushed")}
     text = (f"![Stability map](img/stability_map.png)\n\n{drawn}"
             f"Of {ran} plates **{verdicts.count('stopped')} were stopped, and {len(gains)} gained "
-            f"more than {100 * LIMIT:g} %** of the largest\nenergy in play by the account (theory.md, T-46): "
-            "kinetic, elastic, compression, and potential\nenergy above its minimum. "
+            f"more than {100 * LIMIT:g} %** of the largest\nenergy in play. This is kinetic, elastic and "
+            "compression energy, and potential energy above its minimum\n(theory.md, T-46). "
             f"{early} more gained {100 * LIMIT:g} % of what was in play until then, "
             "at the start of the\nrun, where a sudden load moves a light plate "
             "and little energy is in play.\n")
