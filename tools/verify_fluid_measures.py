@@ -205,14 +205,14 @@ def travel_of(judged):
 def over(measure):
     """For runs that differ in round-off alone: of each figure the mean and its standard deviation over the
     runs, and of what must not be the worst run."""
-    worst = {"particles": max, "nearest": min, "widest": max}
+    worst = {"particles": np.max, "nearest": np.min, "widest": np.max}
 
     def measure_all(runs):
         rows, n = [], len(runs)
         for figures in zip(*(measure(run) for run in runs)):
             (what, _, limit), values = figures[0], [value for _, value, _ in figures]
             if what.split()[0] in worst:
-                rows.append((f"{what}, worst of {n}", worst[what.split()[0]](values), limit))
+                rows.append((f"{what}, worst of {n}", float(worst[what.split()[0]](values)), limit))
             else:
                 rows += [(f"{what}, mean of {n}", float(np.mean(values)), limit),
                          ("its standard deviation", float(np.std(values, ddof=1)), None)]

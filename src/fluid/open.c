@@ -391,7 +391,21 @@ bool open_due(const struct open *o, const struct particles *p, double dp)
     return due;
 }
 
-/* A copy of a particle that enters, at `in` in front of the line. */
+/* Width of the strips of a buffer, one spacing or nearly so. */
+static double strip_width(const struct scene_open *b, double dp)
+{
+    return b->length / max2(1, round(b->length / dp));
+}
+
+/* From a place on the line to the middle of its strip; 0 but for rounding. */
+static double aside_of(const struct scene_open *b, double along, double dp)
+{
+    const double width = strip_width(b, dp);
+    const double aside = (floor(along / width) + 0.5) * width - along;
+    return fabs(aside) > 1e-6 * dp ? aside : 0;
+}
+
+/* A copy of a particle that enters, in the middle of its strip, at `in` in front of the line. */
 static enum err make_copy(struct open *o, const struct fluid_constants *k, struct particles *p,
                           int64_t i, double in, struct diag *d)
 {
@@ -407,9 +421,10 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k, struc
     double place, along;
     particles_copy(p, i, to);
     scene_open_place(b, (const double[]){p->x[i], p->y[i]}, &place, &along);
+    const double aside = aside_of(b, along, k->dp);
     p->id[to] = o->next_id++;
-    p->x[to] += (in - place) * b->inward[0];
-    p->y[to] += (in - place) * b->inward[1];
+    p->x[to] += (in - place) * b->inward[0] + aside * b->along[0];
+    p->y[to] += (in - place) * b->inward[1] + aside * b->along[1];
     o->count[number][OPEN_ENTERED]++;
     book_particle(o, k, p, to, 1);
     return ERR_OK;
@@ -422,7 +437,7 @@ static int strip_of(const struct scene_open *b, const struct particles *p, int64
 {
     double along;
     scene_open_place(b, (const double[]){p->x[i], p->y[i]}, in, &along);
-    return (int)floor(along / b->length * max2(1, round(b->length / dp)));
+    return (int)floor(along / strip_width(b, dp));
 }
 
 /* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are new. */
@@ -453,14 +468,15 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k, stru
     return ERR_OK;
 }
 
-/* Whether a strip of the buffer into which fluid has come moves it out again: with a given velocity into the
+/* Whether a strip of the buffer into which fluid has come has no room for it: with a given velocity into the
  * fluid it is full already, and two particles in one place would burst apart. */
 static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];
     double in;
     const int own = strip_of(b, p, i, dp, &in);
-    if (b->kind != OPEN_VELOCITY || p->y[i] > b->level) return false;
+    if (b->kind != OPEN_VELOCITY) return false;
+    if (p->y[i] > b->level) return true; /* it runs off over the inflow */
     for (int64_t m = 0; m < o->n_members; m++) {
         const int64_t j = o->member[m];
         if (p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&

@@ -88,20 +88,22 @@ static void warn_edges(struct sampler *g, const struct region *region, int shape
  * particles. */
 static bool clamp_takes_part(const struct region *region)
 {
-    enum { HINGE = 4 }; /* particles round a point */
-    return region->n_clamped > HINGE && region->n_clamped < region->n;
+    return region->n_clamped > region->n_hinged && region->n_clamped < region->n;
 }
 
 /* The area of a solid where no clamp holds it; else the whole. */
 static enum err free_area(struct sampler *g, const struct region *region, double *area)
 {
+    const struct shape_list *const list = &g->scene->solid[region->body].clamp;
     const struct outlines *const minus = &region->minus, *const clamps = &region->clamps;
     const bool part = clamp_takes_part(region);
-    struct outlines cut = {.n = minus->n + (part ? clamps->n : 0)};
-    cut.item = arena_alloc(&g->temp, (size_t)cut.n, sizeof *cut.item, "shapes", g->diag);
+    struct outlines cut = {.item = arena_alloc(&g->temp, (size_t)(minus->n + clamps->n),
+                                               sizeof *cut.item, "shapes", g->diag)};
     if (!cut.item) return ERR_MEMORY;
-    for (int k = 0; k < cut.n; k++)
-        cut.item[k] = k < minus->n ? minus->item[k] : clamps->item[k - minus->n];
+    for (int k = 0; k < minus->n; k++) cut.item[cut.n++] = minus->item[k];
+    for (int k = 0; part && k < clamps->n; k++)
+        if (!geometry_is_hinge(&list->item[clamps->shape[k]], region->lattice.dp))
+            cut.item[cut.n++] = clamps->item[k];
     return outlines_area(&region->add, &cut, 0.25 * region->lattice.spacing[1], area, &g->temp,
                          g->diag);
 }
@@ -113,7 +115,7 @@ static enum err check_area(struct sampler *g, const struct region *region)
     static const double tolerance = 0.005;
     const struct scene_lattice *const l = &region->lattice;
     const bool part = clamp_takes_part(region);
-    const int64_t n = region->n - (part ? region->n_clamped : 0);
+    const int64_t n = region->n - (part ? region->n_clamped - region->n_hinged : 0);
     double area;
     TRY(free_area(g, region, &area));
     const double ratio = (double)n * square(l->dp) / area, stiff = ratio * square(ratio);

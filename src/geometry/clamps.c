@@ -17,6 +17,11 @@ static enum err fail_empty(struct sampler *g, const struct region *region, int c
         clamp + 1, region->name);
 }
 
+bool geometry_is_hinge(const struct shape *clamp, double dp)
+{
+    return clamp->kind == SHAPE_CIRCLE && clamp->size <= 1.5 * dp;
+}
+
 /* A small circle is meant as a hinge, but two particles that are held also hold the angle. `nearest` is the
  * particle nearest to its centre. */
 static void warn_of_hinge(const struct sampler *g, const struct region *region,
@@ -24,7 +29,7 @@ static void warn_of_hinge(const struct sampler *g, const struct region *region,
 {
     const double dp = region->lattice.dp;
     char place[LOCATION_TEXT];
-    if (clamp->kind != SHAPE_CIRCLE || clamp->size > 1.5 * dp || held < 2) return;
+    if (!geometry_is_hinge(clamp, dp) || held < 2) return;
     scene_location(g->scene, clamp->line, place);
     diag_warn(g->diag,
               "%s: this small clamp holds %lld particles of [solid %s], so the body cannot turn "
@@ -53,6 +58,7 @@ enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, 
             const int shape = o->shape[c];
             const double *const centre = clamps->item[shape].pt[0];
             p->clamped[k] = 1;
+            region->n_hinged += geometry_is_hinge(&clamps->item[shape], region->lattice.dp);
             if (held[shape]++ == 0 || elementary_hypot(p->x[k] - centre[0], p->y[k] - centre[1]) <
                                           elementary_hypot(nearest[shape][0] - centre[0],
                                                            nearest[shape][1] - centre[1])) {
@@ -64,7 +70,7 @@ enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, 
     }
     for (int c = 0; c < clamps->n; c++) {
         if (!held[c]) TRY(geometry_go_on(g, fail_empty(g, region, c)));
-        warn_of_hinge(g, region, &clamps->item[c], held[c], nearest[c]);
+        if (clamps->n == 1) warn_of_hinge(g, region, &clamps->item[c], held[c], nearest[c]);
     }
     return ERR_OK;
 }

@@ -126,6 +126,18 @@ static int free_ends(const struct outlines *body, const struct outlines *minus,
     return count;
 }
 
+/* A hinge takes the particle that is there; it is no end that a lattice could fit. */
+static void omit_hinges(struct outlines *clamp, const struct shape_list *list, double dp)
+{
+    int kept = 0;
+    for (int k = 0; k < clamp->n; k++) {
+        if (geometry_is_hinge(&list->item[clamp->shape[k]], dp)) continue;
+        clamp->item[kept] = clamp->item[k];
+        clamp->shape[kept++] = clamp->shape[k];
+    }
+    clamp->n = kept;
+}
+
 /* Merges crossings that are close together into edges, each at the mean position. Omits edges
  * shorter than a spacing, curved or slanted ends of a body, and clamps spread over more than two
  * spacings. On any lattice, the rows of these end on average where they are drawn. */
@@ -182,6 +194,7 @@ static enum err region_crossings(struct sampler *g, const struct region *region,
     if (region->kind == KIND_SOLID && !whole) {
         TRY(outlines_of(&clamp, g->scene, &g->scene->solid[region->body].clamp, &g->temp, g->diag));
         TRY(outlines_turn(&clamp, angle, &g->temp, g->diag));
+        omit_hinges(&clamp, &g->scene->solid[region->body].clamp, dp);
     }
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int k = 0; k < body.n; k++) {

@@ -25,6 +25,7 @@ struct region {
     double low[2], high[2];     /* bounding box of the shapes */
     int64_t first[2], count[2]; /* lattice points within the box */
     int64_t n, n_clamped;       /* points inside, and those that a clamp holds */
+    int64_t n_hinged;           /* of the latter those in a hinge */
     struct outlines clamps;     /* of a solid */
     bool *layered,
         has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
@@ -71,6 +72,8 @@ enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
 
 /* Marks the particles of a solid, from index `from` on, that its clamps hold. */
+/* Whether a clamp is so small a circle that it is meant as a hinge. */
+bool geometry_is_hinge(const struct shape *clamp, double dp);
 enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
     SPHFSI_CHECKED;
 

@@ -471,9 +471,8 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
         return diag_fail(
             d, ERR_GUARD,
             "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, the first "
-            "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; a larger wall_repulsion, a thickness "
-            "of "
-            "three particles or a higher sound_speed may help",
+            "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; a larger wall_repulsion, a "
+            "thickness of three particles or a higher sound_speed may help",
             s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], elementary_hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;

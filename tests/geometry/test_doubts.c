@@ -34,6 +34,10 @@ static void test_a_hinge_is_one_particle(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warnings, "clamp = circle 0.0075, 0.0875, 0.6*dp"),
                                  warnings);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "its area"), warnings);
+    /* Beside another clamp it is none, and does not add to the part that the other holds. */
+    read(HEAD "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST
+              "clamp = box 0, 0, 0.02, 0.02\nclamp = circle 0.01, 0.09, 0.71*dp\n");
+    TEST_ASSERT_EQUAL_STRING("", warnings);
     read(HEAD "[solid bar]\nshape = box 0, 0, 0.02, 0.1\n" POST
               "clamp = circle 0.0075, 0.0875, 0.6*dp\n");
     TEST_ASSERT_EQUAL_STRING("", warnings);
