@@ -120,8 +120,8 @@ def grid_lines(program):
         for name in TERMS:
             worst.setdefault(name, []).append(gains[name] or 0)
     middle = {name: sorted(worst[name])[len(worst[name]) // 2] for name in TERMS}
-    typical = ", ".join(f"{name} {percent(middle[name])} %, at most {percent(max(worst[name]))} %"
-                        for name in TERMS)
+    typical = [f"{name}: {percent(middle[name])} %, at most {percent(max(worst[name]))} %"
+               for name in TERMS]
     return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they bend by more",
             "than a tenth of their length, buckle or are crushed (`statics` in `tools/stability_map.py`).",
             "Under such strains the law `paper` gains energy, because it has no potential; `svk` and",
@@ -130,7 +130,7 @@ def grid_lines(program):
             "than 1 % of the energy available until then by a term of the account. The largest gain over the",
             "largest available energy of the run:",
             "",
-            f"Median and largest gain by term: {typical}.", "",
+            "Median and largest gain by term:", "", *(f"- {term}" for term in typical), "",
             "Those above 1 %:", "", *(f"- {text}" for text in where), "",
             "These gain by the law `paper`; with `law = svk` all terms gain less than half of 1 %, with any",
             "step ([theory.md](theory.md), after T-46)."]

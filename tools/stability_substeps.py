@@ -131,8 +131,8 @@ three runs that differ in round-off alone, with their standard deviation; of the
     text += (f"\n{finished} of {len(rows)} finish. The hourglass energy is {min(ratios):.2f} to "
              f"{max(ratios):.2f} times that of a single rate.\n")
     text += """
-By how much the motion of M1 in the article's cases changes (root mean square, in um): with a single rate,
-with half of dp, and with a body of 1000.001 instead of 1000 kg/m^3. Water has 1000 kg/m^3.
+Changes of the motion of M1 in the article's cases, root mean square, in um. The last columns are a single
+rate, half of dp, and a body of 1000.001 instead of 1000 kg/m^3, which is the density of water.
 
 | case | dp | integrator | until | largest displacement | single rate | half of dp | density |
 |---|---|---|---|---|---|---|---|

@@ -199,7 +199,9 @@ CASE = """## {title}
 
 {table}
 
-Pareto front, from cheap to exact: {front}.
+Pareto front, from cheap to exact:
+
+{front}
 """
 
 
@@ -207,7 +209,7 @@ def case_text(study, case):
     entry = study.cases[case]
     sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
                for e in entry["error"] if e.get("source")]
-    front = "; ".join(f"{study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
+    front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
     return CASE.format(title=entry.get("title", case), words=entry.get("words", ""), case=case,
                        error=main_error(entry), against=against(entry["error"][0]),
                        references="\n".join(sources),

@@ -391,7 +391,7 @@ bool open_due(const struct open *o, const struct particles *p, double dp)
     return due;
 }
 
-/* Width of the strips of a buffer, one spacing or nearly so. */
+/* Of the strips of a buffer: one spacing or nearly so. */
 static double strip_width(const struct scene_open *b, double dp)
 {
     return b->length / max2(1, round(b->length / dp));
@@ -400,12 +400,11 @@ static double strip_width(const struct scene_open *b, double dp)
 /* From a place on the line to the middle of its strip; 0 but for rounding. */
 static double aside_of(const struct scene_open *b, double along, double dp)
 {
-    const double width = strip_width(b, dp);
-    const double aside = (floor(along / width) + 0.5) * width - along;
+    const double width = strip_width(b, dp), aside = (floor(along / width) + 0.5) * width - along;
     return fabs(aside) > 1e-6 * dp ? aside : 0;
 }
 
-/* A copy of a particle that enters, in the middle of its strip, at `in` in front of the line. */
+/* A copy of a particle that enters, in the middle of its strip, at `in` before the line. */
 static enum err make_copy(struct open *o, const struct fluid_constants *k, struct particles *p,
                           int64_t i, double in, struct diag *d)
 {
@@ -454,9 +453,8 @@ static double last_of_strip(const struct open *o, const struct particles *p, int
     return last;
 }
 
-/* T-54: behind a particle that enters, its strip is filled to the depth of the buffer, each a
- * spacing behind the last. Compressed fluid has smaller distances: the inflow is its density times
- * its velocity. Above the level there is no water to follow one that had left over it. */
+/* T-54: fills the strip behind a particle that enters, but not above the level. Compressed
+ * fluid has smaller distances: the inflow is its density times its velocity. */
 static enum err fill_strip(struct open *o, const struct fluid_constants *k, struct particles *p,
                            int64_t i, int64_t fresh, struct diag *d)
 {
@@ -468,22 +466,20 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k, stru
     return ERR_OK;
 }
 
-/* Whether a strip of the buffer into which fluid has come has no room for it: with a given velocity into the
+/* Whether a strip of the buffer into which fluid has come has no space for it: with a given velocity into the
  * fluid it is full already, and two particles in one place would burst apart. */
 static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];
     double in;
     const int own = strip_of(b, p, i, dp, &in);
-    if (b->kind != OPEN_VELOCITY) return false;
-    if (p->y[i] > b->level) return true; /* it runs off over the inflow */
-    for (int64_t m = 0; m < o->n_members; m++) {
+    bool full = p->y[i] > b->level; /* it runs off over the inflow; NAN: none */
+    for (int64_t m = 0; m < o->n_members && !full; m++) {
         const int64_t j = o->member[m];
-        if (p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&
-            p->vx[j] * b->inward[0] + p->vy[j] * b->inward[1] > 0)
-            return true;
+        full = p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&
+               p->vx[j] * b->inward[0] + p->vy[j] * b->inward[1] > 0;
     }
-    return false;
+    return full && b->kind == OPEN_VELOCITY;
 }
 
 /* The boundary whose buffer contains fluid at x, from 1; 0: none. */
@@ -508,7 +504,7 @@ static bool stays(const struct open *o, const struct particles *p, int64_t i, do
     return in >= -b->depth - dp && along > 0 && along < b->length;
 }
 
-/* Removes the particles that have left their buffers, and those that found no room in one. */
+/* Removes the particles that have left their buffers, and those that found no space in one. */
 static void end_particles(struct open *o, const struct fluid_constants *k, struct particles *p)
 {
     int64_t kept = 0;
@@ -526,25 +522,40 @@ static void end_particles(struct open *o, const struct fluid_constants *k, struc
     p->n = kept;
 }
 
+/* Marks fluid that is to be removed. The given velocity is then not all that passes the line. */
+static void turn_away(struct open *o, struct particles *p, int64_t i, struct diag *d)
+{
+    const struct scene_open *const b = &o->boundary[p->open[i] - 1];
+    if (!o->warned)
+        diag_warn(
+            d,
+            "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less flows in "
+            "than is given; a higher `level`, a slower start or a further line may help",
+            b->inflow ? "inflow" : "outflow", b->common->name, p->x[i], p->y[i]);
+    o->warned = true;
+    p->open[i] = -p->open[i];
+}
+
 enum err open_exchange(struct open *o, const struct fluid_constants *k, struct particles *p,
                        struct diag *d)
 {
     const int64_t n = p->n; /* copies follow behind */
-    for (int64_t i = 0; i < n; i++) {
+    enum err e = ERR_OK;
+    for (int64_t i = 0; i < n && !e; i++) {
         const double x[2] = {p->x[i], p->y[i]};
         double in, along;
         if (p->open[i] == 0) {
             p->open[i] = buffer_at(o, x, k->dp);
-            if (p->open[i] && strip_is_full(o, p, i, k->dp)) p->open[i] = -p->open[i];
+            if (p->open[i] && strip_is_full(o, p, i, k->dp)) turn_away(o, p, i, d);
             continue;
         }
         scene_open_place(&o->boundary[p->open[i] - 1], x, &in, &along);
         if (in <= 0 || !stays(o, p, i, k->dp)) continue;
-        TRY(fill_strip(o, k, p, i, n, d));
+        e = fill_strip(o, k, p, i, n, d);
         p->open[i] = 0;
     }
     end_particles(o, k, p);
-    return ERR_OK;
+    return e;
 }
 
 enum err open_list(struct open *o, const struct particles *p, struct diag *d)

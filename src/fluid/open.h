@@ -41,6 +41,7 @@ struct open {
     int64_t next_id;
     struct open_rate *rate;
     int64_t n_members, capacity;
+    bool warned;                            /* of fluid that ran back and is removed */
     int32_t *member;                        /* particles of all buffers, in the order of memory */
     double *mirror_p, *mirror_u, *mirror_v; /* [n_members]: the fluid across the line */
     double *flow;                           /* along a line, m/s */

@@ -92,6 +92,7 @@ static void test_a_uniform_stream_passes(void)
         assert_near(1e-3, 0, p->dens[i], "density");
     }
     TEST_ASSERT_TRUE(rig.sim.open.count[0][OPEN_ENTERED] >= 390);
+    TEST_ASSERT_FALSE(rig.sim.open.warned);
     assert_near(3, 0, simulation_ledger(&rig.sim).dissipated, "energy lost of 500 J/m that pass");
 }
 
@@ -282,6 +283,22 @@ static void test_a_surge_over_an_inflow(void)
     const double through =
         square(0.025) * (double)(count[OPEN_ENTERED] - count[OPEN_LEFT] - before);
     assert_near(0.05 * 0.12, 0.12, through, "discharge");
+    TEST_ASSERT_TRUE(rig.sim.open.warned);
+}
+
+/* Water that stands above the level of an inflow runs off over it; it does not pile up behind the line. */
+static void test_water_above_the_level_of_an_inflow(void)
+{
+    rig_open(&rig,
+             "dp = 0.025\nend_time = 10\ngravity = 0, -9.81\n"
+             "[fluid w]\nshape = box 0, 0, 1.5, 0.2\nsound_speed = 20\nsurface = 0.2\n"
+             "artificial_viscosity = 0.02\n[wall bed]\nshape = box -0.2, -0.1, 1.7, 0\n"
+             "[inflow in]\nfrom = 0, 0.6\nto = 0, 0\nspeed = 0.3*min(t/0.5, 1)\nlevel = 0.2\n"
+             "[outflow out]\nfrom = 1.5, 0\nto = 1.5, 0.6\nlevel = 0.35\n"
+             "[domain]\nlower = -0.4, -0.2\nupper = 1.9, 0.8\n",
+             "scheme=standard", NULL);
+    rig_run(&rig, 2.5);
+    assert_at_most(0.1, rig.sim.state.dens_high, "compression");
 }
 
 /* Where there is no place left the run stops and says which boundary fills it. */
@@ -368,6 +385,7 @@ int main(void)
     RUN_TEST(test_a_level);
     RUN_TEST(test_a_channel_with_a_level);
     RUN_TEST(test_a_surge_over_an_inflow);
+    RUN_TEST(test_water_above_the_level_of_an_inflow);
     RUN_TEST(test_no_place_left);
     RUN_TEST(test_members_are_checked);
     RUN_TEST(test_refused);
