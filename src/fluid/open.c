@@ -8,9 +8,8 @@
 
 #include <math.h>
 
-/* Distance from the line in spacings: fluid this far behind the line joins the buffer, and a buffer
- * particle this far in front of it is relabelled without delay. Fluid that oscillates about the
- * line by less creates no copies. */
+/* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this far in front
+ * of it is relabelled without delay. Fluid that oscillates about the line by less creates no copies. */
 #define BAND 0.5
 
 int64_t open_places(const struct scene *s)
@@ -466,17 +465,18 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k, stru
     return ERR_OK;
 }
 
-/* Whether a strip of the buffer into which fluid has come has no space for it: with a given velocity into the
- * fluid it is full already, and two particles in one place would burst apart. */
+/* Whether the buffer has no space for fluid that has come in: above its level, or where a buffer particle
+ * that a given velocity drives against it is close. Two particles in one place would burst apart. */
 static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];
-    double in;
-    const int own = strip_of(b, p, i, dp, &in);
+    double place, in;
+    const int own = strip_of(b, p, i, dp, &place);
     bool full = p->y[i] > b->level; /* it runs off over the inflow; NAN: none */
     for (int64_t m = 0; m < o->n_members && !full; m++) {
         const int64_t j = o->member[m];
         full = p->open[j] == p->open[i] && strip_of(b, p, j, dp, &in) == own &&
+               fabs(in - place) < BAND * dp &&
                p->vx[j] * b->inward[0] + p->vy[j] * b->inward[1] > 0;
     }
     return full && b->kind == OPEN_VELOCITY;
@@ -529,8 +529,8 @@ static void turn_away(struct open *o, struct particles *p, int64_t i, struct dia
     if (!o->warned)
         diag_warn(
             d,
-            "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less flows in "
-            "than is given; a higher `level`, a slower start or a further line may help",
+            "[%s %s] fluid runs back over the line at (%.4g, %.4g) m and is removed: less "
+            "flows in than is given; a higher `level`, a slower start or a further line may help",
             b->inflow ? "inflow" : "outflow", b->common->name, p->x[i], p->y[i]);
     o->warned = true;
     p->open[i] = -p->open[i];
