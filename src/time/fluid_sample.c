@@ -12,6 +12,8 @@
 /* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1
 
+static const double at_rest[2];
+
 /* Called for particle i of a kind at distance r from the sampled point, within reach. */
 typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
 
@@ -51,20 +53,34 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
     each_within(s, kind, x, y, KERNEL_REACH * s->fluid.k.h, visit, sums);
 }
 
+/* The sums of a sample, its place, and the acceleration of the surface there. */
+struct sampling {
+    struct sample sum;
+    double x, y;
+    const double *acceleration;
+};
+
+/* The pressure is that of T-10: the fluid near a wall is on one side of a point of it. */
 static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i, double r,
                           void *sums)
 {
-    struct sample *const sum = sums;
+    struct sampling *const at = sums;
     const struct particles *const p = &s->kind[kind];
-    const double w = kernel_w(r, s->fluid.k.h) * square(s->scene->top.dp);
+    const struct fluid_constants *const k = &s->fluid.k;
+    const double w = kernel_w(r, k->h) * square(s->scene->top.dp);
     if (kind != KIND_FLUID) {
-        sum->occupied += w;
+        at->sum.occupied += w;
         return;
     }
-    sum->fill += w;
-    sum->pressure += w * eos_pressure(p->dens[i], s->fluid.k.rho0, s->fluid.k.c0);
-    sum->vx += w * p->vx[i];
-    sum->vy += w * p->vy[i];
+    const double dx = cells_minimum_image(&s->cells, 0, at->x - p->x[i]);
+    const double dy = cells_minimum_image(&s->cells, 1, at->y - p->y[i]);
+    const double lift =
+        (k->gravity[0] - at->acceleration[0]) * dx + (k->gravity[1] - at->acceleration[1]) * dy;
+    at->sum.fill += w;
+    at->sum.pressure +=
+        w * (eos_pressure(p->dens[i], k->rho0, k->c0) + k->rho0 * (1 + p->dens[i]) * lift);
+    at->sum.vx += w * p->vx[i];
+    at->sum.vy += w * p->vy[i];
 }
 
 static void count_near(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums)
@@ -134,29 +150,31 @@ void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIO
     }
 }
 
-struct sample simulation_sample(const struct simulation *s, double x, double y)
+struct sample simulation_sample(const struct simulation *s, double x, double y,
+                                const double acceleration[2])
 {
-    struct sample sum = {0};
-    if (!(s->effects & FX_FLUID)) return sum;
-    each_near(s, KIND_FLUID, x, y, add_to_sample, &sum);
-    if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, add_to_sample, &sum);
-    if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, add_to_sample, &sum);
-    const double mean = sum.fill > DRY ? 1 / sum.fill : 0;
-    sum.pressure *= mean;
-    sum.vx *= mean;
-    sum.vy *= mean;
-    return sum;
+    struct sampling at = {.x = x, .y = y, .acceleration = acceleration};
+    struct sample *const sum = &at.sum;
+    if (!(s->effects & FX_FLUID)) return *sum;
+    each_near(s, KIND_FLUID, x, y, add_to_sample, &at);
+    if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, add_to_sample, &at);
+    if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, add_to_sample, &at);
+    const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
+    sum->pressure *= mean;
+    sum->vx *= mean;
+    sum->vy *= mean;
+    return *sum;
 }
 
 double simulation_pressure_at(const struct simulation *s, double x, double y)
 {
-    return simulation_sample(s, x, y).pressure;
+    return simulation_sample(s, x, y, at_rest).pressure;
 }
 
 /* The water's volume fraction of the space outside walls and structures. */
 static double wetness(const struct simulation *s, double x, double y)
 {
-    const struct sample at = simulation_sample(s, x, y);
+    const struct sample at = simulation_sample(s, x, y, at_rest);
     return at.fill / max2(1 - at.occupied, 0.05);
 }
 
