@@ -62,7 +62,9 @@ RUNS = [
        of.over(of.impact_of(limit))) for ratio, limit in ((40, None), (60, 0.05))],
     ("dam_break_impact", "impact on a wall, measured one, H/dp = 60", skins("end_time=1.25 s"),
      of.over(of.measure_later_peaks)),
-    ("fluid_gate_impact", "dam break behind a gate, H/dp = 60", skins(), of.over(of.measure_gate_impact)),
+    *[("fluid_gate_impact", f"dam break behind a gate, H/dp = {ratio}",
+       skins(f"constants.ratio={ratio}")[:runs], of.over(of.measure_gate_impact))
+      for ratio, runs in ((60, 5), (120, 2))],
     ("dam_break_front", "dam break, square column, a/dp = 40", [["constants.n2=1"]],
      single(of.measure_front)),
     ("fluid_front", "dam break, square column, free at once",
