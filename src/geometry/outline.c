@@ -294,11 +294,12 @@ enum err outlines_area(const struct outlines *add, const struct outlines *minus,
     if (!height || !line) return ERR_MEMORY;
     int n = add_heights(add, height);
     n += add_heights(minus, height + n);
+    enum { MOST = 1 << 16 }; /* parts in which Gauss' rule is exact to round-off */
     qsort(height, (size_t)n, sizeof *height, ascending);
     *area = 0;
     for (int k = 0; k + 1 < n; k++) {
         const double high = height[k + 1] - height[k];
-        const int parts = (int)ceil(high / step);
+        const int parts = high < MOST * step ? (int)ceil(high / step) : MOST;
         for (int j = 0; j < 2 * parts; j++) {
             const double part = high / parts, gauss = 0.5 + (j % 2 ? 0.5 : -0.5) / sqrt(3);
             const double y = height[k] + (j / 2 + gauss) * part;

@@ -111,7 +111,9 @@ static int quantity_columns(int quantity)
 static bool needs_refresh(int quantity)
 {
     return quantity == PROBE_STRESS || quantity == PROBE_FORCE || quantity == PROBE_ENERGY ||
-           quantity == PROBE_STRAIN || quantity == PROBE_ACCELERATION || quantity == PROBE_REACTION;
+           quantity == PROBE_STRAIN || quantity == PROBE_ACCELERATION ||
+           quantity == PROBE_REACTION || quantity == PROBE_PRESSURE ||
+           quantity == PROBE_SURFACE_PRESSURE;
 }
 
 static struct probe_body find_body(const struct scene *s, const char *name)
@@ -361,46 +363,27 @@ static void energy(const struct probe *pr, const struct simulation *s, double ou
     solid_energy(&s->solid, p, pr->body, &out[1], &out[2], &det);
 }
 
-/* Where a point of the fluid is now, and the acceleration of what carries it (of structures T-14). */
-static void place(const struct probe *pr, const struct simulation *s, double at[2],
-                  double acceleration[2])
+/* Where a point of the fluid is now. */
+static void place(const struct probe *pr, const struct simulation *s, double at[2])
 {
     memcpy(at, pr->point, sizeof pr->point);
-    acceleration[0] = acceleration[1] = 0;
     if (pr->motion >= 0) {
         const struct motion_state m = motion_at(s->scene, pr->motion, s->state.time);
-        const struct motion_point now = motion_of_point(&m, pr->point[0], pr->point[1]);
-        memcpy(at, now.x, sizeof now.x);
-        memcpy(acceleration, now.a, sizeof now.a);
+        memcpy(at, motion_of_point(&m, pr->point[0], pr->point[1]).x, sizeof pr->point);
     } else if (pr->n > 0) {
         const struct particles *const p = &s->kind[KIND_SOLID];
         double u[2];
         weighted_sum(pr, p->ux, p->uy, u);
         at[0] += u[0];
         at[1] += u[1];
-        weighted_sum(pr, p->ax, p->ay, acceleration);
     }
-}
-
-static double pressure(const struct probe *pr, const struct simulation *s)
-{
-    double x[2], a[2];
-    place(pr, s, x, a);
-    return simulation_sample(s, x[0], x[1], a).pressure;
-}
-
-static double level(const struct probe *pr, const struct simulation *s)
-{
-    double x[2], a[2];
-    place(pr, s, x, a);
-    return simulation_level(s, x[0], x[1]);
 }
 
 static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
 {
-    double x[2], a[2];
-    place(pr, s, x, a);
-    const struct sample at = simulation_sample(s, x[0], x[1], a);
+    double x[2];
+    place(pr, s, x);
+    const struct sample at = simulation_sample(s, x[0], x[1]);
     out[0] = at.vx;
     out[1] = at.vy;
 }
@@ -416,12 +399,14 @@ static void velocity(const struct probe *pr, const struct simulation *s, double 
 static void values(const struct probe *pr, struct simulation *s, double *row)
 {
     const struct particles *const solid = &s->kind[KIND_SOLID];
+    double at[2] = {0};
+    if (pr->target == TARGET_FLUID_POINT) place(pr, s, at);
     switch ((enum probe_quantity)pr->quantity) {
     case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
     case PROBE_VELOCITY: velocity(pr, s, row); break;
-    case PROBE_PRESSURE: *row = pressure(pr, s); break;
+    case PROBE_PRESSURE: *row = simulation_pressure_at(s, at[0], at[1]); break;
     case PROBE_STRESS: stress(pr, s, row); break;
-    case PROBE_LEVEL: *row = level(pr, s); break;
+    case PROBE_LEVEL: *row = simulation_level(s, at[0], at[1]); break;
     case PROBE_FORCE: force(pr, s, row); break;
     case PROBE_FRONT: *row = simulation_front(s, pr->direction); break;
     case PROBE_ENERGY: energy(pr, s, row); break;

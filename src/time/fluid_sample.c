@@ -12,8 +12,6 @@
 /* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1
 
-static const double at_rest[2];
-
 /* Called for particle i of a kind at distance r from the sampled point, within reach. */
 typedef void visitor(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums);
 
@@ -53,14 +51,16 @@ static void each_near(const struct simulation *s, enum kind kind, double x, doub
     each_within(s, kind, x, y, KERNEL_REACH * s->fluid.k.h, visit, sums);
 }
 
-/* The sums of a sample, its place, and the acceleration of the surface there. */
+/* The sums of a sample. */
 struct sampling {
     struct sample sum;
     double x, y;
-    const double *acceleration;
+    double dx, dy;         /* to the place from the fluid within reach, m */
+    double rho;            /* of this fluid, kg/m^3 */
+    double ax, ay;         /* of this fluid, m/s^2 */
+    double wall_x, wall_y; /* of walls and structures, m/s^2 */
 };
 
-/* The pressure is that of T-10: the fluid near a wall is on one side of a point of it. */
 static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i, double r,
                           void *sums)
 {
@@ -70,17 +70,19 @@ static void add_to_sample(const struct simulation *s, enum kind kind, int64_t i,
     const double w = kernel_w(r, k->h) * square(s->scene->top.dp);
     if (kind != KIND_FLUID) {
         at->sum.occupied += w;
+        at->wall_x += w * (p->ax ? p->ax[i] : 0);
+        at->wall_y += w * (p->ay ? p->ay[i] : 0);
         return;
     }
-    const double dx = cells_minimum_image(&s->cells, 0, at->x - p->x[i]);
-    const double dy = cells_minimum_image(&s->cells, 1, at->y - p->y[i]);
-    const double lift =
-        (k->gravity[0] - at->acceleration[0]) * dx + (k->gravity[1] - at->acceleration[1]) * dy;
     at->sum.fill += w;
-    at->sum.pressure +=
-        w * (eos_pressure(p->dens[i], k->rho0, k->c0) + k->rho0 * (1 + p->dens[i]) * lift);
+    at->sum.pressure += w * eos_pressure(p->dens[i], k->rho0, k->c0);
     at->sum.vx += w * p->vx[i];
     at->sum.vy += w * p->vy[i];
+    at->dx += w * cells_minimum_image(&s->cells, 0, at->x - p->x[i]);
+    at->dy += w * cells_minimum_image(&s->cells, 1, at->y - p->y[i]);
+    at->rho += w * k->rho0 * (1 + p->dens[i]);
+    at->ax += w * p->ax[i];
+    at->ay += w * p->ay[i];
 }
 
 static void count_near(const struct simulation *s, enum kind kind, int64_t i, double r, void *sums)
@@ -150,17 +152,28 @@ void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIO
     }
 }
 
-struct sample simulation_sample(const struct simulation *s, double x, double y,
-                                const double acceleration[2])
+/* T-10a: from the mean over the fluid to a place beside it. */
+static double rise_to_place(const struct simulation *s, const struct sampling *at, double mean)
 {
-    struct sampling at = {.x = x, .y = y, .acceleration = acceleration};
+    const double air = max2(0, 1 - at->sum.fill - at->sum.occupied),
+                 missing = at->sum.occupied + air;
+    if (missing <= 0) return 0;
+    const double ax = (at->wall_x + air * mean * at->ax) / missing,
+                 ay = (at->wall_y + air * mean * at->ay) / missing;
+    const double *const g = s->fluid.k.gravity;
+    return square(mean) * at->rho * ((g[0] - ax) * at->dx + (g[1] - ay) * at->dy);
+}
+
+struct sample simulation_sample(const struct simulation *s, double x, double y)
+{
+    struct sampling at = {.x = x, .y = y};
     struct sample *const sum = &at.sum;
     if (!(s->effects & FX_FLUID)) return *sum;
     each_near(s, KIND_FLUID, x, y, add_to_sample, &at);
     if (s->effects & FX_WALL) each_near(s, KIND_WALL, x, y, add_to_sample, &at);
     if (s->effects & FX_COUPLING) each_near(s, KIND_SOLID, x, y, add_to_sample, &at);
     const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
-    sum->pressure *= mean;
+    sum->pressure = mean * sum->pressure + rise_to_place(s, &at, mean);
     sum->vx *= mean;
     sum->vy *= mean;
     return *sum;
@@ -168,13 +181,13 @@ struct sample simulation_sample(const struct simulation *s, double x, double y,
 
 double simulation_pressure_at(const struct simulation *s, double x, double y)
 {
-    return simulation_sample(s, x, y, at_rest).pressure;
+    return simulation_sample(s, x, y).pressure;
 }
 
 /* The water's volume fraction of the space outside walls and structures. */
 static double wetness(const struct simulation *s, double x, double y)
 {
-    const struct sample at = simulation_sample(s, x, y, at_rest);
+    const struct sample at = simulation_sample(s, x, y);
     return at.fill / max2(1 - at.occupied, 0.05);
 }
 

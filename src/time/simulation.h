@@ -104,17 +104,17 @@ void simulation_begin_account(struct simulation *s);
 /* Hash of every STATE field and state scalar; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *s);
 
-/* The fluid at a point, by the kernel over its particles within reach. Positions and densities must be
- * up to date, as they are between two steps. `acceleration`, m/s^2, is that of the wall or structure
- * that carries the point, in T-10; zeros for a fixed point. */
+/* The fluid at a fixed point, by the kernel over its particles within reach. Positions and
+ * densities must be up to date, as they are between two steps; for the pressure accelerations as well, as
+ * after simulation_refresh. */
 struct sample {
     double fill;     /* sum V W of the fluid: about 1 inside it, 0.5 at its surface */
     double occupied; /* the same of walls and structures */
-    double pressure; /* Pa, that of a dummy in this place (T-10), not limited; 0 where dry */
-    double vx, vy;   /* m/s, mean over the fluid (Shepard); 0 where dry */
+    double
+        pressure; /* Pa, mean over the fluid (Shepard), brought to the point (T-10a); 0 where dry */
+    double vx, vy; /* m/s, mean over the fluid; 0 where dry */
 };
-struct sample simulation_sample(const struct simulation *s, double x, double y,
-                                const double acceleration[2]);
+struct sample simulation_sample(const struct simulation *s, double x, double y);
 
 /* Energy that walls and structures have stored by repelling each fluid section (L-7b), J/m. */
 void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIONS]);
@@ -122,7 +122,7 @@ void simulation_repulsion(const struct simulation *s, double of[SCENE_MAX_SECTIO
 /* Particles of all kinds within reach of a point. */
 int simulation_near(const struct simulation *s, double x, double y);
 
-/* Fluid pressure at a fixed point, Pa: T-10 with the surface at rest, not limited; 0 where dry. */
+/* Fluid pressure at a fixed point, Pa: that of simulation_sample. */
 double simulation_pressure_at(const struct simulation *s, double x, double y);
 
 /* Height of the free surface above (x, y): the lowest height at which the water ends. y itself if
