@@ -144,7 +144,7 @@ static enum err find_cells(struct cut_cells *c, struct sampler *g, const struct 
 /* All regions together. */
 struct packing {
     struct sampler *g;
-    struct point_grid cells, air; /* cut by an edge; outside all shapes, m */
+    struct point_grid cells, air; /* cut by an edge; near them, perhaps outside all shapes */
     int64_t n, n_free;            /* points; those that may move come first */
     double *x, *y, *volume;
     int64_t *particle; /* of a free point: its index */
@@ -193,25 +193,44 @@ static bool beside(const struct packing *p, double x, double y, double reach)
     return grid_any_within(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
 }
 
-/* Cells of the lattice outside all shapes count as points, so that nothing moves into the air. */
+static bool is_air(const struct sampler *g, const double cell[2], double at[2])
+{
+    const struct scene_lattice *const l = &g->scene->lattice;
+    place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
+                     l->origin[1] + cell[1] * l->spacing[1], at);
+    for (int r = 0; r < g->n_regions; r++)
+        if (geometry_covers(g, &g->regions[r], at[0], at[1])) return false;
+    return true;
+}
+
+/* Share of the cell with this centre that is outside all shapes, by points in it. Their rows and columns
+ * differ in number, so that an edge along the diagonal meets one of them at most. */
+static double air_share(const struct sampler *g, const double cell[2], double at[2])
+{
+    enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
+    int n = 0;
+    for (int k = 0; k < COLUMNS * ROWS_OF_CELL; k++) {
+        const double part[2] = {cell[0] + (k % COLUMNS + 0.5) / COLUMNS - 0.5,
+                                cell[1] + (k / COLUMNS + 0.5) / ROWS_OF_CELL - 0.5};
+        n += is_air(g, part, at);
+    }
+    is_air(g, cell, at);
+    return (double)n / (COLUMNS * ROWS_OF_CELL);
+}
+
+/* Cells of the lattice count as points by their share outside all shapes, so that nothing moves into the
+ * air. */
 static enum err add_air(struct packing *p)
 {
     const struct sampler *const g = p->g;
-    const struct scene_lattice *const l = &g->scene->lattice;
     const int64_t around = (int64_t)ceil(2 * KERNEL_REACH * g->scene->h / g->scene->top.dp);
     for (int64_t k = 0; k < p->cells.n; k++)
         for (int64_t j = -around; j <= around; j++)
             for (int64_t i = -around; i <= around; i++) {
                 const double cell[2] = {p->cells.pt[k][0] + (double)i,
                                         p->cells.pt[k][1] + (double)j};
-                double at[2];
-                place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
-                                 l->origin[1] + cell[1] * l->spacing[1], at);
-                bool covered = false;
-                for (int r = 0; r < g->n_regions && !covered; r++)
-                    covered = geometry_covers(g, &g->regions[r], at[0], at[1]);
-                if (!covered && !grid_any_within(&p->air, at[0], at[1], 0.1 * l->dp))
-                    TRY(grid_add(&p->air, p->g, at[0], at[1]));
+                if (!grid_any_within(&p->air, cell[0], cell[1], 0.1))
+                    TRY(grid_add(&p->air, p->g, cell[0], cell[1]));
             }
     return ERR_OK;
 }
@@ -251,8 +270,11 @@ static enum err gather(struct packing *p)
         }
         if (!fixed) p->n_free = p->n;
     }
-    for (int64_t k = 0; k < p->air.n; k++)
-        add_point(p, p->air.pt[k][0], p->air.pt[k][1], square(s->top.dp));
+    for (int64_t k = 0; k < p->air.n; k++) {
+        double at[2];
+        const double share = air_share(g, p->air.pt[k], at);
+        if (share > 0) add_point(p, at[0], at[1], share * square(s->top.dp));
+    }
     return ERR_OK;
 }
 
@@ -321,9 +343,7 @@ enum err geometry_pack(struct sampler *g)
     }
     if (most == 0) return ERR_OK;
     s->packed = true;
-    struct packing p = {.g = g,
-                        .cells.side = KERNEL_REACH * s->h / s->top.dp,
-                        .air.side = s->top.dp};
+    struct packing p = {.g = g, .cells.side = KERNEL_REACH * s->h / s->top.dp, .air.side = 1};
     struct scene_points to = {0};
     const size_t n = (size_t)(points->n + most);
     to.x = arena_alloc(&s->arena, n, sizeof *to.x, "particles", g->diag);
