@@ -381,6 +381,25 @@ static void test_fluid_beside_slopes_has_its_area(void)
     TEST_ASSERT_TRUE(scene.points[KIND_FLUID].n < 834); /* of 836.6 */
 }
 
+/* A slope along the diagonal of the lattice: no water moves up it into the air, whatever dp is. */
+static void test_packed_water_keeps_below_its_surface(void)
+{
+    static const double spacing[] = {4e-3, 5e-3, 7.5e-3, 10e-3, 15e-3, 20e-3, 30e-3};
+    for (size_t k = 0; k < COUNT_OF(spacing); k++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "dp = %g\nend_time = 1\ngravity = 0, -9.81\n[fluid water]\nsound_speed = 40\n"
+                 "shape = polygon 0, 0; 0.6, 0; 0.9, 0.3; 0, 0.3\nsurface = 0.3\n[wall tank]\n"
+                 "shape = polyline thickness -0.06: 0, 0.4; 0, 0; 0.6, 0; 1, 0.4\n",
+                 spacing[k]);
+        must_read(text, NULL);
+        const struct scene_points *const w = &scene.points[KIND_FLUID];
+        for (int64_t i = 0; i < w->n; i++) TEST_ASSERT_TRUE(w->y[i] < 0.3);
+        TEST_ASSERT_DOUBLE_WITHIN(1, 0.225 / square(spacing[k]), (double)w->n);
+        scene_free(&scene);
+    }
+}
+
 /* A uniform pressure pushes no particle of the water around a cylinder: the kernel's gradient sums to
  * nearly nothing, also beyond those that were moved. No two particles are near to each other. */
 static void test_fluid_around_a_cylinder_is_packed(void)
@@ -445,6 +464,7 @@ int main(void)
     RUN_TEST(test_layers_are_even);
     RUN_TEST(test_space_is_filled);
     RUN_TEST(test_fluid_beside_slopes_has_its_area);
+    RUN_TEST(test_packed_water_keeps_below_its_surface);
     RUN_TEST(test_fluid_around_a_cylinder_is_packed);
     RUN_TEST(test_a_periodic_domain_is_not_turned);
     return UNITY_END();
