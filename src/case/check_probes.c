@@ -57,10 +57,16 @@ static enum err check_bodies(struct reader *r, const struct scene_probe *p)
 static enum err check_on(struct reader *r, const struct scene_probe *p)
 {
     if (!*p->on) return ERR_OK;
-    if (scene_probe_target(p) != TARGET_FLUID_POINT)
+    const bool face = p->quantity == PROBE_SURFACE_PRESSURE;
+    if (scene_probe_target(p) != TARGET_FLUID_POINT && !face)
         return bad_line(r, p->common.line,
-                        "[probe %s] on = %.60s is only for pressure, level and velocity of the "
-                        "fluid; leave it out",
+                        "[probe %s] on = %.60s is only for pressure, level, velocity and surface "
+                        "pressure of the fluid; leave it out",
+                        p->common.name, p->on);
+    if (face && scene_find_solid(r->scene, p->on) >= 0)
+        return bad_line(r, p->common.line,
+                        "[probe %s] on = %.60s is a solid, which bends; a line moves with walls "
+                        "only. quantity = force measures the fluid's force on the solid",
                         p->common.name, p->on);
     if (is_section(r->scene, p->on, true)) return ERR_OK;
     return no_section(r, p, "on", p->on, true);

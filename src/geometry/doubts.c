@@ -308,11 +308,49 @@ static void warn_of_buried_probe(struct sampler *g, const struct scene_probe *pr
                   place, probe->common.name, probe->point[0], probe->point[1], quantity, 2 * s->h);
 }
 
+/* The wall within half a spacing of a point, if all such walls move; -1: there is none, or one at rest. */
+static int moving_wall_at(const struct sampler *g, const double at[2])
+{
+    const double side = 0.5 * g->scene->top.dp;
+    int found = -1;
+    for (int k = 0; k < g->n_regions; k++) {
+        const struct region *const region = &g->regions[k];
+        if (region->kind != KIND_WALL) continue;
+        for (int corner = 0; corner < 4; corner++) {
+            const double x = at[0] + (corner & 1 ? side : -side),
+                         y = at[1] + (corner & 2 ? side : -side);
+            if (!geometry_covers(g, region, x, y)) continue;
+            if (!*g->scene->wall[region->body].motion) return -1;
+            found = region->body;
+        }
+    }
+    return found;
+}
+
+/* The pressure at a moving wall is hardly meant to be that of the place where the wall once was. */
+static void warn_of_fixed_probe(struct sampler *g, const struct scene_probe *probe)
+{
+    const bool face = probe->quantity == PROBE_SURFACE_PRESSURE;
+    if ((probe->quantity != PROBE_PRESSURE && !face) || *probe->on) return;
+    const double middle[2] = {0.5 * (probe->point[0] + probe->to[0]),
+                              0.5 * (probe->point[1] + probe->to[1])};
+    const int wall = moving_wall_at(g, face ? middle : probe->point);
+    if (wall < 0) return;
+    char place[LOCATION_TEXT];
+    scene_location(g->scene, probe->common.line, place);
+    const char *const name = g->scene->wall[wall].common.name;
+    diag_warn(g->diag,
+              "%s: [probe %s] begins at [wall %s], which moves, but stays where it is; "
+              "`on = %s` moves it along",
+              place, probe->common.name, name, name);
+}
+
 static void warn_of_fluid_probes(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *const probe = &s->probe[k];
+        warn_of_fixed_probe(g, probe);
         if (scene_probe_target(probe) != TARGET_FLUID_POINT) continue;
         if (is_buried(g, probe->point)) {
             warn_of_buried_probe(g, probe);

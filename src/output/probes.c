@@ -140,7 +140,7 @@ static enum err find_bodies(struct probe *pr, const struct scene *s, const char 
     return ERR_OK;
 }
 
-/* The body that carries a point of the fluid. */
+/* The body that carries a point or a line of the fluid. */
 static enum err ride(struct probe *pr, const struct scene_probe *sp, const struct simulation *s,
                      struct arena *a, struct diag *d)
 {
@@ -363,20 +363,34 @@ static void energy(const struct probe *pr, const struct simulation *s, double ou
     solid_energy(&s->solid, p, pr->body, &out[1], &out[2], &det);
 }
 
+/* Where a point of a wall is now. */
+static void move_with_wall(const struct probe *pr, const struct simulation *s, double at[2])
+{
+    if (pr->motion < 0) return;
+    const struct motion_state m = motion_at(s->scene, pr->motion, s->state.time);
+    memcpy(at, motion_of_point(&m, at[0], at[1]).x, 2 * sizeof *at);
+}
+
 /* Where a point of the fluid is now. */
 static void place(const struct probe *pr, const struct simulation *s, double at[2])
 {
     memcpy(at, pr->point, sizeof pr->point);
-    if (pr->motion >= 0) {
-        const struct motion_state m = motion_at(s->scene, pr->motion, s->state.time);
-        memcpy(at, motion_of_point(&m, pr->point[0], pr->point[1]).x, sizeof pr->point);
-    } else if (pr->n > 0) {
+    move_with_wall(pr, s, at);
+    if (pr->n > 0) {
         const struct particles *const p = &s->kind[KIND_SOLID];
         double u[2];
         weighted_sum(pr, p->ux, p->uy, u);
         at[0] += u[0];
         at[1] += u[1];
     }
+}
+
+static void surface_pressure(const struct probe *pr, const struct simulation *s, double out[3])
+{
+    double from[2] = {pr->point[0], pr->point[1]}, to[2] = {pr->to[0], pr->to[1]};
+    move_with_wall(pr, s, from);
+    move_with_wall(pr, s, to);
+    simulation_pressure_on(s, from, to, out);
 }
 
 static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
@@ -415,7 +429,7 @@ static void values(const struct probe *pr, struct simulation *s, double *row)
     case PROBE_ACCELERATION: acceleration(pr, s, row); break;
     case PROBE_POSE: pose(pr, s, row); break;
     case PROBE_REACTION: reaction(pr, s, row); break;
-    case PROBE_SURFACE_PRESSURE: simulation_pressure_on(s, pr->point, pr->to, row); break;
+    case PROBE_SURFACE_PRESSURE: surface_pressure(pr, s, row); break;
     case PROBE_QUANTITIES: break;
     }
 }

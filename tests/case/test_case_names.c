@@ -56,6 +56,17 @@ static void test_a_probe_needs_its_place(void)
                 "numbers, in metres\n");
 }
 
+/* A face that bends is no line. */
+static void test_a_line_moves_with_walls_only(void)
+{
+    refuses_all(
+        TOP FLUID "[solid b]\nshape = box 20 mm, 0, 30 mm, 20 mm\ndensity = 1000\n"
+                  "young = 1 MPa\npoisson = 0.3\n[probe p]\n"
+                  "quantity = surface_pressure\npoint = 20 mm, 0\nto = 20 mm, 9 mm\non = b\n",
+        "bad.cfg:11: [probe p] on = b is a solid, which bends; a line moves with walls only. "
+        "quantity = force measures the fluid's force on the solid\n");
+}
+
 /* What other programs call a key of another section; it is not `dp`. */
 static void test_a_key_by_the_name_of_other_programs(void)
 {
@@ -108,6 +119,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_names_are_checked_beside_wrong_values);
+    RUN_TEST(test_a_line_moves_with_walls_only);
     RUN_TEST(test_a_probe_needs_its_place);
     RUN_TEST(test_what_follows_from_a_problem_is_none);
     RUN_TEST(test_a_key_by_the_name_of_other_programs);

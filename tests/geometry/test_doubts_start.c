@@ -107,6 +107,30 @@ static void test_probes_inside_a_wall(void)
     TEST_ASSERT_EQUAL_STRING("", warnings);
 }
 
+static void test_a_probe_that_its_wall_leaves(void)
+{
+#define PISTON                                                                                 \
+    HEAD WATER "shape = box 0, 0, 0.1, 0.05\n[wall tank]\nshape = box -0.02, -0.02, 0.12, 0\n" \
+               "shape = box 0.1, 0, 0.12, 0.1\n[wall piston]\nshape = box -0.02, 0, 0, 0.1\n"  \
+               "motion = m\n[motion m]\nvelocity = 0.1, 0\n[probe p]\n"
+    read(PISTON "quantity = pressure\npoint = 0, 0.03\n");
+    expect("[probe p] begins at [wall piston], which moves, but stays where it is; `on = piston` "
+           "moves");
+    read(PISTON "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\n");
+    expect("[probe p] begins at [wall piston]");
+    static const char *const right[] = {
+        "quantity = pressure\npoint = 0, 0.03\non = piston\n",
+        "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\non = piston\n",
+        "quantity = pressure\npoint = 0.1, 0.03\n", "quantity = pressure\npoint = 0, 0\n",
+        "quantity = velocity\npoint = 0, 0.03\n"};
+    for (size_t k = 0; k < COUNT_OF(right); k++) {
+        char text[1000];
+        snprintf(text, sizeof text, "%s%s", PISTON, right[k]);
+        read(text);
+        TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins at"), warnings);
+    }
+}
+
 static void test_a_body_that_is_thrown(void)
 {
 #define BALL \
@@ -153,6 +177,7 @@ int main(void)
     RUN_TEST(test_a_motion_near_the_speed_of_sound);
     RUN_TEST(test_an_inflow_above_the_surface);
     RUN_TEST(test_probes_inside_a_wall);
+    RUN_TEST(test_a_probe_that_its_wall_leaves);
     RUN_TEST(test_a_body_that_is_thrown);
     RUN_TEST(test_bodies_that_stand);
     return UNITY_END();

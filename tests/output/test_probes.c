@@ -332,6 +332,19 @@ static void a_point_rides_on_a_wall(void)
     }
 }
 
+static void a_line_rides_on_a_wall(void)
+{
+    open_with("[wall flap]\nshape = box 0.3, 0, 0.33, 0.1\nmotion = swing\n"
+              "[motion swing]\nkind = rotation\nangle = 1.5707963267948966\ncentre = 0.1, 0\n"
+              "[probe F]\nquantity = surface_pressure\npoint = 0.06, 0.03\nto = 0.03, 0.05\n"
+              "[probe R]\nquantity = surface_pressure\non = flap\npoint = 0.13, 0.04\n"
+              "to = 0.15, 0.07\n",
+              NULL);
+    set_uneven_density();
+    rig.sim.state.time = 1; /* a quarter turn */
+    last_two_agree("on a line of a turned wall");
+}
+
 static void force_on_several_bodies(void)
 {
     open_with("[probe T]\nquantity = force\nbody = tank\npoint = 0.1, 0\n"
@@ -517,6 +530,7 @@ int main(void)
     RUN_TEST(walls_carry_forces_only_when_asked);
     RUN_TEST(a_point_rides_on_a_solid);
     RUN_TEST(a_point_rides_on_a_wall);
+    RUN_TEST(a_line_rides_on_a_wall);
     RUN_TEST(force_on_several_bodies);
     RUN_TEST(force_on_three_bodies);
     RUN_TEST(strain_of_a_turned_body);
