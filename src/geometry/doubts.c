@@ -345,12 +345,36 @@ static void warn_of_fixed_probe(struct sampler *g, const struct scene_probe *pro
               place, probe->common.name, name, name);
 }
 
+/* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and sticks. */
+static void warn_of_moment(struct sampler *g, const struct scene_probe *probe)
+{
+    const struct scene *const s = g->scene;
+    double nu = 0;
+    for (int k = 0; k < s->n_fluid; k++) nu = max2(nu, s->fluid[k].laminar_viscosity);
+    char name[SCENE_TEXT];
+    for (int k = 0; nu > 0 && probe->quantity == PROBE_FORCE && scene_listed(probe->body, k, name);
+         k++) {
+        const int wall = scene_find_wall(s, name);
+        const int motion = wall < 0 ? -1 : scene_find_motion(s, s->wall[wall].motion);
+        if (motion < 0 || s->wall[wall].slip != SLIP_NONE) continue;
+        if (s->motion[motion].kind != MOTION_ROTATION && !s->motion[motion].turn.e[0]) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, probe->common.line, place);
+        diag_warn(g->diag,
+                  "%s: [probe %s] the moment on [wall %s], which turns with slip = none, is off by "
+                  "2 mu A times its rate of turning: mu = %.3g Pa s, A = the area that it "
+                  "encloses. The moment needs this correction; forces are right",
+                  place, probe->common.name, name, nu * s->rho0);
+    }
+}
+
 static void warn_of_fluid_probes(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     for (int k = 0; k < s->n_probe; k++) {
         const struct scene_probe *const probe = &s->probe[k];
         warn_of_fixed_probe(g, probe);
+        warn_of_moment(g, probe);
         if (scene_probe_target(probe) != TARGET_FLUID_POINT) continue;
         if (is_buried(g, probe->point)) {
             warn_of_buried_probe(g, probe);

@@ -193,29 +193,37 @@ static bool beside(const struct packing *p, double x, double y, double reach)
     return grid_any_within(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
 }
 
-static bool is_air(const struct sampler *g, const double cell[2], double at[2])
+/* What covers a place in the lattice: a shape of fluid, any other, or none. */
+enum cover { COVER_NONE, COVER_FLUID, COVER_BODY };
+
+static enum cover cover_of(const struct sampler *g, const double cell[2], double at[2])
 {
     const struct scene_lattice *const l = &g->scene->lattice;
+    enum cover found = COVER_NONE;
     place_of_lattice(l, l->origin[0] + cell[0] * l->spacing[0],
                      l->origin[1] + cell[1] * l->spacing[1], at);
-    for (int r = 0; r < g->n_regions; r++)
-        if (geometry_covers(g, &g->regions[r], at[0], at[1])) return false;
-    return true;
+    for (int r = 0; r < g->n_regions && found != COVER_BODY; r++)
+        if (geometry_covers(g, &g->regions[r], at[0], at[1]))
+            found = g->regions[r].kind == KIND_FLUID ? COVER_FLUID : COVER_BODY;
+    return found;
 }
 
-/* Share of the cell with this centre that is outside all shapes, by points in it. Their rows and columns
- * differ in number, so that an edge along the diagonal meets one of them at most. */
+/* Share of the cell with this centre that is air. Beside fluid alone its centre decides, as for fluid. Beside
+ * walls and bodies, whose particles are not in the lattice, it is the share of points in it. Their rows
+ * and columns differ in number, so that an edge along the diagonal meets one of them at most. */
 static double air_share(const struct sampler *g, const double cell[2], double at[2])
 {
     enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
-    int n = 0;
+    int air = 0, body = 0;
     for (int k = 0; k < COLUMNS * ROWS_OF_CELL; k++) {
         const double part[2] = {cell[0] + (k % COLUMNS + 0.5) / COLUMNS - 0.5,
                                 cell[1] + (k / COLUMNS + 0.5) / ROWS_OF_CELL - 0.5};
-        n += is_air(g, part, at);
+        const enum cover cover = cover_of(g, part, at);
+        air += cover == COVER_NONE;
+        body += cover == COVER_BODY;
     }
-    is_air(g, cell, at);
-    return (double)n / (COLUMNS * ROWS_OF_CELL);
+    const enum cover centre = cover_of(g, cell, at);
+    return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : centre == COVER_NONE;
 }
 
 /* Cells of the lattice count as points by their share outside all shapes, so that nothing moves into the

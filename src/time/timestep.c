@@ -56,12 +56,27 @@ static double bound_repulsion(const struct simulation *s, const struct fluid_ext
     return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
 }
 
+/* T-35g: viscosity stops the particles at the corner of a structure at this rate, 1/s. It is held over a
+ * step of the fluid. */
+static double rate_of_drag(const struct simulation *s)
+{
+    double rate = 0;
+    if (!(s->effects & FX_COUPLING)) return rate;
+    for (int k = 0; k < s->solid.n_bodies; k++)
+        if (s->scene->solid[k].slip == SLIP_NONE)
+            rate = max2(rate, 8.6 * s->fluid.k.nu * s->scene->rho0 /
+                                  (square(s->fluid.k.h) * s->solid.body[k].density));
+    return rate;
+}
+
 /* Morris et al. 1997, Eq. 21. L-6b gives pairs with a surface twice the weight. */
 static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
     const double weight = s->effects & FX_NO_SLIP && s->effects & FX_ONE_SIDED ? 2 : 1;
-    return 0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.nu);
+    const double inside = 0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.nu);
+    const double rate = rate_of_drag(s);
+    return rate > 0 ? min2(inside, 0.9 / (2 * (1 + extrapolated_halves(s)) * rate)) : inside;
 }
 
 static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)

@@ -131,6 +131,22 @@ static void test_a_probe_that_its_wall_leaves(void)
     }
 }
 
+static void test_the_moment_on_a_wall_that_turns(void)
+{
+#define DRUM(slip, motion)                                                                 \
+    "dp = 5 mm\nend_time = 1 s\n[fluid oil]\nshape = circle 0, 0, 0.1\nsound_speed = 10\n" \
+    "laminar_viscosity = 1e-3\npressure = 50\n[wall drum]\nshape = circle 0, 0, 0.12\n"    \
+    "minus = circle 0, 0, 0.1\n" slip motion "[probe p]\nquantity = force\nbody = drum\n"
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
+    expect("the moment on [wall drum], which turns with slip = none, is off by 2 mu A");
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = expression\nturn = t\n"));
+    expect("mu = 1 Pa s");
+    read(DRUM("slip = none\n", "motion = m\n[motion m]\nvelocity = 1, 0\n"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the moment on"), warnings);
+    read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the moment on"), warnings);
+}
+
 static void test_a_body_that_is_thrown(void)
 {
 #define BALL \
@@ -178,6 +194,7 @@ int main(void)
     RUN_TEST(test_an_inflow_above_the_surface);
     RUN_TEST(test_probes_inside_a_wall);
     RUN_TEST(test_a_probe_that_its_wall_leaves);
+    RUN_TEST(test_the_moment_on_a_wall_that_turns);
     RUN_TEST(test_a_body_that_is_thrown);
     RUN_TEST(test_bodies_that_stand);
     return UNITY_END();

@@ -133,6 +133,11 @@ static void test_viscous_bound_by_hand(void)
     assert_near(1e-15, 2.278125e-3, rig.sim.dt_bound[BOUND_viscous], "0.125 h^2/nu");
     rig_open(&rig, gate, "water.laminar_viscosity=10", NULL);
     assert_near(1e-18, 2.278125e-6, timestep_fluid_limit(&rig.sim), "largest step");
+    /* T-35g, a quarter of 0.9/gamma: 0.225 * 0.0135^2/(8.6 * 1e-2) s at the fluid's density. */
+    rig_open(&rig, gate, "water.laminar_viscosity=1e-2", "gate.slip=none", "gate.density=1000",
+             NULL);
+    timestep_choose(&rig.sim, 10, &hits);
+    assert_near(1e-15, 4.7681686046511627e-4, rig.sim.dt_bound[BOUND_viscous], "sticking");
 }
 
 /* T-33c at rest: 0.4 * 0.0135/(1.4142135623730951 * 20) s. */
