@@ -130,7 +130,7 @@ static void refused_probes(void)
         {"[probe Z]\nquantity = pressure\npoint = 0, 0\non = gat\n",
          "on = gat: there is no [solid] or [wall]"},
         {"[probe Z]\nquantity = flux\non = gate\npoint = 0, 0\nto = 1, 0\n",
-         "only for pressure, level and velocity"},
+         "only for pressure, level, velocity and surface pressure"},
         {"[probe Z]\nbody = gate\npoint = 0.13, 0\naverage = 1 ms\n", "`interval` to 0.001 s"},
         {"[probe Z]\nquantity = force\nbody = gate, tan\n", "body = tan: there is no"},
         {"[probe Z]\nquantity = force\nbody = gate, gate\n", "is listed twice"},
