@@ -465,8 +465,8 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k, stru
     return ERR_OK;
 }
 
-/* Whether the buffer has no space for fluid that has come in: above its level, or where a buffer particle
- * that a given velocity drives against it is close. Two particles in one place would burst apart. */
+/* Whether the buffer has no space for fluid that has come in: above its level, or close to a buffer particle
+ * that moves inward. Two particles in one place would burst apart. */
 static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];

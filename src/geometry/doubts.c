@@ -308,41 +308,76 @@ static void warn_of_buried_probe(struct sampler *g, const struct scene_probe *pr
                   place, probe->common.name, probe->point[0], probe->point[1], quantity, 2 * s->h);
 }
 
-/* The wall within half a spacing of a point, if all such walls move; -1: there is none, or one at rest. */
-static int moving_wall_at(const struct sampler *g, const double at[2])
+/* Whether a wall has a part within half a spacing of a point along each axis. */
+static bool wall_is_at(const struct sampler *g, int wall, const double at[2])
 {
     const double side = 0.5 * g->scene->top.dp;
+    for (int k = 0; k < g->n_regions; k++)
+        for (int corner = 0; corner < 4; corner++)
+            if (g->regions[k].kind == KIND_WALL && g->regions[k].body == wall &&
+                geometry_covers(g, &g->regions[k], at[0] + (corner & 1 ? side : -side),
+                                at[1] + (corner & 2 ? side : -side)))
+                return true;
+    return false;
+}
+
+/* Whether a wall at a point is elsewhere at one of some times in the run. A lid that slides along itself, or
+ * a drum that turns about its axis, is not. */
+static bool wall_leaves(const struct sampler *g, int wall, const double at[2])
+{
+    enum { TIMES = 16 };
+    const struct scene *const s = g->scene;
+    const int motion = scene_find_motion(s, s->wall[wall].motion);
+    for (int k = 1; k <= TIMES && motion >= 0; k++) {
+        const struct motion_state m = motion_at(s, motion, s->top.end_time * k / TIMES);
+        const double x = at[0] - m.centre[0] - m.d[0], y = at[1] - m.centre[1] - m.d[1];
+        const double c = m.angle == 0 ? 1 : m.turn[0], sn = m.angle == 0 ? 0 : m.turn[1];
+        const double before[2] = {m.centre[0] + c * x + sn * y, m.centre[1] - sn * x + c * y};
+        if (!wall_is_at(g, wall, before)) return true;
+    }
+    return false;
+}
+
+/* The wall that is at a point now and leaves it, unless one that stays is there too; -1: none. */
+static int leaving_wall(const struct sampler *g, const double at[2])
+{
     int found = -1;
-    for (int k = 0; k < g->n_regions; k++) {
-        const struct region *const region = &g->regions[k];
-        if (region->kind != KIND_WALL) continue;
-        for (int corner = 0; corner < 4; corner++) {
-            const double x = at[0] + (corner & 1 ? side : -side),
-                         y = at[1] + (corner & 2 ? side : -side);
-            if (!geometry_covers(g, region, x, y)) continue;
-            if (!*g->scene->wall[region->body].motion) return -1;
-            found = region->body;
-        }
+    for (int k = 0; k < g->scene->n_wall; k++) {
+        if (!wall_is_at(g, k, at)) continue;
+        if (!wall_leaves(g, k, at)) return -1;
+        found = k;
     }
     return found;
 }
 
-/* The pressure at a moving wall is hardly meant to be that of the place where the wall once was. */
+/* The pressure at a wall that moves away is hardly meant to be that of the place where it once was. */
 static void warn_of_fixed_probe(struct sampler *g, const struct scene_probe *probe)
 {
     const bool face = probe->quantity == PROBE_SURFACE_PRESSURE;
     if ((probe->quantity != PROBE_PRESSURE && !face) || *probe->on) return;
-    const double middle[2] = {0.5 * (probe->point[0] + probe->to[0]),
-                              0.5 * (probe->point[1] + probe->to[1])};
-    const int wall = moving_wall_at(g, face ? middle : probe->point);
+    int wall = -1;
+    for (int k = face ? 1 : 0; k < (face ? 4 : 1) && wall < 0; k++) {
+        const double at[2] = {probe->point[0] + 0.25 * k * (probe->to[0] - probe->point[0]),
+                              probe->point[1] + 0.25 * k * (probe->to[1] - probe->point[1])};
+        if (!is_buried(g, at)) wall = leaving_wall(g, at);
+    }
     if (wall < 0) return;
     char place[LOCATION_TEXT];
     scene_location(g->scene, probe->common.line, place);
     const char *const name = g->scene->wall[wall].common.name;
     diag_warn(g->diag,
-              "%s: [probe %s] begins at [wall %s], which moves, but stays where it is; "
+              "%s: [probe %s] begins at [wall %s], which moves away, but stays where it is; "
               "`on = %s` moves it along",
               place, probe->common.name, name, name);
+}
+
+/* Whether a motion turns at one of some times in the run. */
+static bool turns(const struct scene *s, int motion)
+{
+    enum { TIMES = 16 };
+    for (int k = 1; k <= TIMES; k++)
+        if (motion_at(s, motion, s->top.end_time * k / TIMES).angle != 0) return true;
+    return false;
 }
 
 /* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and sticks. */
@@ -357,7 +392,7 @@ static void warn_of_moment(struct sampler *g, const struct scene_probe *probe)
         const int wall = scene_find_wall(s, name);
         const int motion = wall < 0 ? -1 : scene_find_motion(s, s->wall[wall].motion);
         if (motion < 0 || s->wall[wall].slip != SLIP_NONE) continue;
-        if (s->motion[motion].kind != MOTION_ROTATION && !s->motion[motion].turn.e[0]) continue;
+        if (!turns(s, motion)) continue;
         char place[LOCATION_TEXT];
         scene_location(s, probe->common.line, place);
         diag_warn(g->diag,

@@ -110,9 +110,8 @@ uint64_t simulation_hash(struct simulation *s);
 struct sample {
     double fill;     /* sum V W of the fluid: about 1 inside it, 0.5 at its surface */
     double occupied; /* the same of walls and structures */
-    double
-        pressure; /* Pa, mean over the fluid (Shepard), brought to the point (T-10a); 0 where dry */
-    double vx, vy; /* m/s, mean over the fluid; 0 where dry */
+    double pressure; /* Pa, mean over the fluid, brought to the point (T-10a); 0 where dry */
+    double vx, vy;   /* m/s, mean over the fluid; 0 where dry */
 };
 struct sample simulation_sample(const struct simulation *s, double x, double y);
 

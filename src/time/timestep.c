@@ -62,10 +62,12 @@ static double rate_of_drag(const struct simulation *s)
 {
     double rate = 0;
     if (!(s->effects & FX_COUPLING)) return rate;
-    for (int k = 0; k < s->solid.n_bodies; k++)
-        if (s->scene->solid[k].slip == SLIP_NONE)
-            rate = max2(rate, 8.6 * s->fluid.k.nu * s->scene->rho0 /
-                                  (square(s->fluid.k.h) * s->solid.body[k].density));
+    for (int k = 0; k < s->solid.n_bodies; k++) {
+        if (s->scene->solid[k].slip != SLIP_NONE) continue;
+        const double finer = s->scene->top.dp / scene_solid_dp(s->scene, k);
+        rate = max2(rate, 8.6 * finer * s->fluid.k.nu * s->scene->rho0 /
+                              (square(s->fluid.k.h) * s->solid.body[k].density));
+    }
     return rate;
 }
 

@@ -114,10 +114,13 @@ static void test_a_probe_that_its_wall_leaves(void)
                "shape = box 0.1, 0, 0.12, 0.1\n[wall piston]\nshape = box -0.02, 0, 0, 0.1\n"  \
                "motion = m\n[motion m]\nvelocity = 0.1, 0\n[probe p]\n"
     read(PISTON "quantity = pressure\npoint = 0, 0.03\n");
-    expect("[probe p] begins at [wall piston], which moves, but stays where it is; `on = piston` "
-           "moves");
+    expect(
+        "[probe p] begins at [wall piston], which moves away, but stays where it is; `on = piston` "
+        "moves");
     read(PISTON "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\n");
     expect("[probe p] begins at [wall piston]");
+    read(PISTON "quantity = pressure\npoint = -0.01, 0.03\n"); /* inside it */
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins at"), warnings);
     static const char *const right[] = {
         "quantity = pressure\npoint = 0, 0.03\non = piston\n",
         "quantity = surface_pressure\npoint = 0, 0.05\nto = 0, 0\non = piston\n",
@@ -137,10 +140,14 @@ static void test_the_moment_on_a_wall_that_turns(void)
     "dp = 5 mm\nend_time = 1 s\n[fluid oil]\nshape = circle 0, 0, 0.1\nsound_speed = 10\n" \
     "laminar_viscosity = 1e-3\npressure = 50\n[wall drum]\nshape = circle 0, 0, 0.12\n"    \
     "minus = circle 0, 0, 0.1\n" slip motion "[probe p]\nquantity = force\nbody = drum\n"
+#define FACE "[probe q]\nquantity = pressure\npoint = 0.1, 0\n"
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));
     expect("the moment on [wall drum], which turns with slip = none, is off by 2 mu A");
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = expression\nturn = t\n"));
     expect("mu = 1 Pa s");
+    /* It slides along a probe at its face. */
+    read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n") FACE);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins at"), warnings);
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nvelocity = 1, 0\n"));
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "the moment on"), warnings);
     read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n"));

@@ -23,9 +23,9 @@ static struct rig rig;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-static void test_a_free_cylinder(void)
+static void moves_with_the_fluid(const char *set)
 {
-    rig_open(&rig, shear, NULL);
+    rig_open(&rig, shear, set, NULL);
     TEST_ASSERT_TRUE(rig.sim.effects & FX_MULTIRATE);
     rig_run(&rig, 0.1);
     TEST_ASSERT_TRUE(rig.sim.substeps > 1);
@@ -33,9 +33,14 @@ static void test_a_free_cylinder(void)
     for (int64_t i = 0; i < p->n; i++) TEST_ASSERT_TRUE(hypot(p->vx[i], p->vy[i]) < 0.03);
 }
 
+static void test_a_free_cylinder(void) { moves_with_the_fluid(NULL); }
+
+static void test_a_finer_one(void) { moves_with_the_fluid("cyl.dp=0.5 mm"); }
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_a_free_cylinder);
+    RUN_TEST(test_a_finer_one);
     return UNITY_END();
 }
