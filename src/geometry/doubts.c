@@ -321,15 +321,23 @@ static bool wall_is_at(const struct sampler *g, int wall, const double at[2])
     return false;
 }
 
-/* Whether a wall at a point is elsewhere at one of some times in the run. A lid that slides along itself, or
+enum { TIMES = 16 };
+
+/* The k-th of some times in the run, s. By the golden ratio, so that no period divides them. */
+static double time_in_run(const struct scene *s, int k)
+{
+    const double part = 0.6180339887498949 * k;
+    return s->top.end_time * (part - floor(part));
+}
+
+/* Whether a wall at a point is elsewhere at one of these times. A lid that slides along itself, or
  * a drum that turns about its axis, is not. */
 static bool wall_leaves(const struct sampler *g, int wall, const double at[2])
 {
-    enum { TIMES = 16 };
     const struct scene *const s = g->scene;
     const int motion = scene_find_motion(s, s->wall[wall].motion);
     for (int k = 1; k <= TIMES && motion >= 0; k++) {
-        const struct motion_state m = motion_at(s, motion, s->top.end_time * k / TIMES);
+        const struct motion_state m = motion_at(s, motion, time_in_run(s, k));
         const double x = at[0] - m.centre[0] - m.d[0], y = at[1] - m.centre[1] - m.d[1];
         const double c = m.angle == 0 ? 1 : m.turn[0], sn = m.angle == 0 ? 0 : m.turn[1];
         const double before[2] = {m.centre[0] + c * x + sn * y, m.centre[1] - sn * x + c * y};
@@ -371,12 +379,11 @@ static void warn_of_fixed_probe(struct sampler *g, const struct scene_probe *pro
               place, probe->common.name, name, name);
 }
 
-/* Whether a motion turns at one of some times in the run. */
+/* Whether a motion turns at one of these times. */
 static bool turns(const struct scene *s, int motion)
 {
-    enum { TIMES = 16 };
     for (int k = 1; k <= TIMES; k++)
-        if (motion_at(s, motion, s->top.end_time * k / TIMES).angle != 0) return true;
+        if (motion_at(s, motion, time_in_run(s, k)).angle != 0) return true;
     return false;
 }
 

@@ -132,6 +132,25 @@ static void warn_of_light_bodies(struct sampler *g)
         }
 }
 
+/* By L-1 the moment on a body that turns and sticks is too large by 2 mu A times its rate of turning. At low
+ * Reynolds numbers it turns twice as fast in a shear as it should. */
+static void warn_of_turning_bodies(struct sampler *g)
+{
+    const struct scene *const s = g->scene;
+    double nu = 0;
+    for (int k = 0; k < s->n_fluid; k++) nu = max2(nu, s->fluid[k].laminar_viscosity);
+    for (int k = 0; k < s->n_solid && nu > 0; k++) {
+        if (s->solid[k].slip != SLIP_NONE || s->solid[k].clamp.n > 0) continue;
+        char place[LOCATION_TEXT];
+        scene_location(s, s->solid[k].common.line, place);
+        diag_warn(g->diag,
+                  "%s: [solid %s] is free to turn and has slip = none: the viscous moment on it is "
+                  "too large by 2 mu A times its rate of turning (mu = %.3g Pa s, A: its area). At "
+                  "low Reynolds numbers it turns too fast, by up to two times; forces are right",
+                  place, s->solid[k].common.name, nu * s->rho0);
+    }
+}
+
 /* A body that its own weight or the water beside it compresses by more than a tenth of its modulus. */
 static void warn_of_soft_bodies(struct sampler *g)
 {
@@ -287,6 +306,7 @@ enum err geometry_warn_of_bodies(struct sampler *g)
     warn_of_contact(g);
     if (g->scene->n_solid > 0) TRY(warn_of_loose_bodies(g));
     warn_of_light_bodies(g);
+    warn_of_turning_bodies(g);
     warn_of_soft_bodies(g);
     TRY(warn_of_full_clamps(g));
     warn_of_other_motions(g);

@@ -71,9 +71,10 @@ enum err geometry_sample(struct sampler *g, struct samples *p) SPHFSI_CHECKED;
 /* Sets every region's lattice, from shapes before rotation, and the scene's lattices. */
 enum err geometry_choose_lattices(struct sampler *g) SPHFSI_CHECKED;
 
-/* Marks the particles of a solid, from index `from` on, that its clamps hold. */
 /* Whether a clamp is so small a circle that it is meant as a hinge. */
 bool geometry_is_hinge(const struct shape *clamp, double dp);
+
+/* Marks the particles of a solid, from index `from` on, that its clamps hold. */
 enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
     SPHFSI_CHECKED;
 

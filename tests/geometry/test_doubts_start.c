@@ -145,6 +145,17 @@ static void test_the_moment_on_a_wall_that_turns(void)
     expect("the moment on [wall drum], which turns with slip = none, is off by 2 mu A");
     read(DRUM("slip = none\n", "motion = m\n[motion m]\nkind = expression\nturn = t\n"));
     expect("mu = 1 Pa s");
+    /* A free body, which turns by it; a clamped one does not. */
+#define FLOATER                                                               \
+    "dp = 5 mm\nend_time = 1 s\n[fluid oil]\nshape = circle 0, 0, 0.1\n"      \
+    "minus = circle 0, 0, 0.03\nsound_speed = 10\nlaminar_viscosity = 1e-3\n" \
+    "[solid ball]\nshape = circle 0, 0, 0.03\ndensity = 1000\nyoung = 1 MPa\npoisson = 0.3\n"
+    read(FLOATER "slip = none\n");
+    expect("[solid ball] is free to turn and has slip = none");
+    read(FLOATER "slip = none\nclamp = circle 0, 0, 0.012\n");
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
+    read(FLOATER);
+    TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "free to turn"), warnings);
     /* It slides along a probe at its face. */
     read(DRUM("", "motion = m\n[motion m]\nkind = rotation\nangle = 1\n") FACE);
     TEST_ASSERT_NULL_MESSAGE(strstr(warnings, "begins at"), warnings);
