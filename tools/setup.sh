@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Finds what sphfsi needs and, where it may, installs what is missing.
 #
-#   tools/setup.sh build    C compiler with OpenMP, HDF5, zlib     -> build/hdf5.mk, and
+#   tools/setup.sh build    C compiler with OpenMP, HDF5           -> build/hdf5.mk, and
 #                           build/python where there is a Python for plot
 #   tools/setup.sh test     the above, Unity, Python as for plot   -> build/unity.mk
 #   tools/setup.sh plot     Python 3 with numpy, matplotlib, h5py  -> build/python
@@ -34,7 +34,7 @@ lacks() { missing+=("$1") packages+=($2) formulas+=($3); }
 # Writes $2 to the file $1, unless it says so already.
 record() { [ "$(cat "$1" 2>/dev/null)" = "$2" ] || { mkdir -p build && echo "$2" >"$1"; }; }
 
-# --- compiler, HDF5 and the zlib that it packs with ---
+# --- compiler and HDF5 ---
 
 compiler_works() {
     echo 'int omp_get_max_threads(void); int main(void) { return !omp_get_max_threads(); }' |
@@ -85,7 +85,7 @@ hdf5_flags() {
 
 find_build() {
     # Found earlier for the same compiler and prefix, and still there: enough.
-    local key="# $CC ${HDF5_PREFIX:-} with zlib" flags
+    local key="# $CC ${HDF5_PREFIX:-}" flags
     if [ "$(head -n 1 build/hdf5.mk 2>/dev/null)" = "$key" ] && have "${CC%% *}" &&
         [ -e "$(sed -n 's/^# header //p' build/hdf5.mk)" ]; then
         return
@@ -99,11 +99,9 @@ find_build() {
             sed -n 's/^# [0-9]* "\(.*\/hdf5\.h\)".*/\1/p' | head -n 1)
         if [ -z "$header" ]; then
             lacks "HDF5's header, hdf5.h" "libhdf5-dev pkg-config" "hdf5 pkg-config"
-        elif ! echo '#include <zlib.h>' | $CC -E - >/dev/null 2>&1; then
-            lacks "zlib's header, zlib.h" zlib1g-dev zlib
         else
             record build/hdf5.mk "$key"$'\n'"# header $header
-HDF5_CFLAGS := $cflags"$'\n'"HDF5_LIBS := $libs -lz"
+HDF5_CFLAGS := $cflags"$'\n'"HDF5_LIBS := $libs"
         fi
     fi
 }

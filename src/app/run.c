@@ -36,7 +36,6 @@ struct run {
     struct series *probe_rows; /* [probes.n_files] */
     struct series ledger_rows;
     struct snapshots snapshots;
-    bool snapshot_lost; /* a snapshot could not be published, and the run stops */
     struct image image; /* a recent sound state, in case a guard stops the run */
     char *case_text;    /* effective case */
     char restarted_from[PATH_BYTES], checkpoint[PATH_BYTES];
@@ -152,18 +151,8 @@ static enum err judge_snapshot(struct run *r, enum err e, double time, struct di
     return ERR_OK;
 }
 
-static enum err wait_for_snapshot(struct run *r)
-{
-    struct diag why = session_diag(r->options);
-    const enum err e = snapshots_wait(&r->snapshots, &why);
-    const enum err judged = judge_snapshot(r, e, r->due[OUT_SNAPSHOT].written, &why);
-    r->snapshot_lost |= judged != ERR_OK;
-    return judged;
-}
-
 static enum err write_snapshot(struct run *r)
 {
-    TRY(wait_for_snapshot(r));
     struct diag why = session_diag(r->options);
     const enum err e = snapshots_write(&r->snapshots, r->s, &why);
     return judge_snapshot(r, e, r->s->state.time, &why);
@@ -172,7 +161,6 @@ static enum err write_snapshot(struct run *r)
 static enum err write_checkpoint(struct run *r)
 {
     r->wall_checkpoint = wall_clock();
-    TRY(wait_for_snapshot(r));
     TRY(capture(r, r->diag));
     TRY(store(r, r->diag));
     return write_summary(r, "running", "", r->diag);
@@ -318,21 +306,17 @@ static enum err advance(struct run *r)
         }
         TRY(write_due(r, false));
     }
-    TRY(write_due(r, true));
-    return wait_for_snapshot(r);
+    return write_due(r, true);
 }
 
 /* After a failure: saves what can be saved. The message remains that of the failure. */
 static void save_last_state(struct run *r, enum err why)
 {
     struct diag second = session_diag(r->options);
-    /* A checkpoint of the image needs all rows and snapshots up to its time, for a restart without a gap. */
-    const bool whole = !r->snapshot_lost && wait_for_snapshot(r) == ERR_OK;
-    if (why != ERR_INTERRUPT && whole && r->image.size > 0 && store(r, &second))
+    if (why != ERR_INTERRUPT && r->image.size > 0 && store(r, &second))
         diag_warn(&second, "the last valid state could not be saved: %s", second.text);
     second.code = ERR_OK;
-    if (why == ERR_GUARD &&
-        (snapshots_write(&r->snapshots, r->s, &second) || snapshots_wait(&r->snapshots, &second)))
+    if (why == ERR_GUARD && snapshots_write(&r->snapshots, r->s, &second))
         diag_warn(&second, "the state at the stop could not be saved: %s", second.text);
     second.code = ERR_OK;
     const char *reason = why == ERR_GUARD       ? "guard"

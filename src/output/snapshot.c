@@ -28,42 +28,31 @@ static int64_t integer_value(enum data what, const struct simulation *s, enum ki
 
 /* The source of a snapshot. */
 struct source {
-    const struct simulation *s;
+    const struct simulation *sim;
     double unit; /* to which positions are rounded; 0: not rounded */
 };
 
-static int64_t clamp(int64_t value, int64_t most)
-{
-    return value < 0 ? 0 : value > most ? most : value;
-}
-
 /* A snapshot_values callback: rows are the particles of all kinds, in the order of the kinds. */
-static void values_of(const void *context, enum data what, int column, int64_t first, int64_t n,
-                      void *values)
+static void values_of(const void *context, enum data what, int column, int64_t n, void *values)
 {
     const struct source *const source = context;
-    const struct simulation *const s = source->s;
+    const struct simulation *const sim = source->sim;
     const double unit = what == D_POINTS ? source->unit : 0;
-    double *const real = values;
-    int64_t *const integer = values;
+    double *real = values;
+    int64_t *integer = values;
     if (what == D_CONNECTIVITY || what == D_OFFSETS) { /* each point is a VTK cell */
-        for (int64_t row = 0; row < n; row++) integer[row] = first + row;
+        for (int64_t row = 0; row < n; row++) integer[row] = row;
         return;
     }
-    const bool is_real = snapshot_file_real(what);
-    int64_t row = 0;
-    for (int kind = 0; kind < KIND_COUNT; kind++) {
-        const int64_t most = s->kind[kind].n, end = clamp(first + n, most);
-        for (int64_t i = clamp(first, most); i < end; i++, row++) {
-            if (!is_real) {
-                integer[row] = integer_value(what, s, (enum kind)kind, i);
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t i = 0; i < sim->kind[kind].n; i++) {
+            if (!snapshot_file_real(what)) {
+                *integer++ = integer_value(what, sim, (enum kind)kind, i);
                 continue;
             }
-            const double value = snapshot_value(what, s, (enum kind)kind, i, column);
-            real[row] = unit > 0 ? nearbyint(value / unit) * unit : value;
+            const double value = snapshot_value(what, sim, (enum kind)kind, i, column);
+            *real++ = unit > 0 ? nearbyint(value / unit) * unit : value;
         }
-        first -= most;
-    }
 }
 
 static bool append_step_rows(hid_t root, double time, int64_t n, int64_t steps, int64_t points)
@@ -197,7 +186,30 @@ static void quiet_end(struct quiet q)
     pthread_mutex_unlock(&hdf5_mutex);
 }
 
-/* Fills the spare and starts the swap. */
+static bool sync_file(const char *path)
+{
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    const bool ok = fd >= 0 && fsync(fd) == 0;
+    if (fd >= 0) close(fd);
+    return ok;
+}
+
+/* Swaps the names of both files. The spare is synced before and the folder after the swap, so that a power
+ * failure leaves a complete file. On a file system without hard links the old file is deleted. */
+static enum err swap_with_spare(const struct snapshots *w, struct diag *d)
+{
+    char old[PATH_BYTES];
+    TRY(path_join(old, w->folder, "fields.vtkhdf.spare.old", d));
+    unlink(old);
+    const bool linked = link(w->path, old) == 0;
+    if (!sync_file(w->spare) || rename(w->spare, w->path) != 0)
+        return diag_fail(d, ERR_IO, "%s: cannot be replaced by %s: %s", w->path, w->spare,
+                         strerror(errno));
+    if (linked) rename(old, w->spare);
+    return directory_sync(w->folder, d);
+}
+
+/* Fills the spare and swaps it with the named file. */
 static enum err update(struct snapshots *w, int64_t steps, struct simulation *s, struct diag *d)
 {
     const struct quiet q = quiet_begin();
@@ -211,8 +223,7 @@ static enum err update(struct snapshots *w, int64_t steps, struct simulation *s,
                          "%s: a snapshot cannot be written: %s; those before it are kept", w->path,
                          why ? strerror(why) : "HDF5 reports a failure");
     }
-    publish_begin(&w->publishing, w->folder, w->path, w->spare);
-    return ERR_OK;
+    return swap_with_spare(w, d);
 }
 
 enum err snapshots_create(struct snapshots *w, const char *folder, const struct scene *scene,
@@ -269,27 +280,17 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
                          w->path);
     if (keep == all) return ERR_OK;
     TRY(update(w, keep, NULL, d));
-    TRY(snapshots_wait(w, d));
     unlink(w->spare);
     return ERR_OK;
 }
 
-enum err snapshots_wait(struct snapshots *w, struct diag *d)
-{
-    return publish_end(&w->publishing, d);
-}
-
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d)
 {
-    TRY(snapshots_wait(w, d));
     simulation_refresh(s);
     return update(w, -1, s, d);
 }
 
 void snapshots_close(struct snapshots *w)
 {
-    struct diag ignored = {.code = ERR_OK};
-    const enum err e = snapshots_wait(w, &ignored);
-    (void)e;
     if (w->spare[0]) unlink(w->spare);
 }

@@ -6,17 +6,14 @@
 #include "base/files.h"
 #include "time/simulation.h"
 #include "output/snapshot_file.h"
-#include "output/publish.h"
 
 /* Two files alternate, so that a reader always finds a complete one: a snapshot is appended to the spare
- * file, then the two swap names (output/publish.h). The spare is one snapshot older and is brought up to
- * date first. */
+ * file, then the two swap names. The spare is one snapshot older and is brought up to date first. */
 struct snapshots {
     char folder[PATH_BYTES], path[PATH_BYTES], spare[PATH_BYTES];
     const struct scene *scene;
     struct snapshot_layout layout;
     const char *version; /* of the program */
-    struct publishing publishing;
 };
 
 /* Starts without snapshots; or continues with those up to `time`, `last` being the time of the last one or
@@ -27,12 +24,10 @@ enum err snapshots_resume(struct snapshots *w, const char *folder, const struct 
                           const char *version, double time, double *last, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Appends a snapshot. It is in the named file when snapshots_wait or the next snapshots_write returns: a
- * thread waits for the disk meanwhile. */
+/* Appends a snapshot and waits until it is on the disk. */
 enum err snapshots_write(struct snapshots *w, struct simulation *s, struct diag *d) SPHFSI_CHECKED;
-enum err snapshots_wait(struct snapshots *w, struct diag *d) SPHFSI_CHECKED;
 
-/* Waits, and removes the spare. */
+/* Removes the spare. */
 void snapshots_close(struct snapshots *w);
 
 #endif

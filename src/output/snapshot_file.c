@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/snapshot_file.h"
 
-#include "output/snapshot_pack.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -199,123 +197,33 @@ bool snapshot_file_append(hid_t root, enum data what, void *value)
     return (set < 0 || H5Dclose(set) >= 0) && ok;
 }
 
-/* --- rows of points, by all threads --- */
+/* --- rows of points --- */
 
-/* A dataset that grows by the rows first to last - 1. */
-struct growing {
-    hid_t set;
-    struct packing packing;
-    int64_t chunk; /* its rows */
-    int64_t first, last;
-};
-
-/* The new rows of one chunk. */
-struct chunk_update {
-    enum data what;
-    struct block at;
-};
-
-static bool open_growing(struct growing *g, hid_t root, const struct column *c, int64_t n)
+/* Appends n rows to a dataset, one column at a time, in which HDF5 compresses them. */
+static bool append_rows(hid_t root, const struct snapshot_layout *layout, enum data what, int64_t n,
+                        snapshot_values *values_of, const void *context, void *values)
 {
-    hsize_t chunk[2];
-    g->set = H5Dopen2(root, c->name, H5P_DEFAULT);
-    if (g->set < 0 || !size_of_chunk(g->set, chunk)) return false;
-    g->packing = packing_of(g->set, chunk[1]);
-    g->chunk = (int64_t)chunk[0];
-    g->first = add_rows(g->set, c, n + (c->growth == BY_POINT_AND_ONE));
-    g->last = g->first + n + (c->growth == BY_POINT_AND_ONE);
-    return g->first >= 0;
-}
-
-/* Lists the updates of a snapshot; only counts them if `list` is NULL. */
-static int64_t list_updates(const struct growing growing[D_COUNT], struct chunk_update *list)
-{
-    int64_t n = 0;
-    for (int k = 0; k < D_COUNT; k++)
-        for (int column = 0; column < (growing[k].chunk > 0 ? columns[k].width : 0); column++)
-            for (int64_t row = growing[k].first, end; row < growing[k].last; row = end) {
-                end = row - row % growing[k].chunk + growing[k].chunk;
-                if (end > growing[k].last) end = growing[k].last;
-                if (list)
-                    list[n] = (struct chunk_update){(enum data)k, {row, end - row, column, 1}};
-                n++;
-            }
-    return n;
-}
-
-/* Reads the older rows of the chunk, appends the new ones and compresses the chunk. If pack_chunk does not
- * support its filters, the result is the values of the new rows. */
-static struct packed_chunk pack_update(const struct growing *g, const struct chunk_update *update,
-                                       snapshot_values *values_of, const void *context,
-                                       char *buffer)
-{
-    const struct block *const b = &update->at;
-    const int64_t old = g->packing.known ? b->row % g->chunk : 0;
-    const struct block before = {b->row - old, old, b->column, 1};
-    const int64_t rest = g->chunk - old - b->rows;
-    bool ok;
-#pragma omp critical
-    ok = move_block(g->set, &columns[update->what], before, buffer, false);
-    if (!ok) return (struct packed_chunk){NULL, 0, 0};
-    ASSERT(old >= 0 && b->rows > 0 && rest >= 0);
-    values_of(context, update->what, b->column, b->row - g->first, b->rows, buffer + old * 8);
-    if (!g->packing.known) return (struct packed_chunk){buffer, 0, 0};
-    memset(buffer + (old + b->rows) * 8, 0, (size_t)rest * 8);
-    return pack_chunk(&g->packing, g->chunk, buffer);
-}
-
-static bool write_update(const struct growing *g, const struct chunk_update *update,
-                         const struct packed_chunk *chunk, void *buffer)
-{
-    const struct block *const b = &update->at;
-    const hsize_t at[2] = {(hsize_t)(b->row - b->row % g->chunk), (hsize_t)b->column};
-    if (!chunk->bytes) return false;
-    if (!g->packing.known) return move_block(g->set, &columns[update->what], *b, buffer, true);
-    return H5Dwrite_chunk(g->set, H5P_DEFAULT, chunk->filters, at, chunk->size, chunk->bytes) >= 0;
-}
-
-/* Threads compress chunks in parallel. One thread at a time calls HDF5; chunks are written in list order. */
-static bool write_updates(const struct growing growing[D_COUNT], const struct chunk_update *list,
-                          int64_t n, int64_t chunk, snapshot_values *values_of, const void *context)
-{
-    const int threads = thread_count(); /* with fewer, libgomp would end threads and restart them */
-    char *const buffers = malloc((size_t)(threads * chunk) * PACK_BYTES);
-    bool ok = buffers != NULL;
-    const int64_t count = ok ? n : 0;
-#pragma omp parallel num_threads(threads)
-    {
-        char *const own = buffers + thread_index() * chunk * PACK_BYTES;
-#pragma omp for ordered schedule(dynamic, 1)
-        for (int64_t k = 0; k < count; k++) {
-            const struct growing *const g = &growing[list[k].what];
-            const struct packed_chunk made = pack_update(g, &list[k], values_of, context, own);
-#pragma omp ordered
-#pragma omp critical
-            ok = ok && write_update(g, &list[k], &made, own);
-        }
+    const struct column *const c = &columns[what];
+    const hid_t set = layout->has[what] ? H5Dopen2(root, c->name, H5P_DEFAULT) : -1;
+    if (set < 0) return !layout->has[what];
+    const int64_t first = add_rows(set, c, n);
+    bool ok = first >= 0;
+    for (int column = 0; ok && column < c->width; column++) {
+        values_of(context, what, column, n, values);
+        ok = move_block(set, c, (struct block){first, n, column, 1}, values, true);
     }
-    free(buffers);
-    return ok;
+    return H5Dclose(set) >= 0 && ok;
 }
 
 bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
                                  snapshot_values *values_of, const void *context)
 {
-    struct growing growing[D_COUNT] = {0};
-    int64_t chunk = 0;
-    bool ok = true;
-    for (int k = D_POINTS; ok && k < D_COUNT; k++) {
-        if (!layout->has[k]) continue;
-        ok = open_growing(&growing[k], root, &columns[k], n);
-        chunk = growing[k].chunk > chunk ? growing[k].chunk : chunk;
-    }
-    struct chunk_update *const list =
-        ok ? malloc((size_t)list_updates(growing, NULL) * sizeof *list) : NULL;
-    ok = list &&
-         write_updates(growing, list, list_updates(growing, list), chunk, values_of, context);
-    free(list);
-    for (int k = 0; k < D_COUNT; k++)
-        if (growing[k].set > 0 && H5Dclose(growing[k].set) < 0) ok = false;
+    void *const values = malloc((size_t)(n + 1) * sizeof(double));
+    bool ok = values != NULL;
+    for (int k = D_POINTS; ok && k < D_COUNT; k++)
+        ok = append_rows(root, layout, (enum data)k, n + (columns[k].growth == BY_POINT_AND_ONE),
+                         values_of, context, values);
+    free(values);
     return ok;
 }
 

@@ -32,13 +32,11 @@ bool snapshot_file_set_steps(hid_t file, int64_t n);
 /* Appends a row to a dataset of the group /VTKHDF that has one column and grows by the step. */
 bool snapshot_file_append(hid_t root, enum data what, void *value);
 
-/* A callback that writes the values of rows first to first + n - 1 of a snapshot in one column: double or
- * int64_t (snapshot_file_real). Several threads call it at the same time. */
-typedef void snapshot_values(const void *context, enum data what, int column, int64_t first,
-                             int64_t n, void *values);
+/* A callback that writes the n values of a snapshot in one column: double or int64_t (snapshot_file_real). */
+typedef void snapshot_values(const void *context, enum data what, int column, int64_t n,
+                             void *values);
 
-/* Appends a snapshot of n points to all datasets of points. All threads compress; the file does not depend on
- * their number. */
+/* Appends a snapshot of n points to all datasets of points. */
 bool snapshot_file_append_points(hid_t root, const struct snapshot_layout *layout, int64_t n,
                                  snapshot_values *values_of, const void *context);
 

@@ -23,8 +23,8 @@
 #include <time.h>
 #include <unistd.h>
 
-static atomic_long countdown = -1; /* a thread publishes snapshots */
-static bool broken;                /* all later calls fail, too */
+static atomic_long countdown = -1;
+static bool broken; /* all later calls fail, too */
 static atomic_bool hit;
 static const char *which; /* the first that failed */
 static int warnings;
