@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/slow.h"
+#include "coupling/bounds.h"
 
 #include "case/params.h"
 #include "time/timestep.h"
@@ -82,7 +83,7 @@ static void warn_of_bodies(const struct simulation *s, struct diag *d)
     const double added = s->dt_bound[BOUND_added_mass], solid = s->dt_bound[BOUND_solid];
     if (s->effects & FX_COUPLING && added < 0.1 * acoustic) {
         int lightest;
-        timestep_added_mass(s, &lightest);
+        coupling_added_mass_step(&s->coupling, &lightest);
         const struct scene_solid *const body = &s->scene->solid[lightest];
         place_of(s->scene, SECTION_solid, lightest, "density", place);
         diag_warn(d,

@@ -2,7 +2,7 @@
  * Loads a checkpoint into a case with other physics: checks and resets what a restart can rely on. */
 #include "output/checkpoint.h"
 #include "base/elementary.h"
-#include "solid/interface.h"
+#include "coupling/impulse.h"
 #include "time/account.h"
 
 #include <inttypes.h>
@@ -79,7 +79,7 @@ static void clear_interface_impulse(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     if (!p->interface_pressure || s->effects & FX_IMPEDANCE) return;
-    for (int64_t i = 0; i < p->n; i++) interface_forget(p, i);
+    for (int64_t i = 0; i < p->n; i++) impulse_clear(p, i);
 }
 
 /* Whether the order of the checkpoint is one of the present grid. It stays then, so that a fork without a

@@ -3,7 +3,6 @@
 
 #include "case/expr.h"
 #include "geometry/outline.h"
-#include "solid/interface.h"
 
 #include <math.h>
 
@@ -161,13 +160,7 @@ void loads_place_clamps(struct loads *v, struct particles *p, double time)
         p->uy[i] = at.x[1] - p->Y[i];
         p->vx[i] = at.v[0];
         p->vy[i] = at.v[1];
-        if (p->interface_pressure) interface_forget(p, i); /* a new clamp after a fork has it */
     }
-}
-
-void clear_driven_normals(const struct loads *v, struct particles *p)
-{
-    for (int64_t k = 0; k < v->n_held; k++) p->face_x[v->held[k]] = p->face_y[v->held[k]] = 0;
 }
 
 /* Dead loads: their direction is constant and does not follow the surface. */

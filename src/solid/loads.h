@@ -12,10 +12,6 @@ enum err loads_create(struct loads *v, struct arena *a, const struct scene *scen
 /* Sets position and velocity of the particles of moving clamps at a time. By one thread. */
 void loads_place_clamps(struct loads *v, struct particles *p, double time);
 
-/* Clears the interface normals (solid/interface.h) of the particles of moving clamps: their motion
- * is given, and the fluid does not change it. By one thread. */
-void clear_driven_normals(const struct loads *v, struct particles *p);
-
 /* Adds the loads to sx, sy; sets the acceleration of the particles of moving clamps to that of
  * their motion. By one thread, after all other forces. */
 void loads_forces(struct loads *v, const struct solid *s, struct particles *p, double time);

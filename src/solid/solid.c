@@ -6,7 +6,6 @@
 
 #include "solid/contact.h"
 #include "solid/loads.h"
-#include "solid/interface.h"
 #include "base/barrier.h"
 #include "case/effects.h"
 #include "case/params.h"
@@ -148,6 +147,7 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->n_bodies = scene->n_solid;
     s->dp = INFINITY;
     s->coupled = p->groups & G_COUPLED;
+    s->kick = solid_free_kick;
     s->body = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->body, "bodies", d);
     if (!s->body) return ERR_MEMORY;
     s->paper_step = INFINITY;
@@ -312,22 +312,25 @@ static void pack_motion(const struct chunk *own)
     together(own, HALO_POSITION);
 }
 
-/* Kick and drift, with the fluid's impedance where the body touches fluid. */
-SPHFSI_INLINE void kick_and_drift(const struct chunk *own, double kick, double drift, bool impeded)
+void solid_free_kick(const struct particles *p, int64_t first, int64_t end, double kick,
+                     double drift)
+{
+#pragma omp simd
+    for (int64_t i = first; i < end; i++) {
+        p->vx[i] += kick * p->sx[i];
+        p->vy[i] += kick * p->sy[i];
+        p->ux[i] += drift * p->vx[i];
+        p->uy[i] += drift * p->vy[i];
+    }
+}
+
+static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, double drift)
 {
     const struct particles *const p = own->p;
     const struct solid_pack *const pack = own->s->pack;
     const int64_t end = own->last < own->s->n_packs ? pack[own->last].i : p->n;
     const int64_t first = own->first < own->last ? pack[own->first].i : end;
-#pragma omp simd
-    for (int64_t i = first; i < end; i++) {
-        const double before = impeded ? p->vx[i] * p->face_x[i] + p->vy[i] * p->face_y[i] : 0;
-        p->vx[i] += kick * p->sx[i];
-        p->vy[i] += kick * p->sy[i];
-        if (impeded) impedance_kick(p, i, before);
-        p->ux[i] += drift * p->vx[i];
-        p->uy[i] += drift * p->vy[i];
-    }
+    f(p, first, end, kick, drift);
     pack_motion(own);
 }
 
@@ -386,7 +389,7 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
 {
     struct particles *const p = own->p;
     const double first = centred ? 0.5 * dt : 0;
-    kick_and_drift(own, 0, first, false);
+    kick_and_drift(own, solid_free_kick, 0, first);
     if (centred) place_clamps(own, s->time + first);
     for (int k = 0; k < n; k++) {
         stress_sweeps(own);
@@ -397,10 +400,7 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
             solid_book_work(s, p, p->vx, p->vy, dt);
         }
         const double drift = k + 1 < n ? dt : dt - first;
-        if (s->impedance > 0)
-            kick_and_drift(own, dt, drift, true);
-        else
-            kick_and_drift(own, dt, drift, false);
+        kick_and_drift(own, s->kick, dt, drift);
         place_clamps(own, k + 1 < n ? s->time + (k + 1) * dt + first : s->time + n * dt);
     }
 }
@@ -419,11 +419,6 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
     bool in_parts = false;
 #pragma omp parallel num_threads(s->threads) if (!calls_program(s))
     {
-        if (s->impedance > 0) interface_begin(s, p, dt);
-        if (s->impedance > 0 && s->loads) {
-#pragma omp single
-            clear_driven_normals(s->loads, p);
-        }
         if (steps_parts(s, n)) {
             struct solid_part *const part = &s->part[thread_index()];
             const struct chunk own = {&part->solid, &part->p, 0, part->solid.n_packs, part};
@@ -436,13 +431,22 @@ void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool 
             const struct chunk own = chunk_of(s, p);
             substeps(s, &own, dt, n, centred);
         }
-        if (s->impedance > 0) {
-#pragma omp barrier
-            interface_end(s, p);
-        }
     }
     s->in_parts = in_parts;
     s->time += n * dt;
+}
+
+double solid_set_positions(struct particles *p)
+{
+    double moved2 = 0;
+#pragma omp parallel for simd schedule(static) reduction(max : moved2)
+    for (int64_t i = 0; i < p->n; i++) {
+        const double x = p->X[i] + p->ux[i], y = p->Y[i] + p->uy[i];
+        moved2 = max2(moved2, square(x - p->x[i]) + square(y - p->y[i]));
+        p->x[i] = x;
+        p->y[i] = y;
+    }
+    return sqrt(moved2);
 }
 
 void solid_show(const struct solid *s, struct particles *p)

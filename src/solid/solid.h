@@ -26,11 +26,17 @@ struct solid_forces_now {
 };
 struct solid_forces_now solid_forces_now(struct solid *s, struct particles *p, double time);
 
-/* n sub-steps of dt with the fluid's force and its impedance. Semi-implicit Euler (Eq. 27): kick,
+/* n sub-steps of dt with the fluid's force. Semi-implicit Euler (Eq. 27): kick,
  * drift. With `centred`: half drift, kick, half drift, second order in time. Gradients, stresses,
  * accelerations and packed fields are those of the last sub-step only after solid_show and
  * solid_stress. */
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred);
+
+/* Kick and drift where no fluid resists them. */
+solid_kick solid_free_kick;
+
+/* x = X + u; returns the largest displacement by it, m. */
+double solid_set_positions(struct particles *p);
 
 /* Gradients, stresses and accelerations of the last evaluation to p. */
 void solid_show(const struct solid *s, struct particles *p);

@@ -79,6 +79,10 @@ struct solid;
 /* Processes the packs from `first` to before `last`. */
 typedef void solid_sweep(const struct solid *s, struct particles *p, int64_t first, int64_t last);
 
+/* Kick by the accelerations and drift, s, of the particles from first to end - 1. */
+typedef void solid_kick(const struct particles *p, int64_t first, int64_t end, double kick,
+                        double drift);
+
 /* The sweeps of one precision. Bodies with the variational form have a separate pass over pairs:
  * for the hourglass and viscous forces, and for the stress, to which the hourglass force adds. */
 struct solid_sweeps {
@@ -126,10 +130,7 @@ struct solid {
     bool calls_out; /* a motion may be a function of the program, called on its own thread */
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
-    double
-        exchange_time; /* over which the fluid receives an interface impulse, s: as in the state */
-    double
-        impedance; /* rho0 c0 of the fluid at the interface, kg/(m^2 s); 0: there are no sub-steps */
+    solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
     double work;   /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };

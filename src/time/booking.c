@@ -239,7 +239,7 @@ void book_solid(struct simulation *s, double dt, int n, bool centred)
         const double ux = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
         const double uy = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
         fluid[p->body[i]] += p->fx[i] * ux + p->fy[i] * uy;
-        if (s->solid.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
+        if (s->coupling.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
         if (external[0]) outer[p->body[i]] += mass * (external[0][i] * ux + external[1][i] * uy);
     }
     for (int k = 0; k < s->scene->n_solid; k++) {

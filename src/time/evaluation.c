@@ -6,7 +6,9 @@
 #include <string.h>
 
 #include "particles/kernel.h"
+#include "time/booking.h"
 #include "time/integrators.h"
+#include "time/timestep.h"
 
 double phase_add(struct simulation *s, enum phase phase, double since)
 {
@@ -99,6 +101,16 @@ void evaluate_start(struct simulation *s)
     evaluate_fluid(s, s->state.time);
     s->evaluated = false;
     if (s->effects & FX_DAMPER) fluid_follow_density(&s->fluid, &s->kind[KIND_FLUID], s->state.dt);
+}
+
+void advance_structure(struct simulation *s, double dt, double kick)
+{
+    const int n = timestep_substeps(s, dt);
+    s->solid_max_move = coupling_advance(&s->coupling, dt, n, kick, s->state.dt);
+    book_solid(s, dt, n, s->coupling.centred);
+    s->substeps = n;
+    s->state.solid_substeps += n;
+    s->state.solid_evaluations += n;
 }
 
 /* The extremes over a range of fluid particles, without branches. */

@@ -33,23 +33,15 @@ void advance_fluid(struct simulation *s, advance_rows *rows, const void *by);
 /* Finds the extremes of the fluid's present state. */
 void update_extremes(struct simulation *s);
 
-/* n solid steps within a fluid step of dt, with a constant fluid force or with the impedance
- * (T-35a). Afterwards the fluid uses the solid's mean velocity over the step, extrapolated to its
- * end, and mean acceleration (T-35). */
-void advance_solid(struct simulation *s, double dt, int n, bool centred);
-
-/* T-35b: the time over which the fluid receives the interface impulse follows the steps, here one of dt. */
-void follow_exchange(struct simulation *s, double dt);
+/* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the fluid for
+ * `kick`. */
+void advance_structure(struct simulation *s, double dt, double kick);
 
 /* Calls the accelerations of the program that uses the library, for a kind at a time. */
 void find_external(struct simulation *s, enum kind kind, double time);
 
 /* Sets position, velocity and acceleration of moving walls at a time. */
 void move_walls(struct simulation *s, double time);
-
-/* x = X + u for the solid; returns the square of the largest displacement of a particle by it,
- * m^2. */
-double place_solid(struct particles *p);
 
 /* Adds the time since `since` to a phase and returns the present time. */
 double phase_add(struct simulation *s, enum phase phase, double since);

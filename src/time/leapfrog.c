@@ -5,7 +5,6 @@
  * same work. */
 #include <string.h>
 
-#include "solid/interface.h"
 #include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
@@ -61,20 +60,8 @@ static void update_fluid(struct simulation *s, double dt, double dt_old, double 
     p->ddens = oldest;
 }
 
-/* Over its sub-steps the structure gets exactly the impulse given to the fluid: the fluid's kick
- * goes from half a step behind to half a step ahead. */
-static void weigh_force(struct particles *p, double share)
-{
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] *= share;
-        p->fy[i] *= share;
-    }
-}
-
 void leapfrog_step(struct simulation *s, double t_limit)
 {
-    struct particles *const solid = &s->kind[KIND_SOLID];
     struct state *const st = &s->state;
     evaluate_start(s);
     double clock = wall_clock();
@@ -83,14 +70,7 @@ void leapfrog_step(struct simulation *s, double t_limit)
     book_step(s, dt);
     update_fluid(s, dt, dt_old, st->dt_old);
     clock = phase_add(s, PHASE_update, clock);
-    if (s->effects & FX_COUPLING) {
-        if (s->effects & FX_IMPEDANCE) {
-            interface_settle(&s->solid, solid, 0.5 * (dt_old + dt));
-            follow_exchange(s, dt);
-        }
-        weigh_force(solid, 0.5 * (dt_old + dt) / dt);
-        advance_solid(s, dt, timestep_substeps(s, dt), true);
-    }
+    if (s->effects & FX_COUPLING) advance_structure(s, dt, 0.5 * (dt_old + dt));
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);
     phase_add(s, PHASE_update, clock);

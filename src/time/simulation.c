@@ -95,15 +95,6 @@ static const char *remedy_of_substeps(const struct simulation *s)
     return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
 }
 
-/* T-35b: begins with the longest possible step; a checkpoint has the time that its run had. */
-static void start_exchange(struct simulation *s)
-{
-    double *const time = &s->state.exchange_time;
-    if (!(s->effects & FX_IMPEDANCE)) *time = 0;
-    if (s->effects & FX_IMPEDANCE && *time == 0) *time = timestep_fluid_limit(s);
-    s->solid.exchange_time = *time;
-}
-
 /* Sub-steps help where the solid's step is the smaller one. */
 static enum err choose_rate(struct simulation *s, struct diag *d)
 {
@@ -121,8 +112,7 @@ static enum err choose_rate(struct simulation *s, struct diag *d)
     if (!(s->effects & FX_MULTIRATE))
         s->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
     s->fluid.effects = s->effects;
-    start_exchange(s);
-    s->solid.impedance = s->effects & FX_IMPEDANCE ? s->scene->rho0 * s->scene->c0 : 0;
+    coupling_set_rate(&s->coupling, s->effects, timestep_fluid_limit(s));
     return ERR_OK;
 }
 
@@ -329,6 +319,10 @@ static enum err build(struct simulation *s, struct diag *d)
         TRY(wall_motion_create(&s->wall_motion, &s->arena, s->scene, &s->kind[KIND_WALL], d));
         move_walls(s, 0);
     }
+    coupling_create(&s->coupling, s->scene, &s->fluid, &s->solid, &s->kind[KIND_SOLID]);
+    s->coupling.exchange_time = &s->state.exchange_time;
+    s->coupling.ahead = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC ? 0.5 : 0;
+    s->coupling.centred = s->scene->top.integrator != INTEGRATOR_VERLET;
     TRY(choose_rate(s, d));
     timestep_find_grid(s);
     simulation_warn_of_steps(s, d);
@@ -517,7 +511,8 @@ enum err simulation_resume(struct simulation *s, struct diag *d)
     }
     if (s->effects & FX_SOLID) {
         timestep_set_solid(s);
-        start_exchange(s);
+        if (s->effects & FX_COUPLING)
+            coupling_set_rate(&s->coupling, s->effects, timestep_fluid_limit(s));
         contact_forget(&s->contact, &s->kind[KIND_WALL]);
         solid_stress(&s->solid, &s->kind[KIND_SOLID]); /* the guards read the last gradients */
     }

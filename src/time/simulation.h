@@ -4,6 +4,7 @@
 #ifndef SPHFSI_TIME_SIMULATION_H
 #define SPHFSI_TIME_SIMULATION_H
 
+#include "coupling/coupling.h"
 #include "particles/cells.h"
 #include "solid/contact.h"
 #include "solid/loads.h"
@@ -41,6 +42,7 @@ struct simulation {
     struct wall_motion wall_motion; /* walls that move; unused where none does */
     struct open open;               /* open boundaries; unused without any */
     struct solid solid;             /* model of the solid; unused without one */
+    struct coupling coupling;       /* of fluid and solid; unused without both */
     struct contact contact;         /* of the solid; unused without it */
     struct loads loads;             /* of the solid; unused without loads and moving clamps */
     effect_set effects;             /* bits of case/effects.h */

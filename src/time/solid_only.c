@@ -60,7 +60,7 @@ static double advance_near(struct simulation *s, double dt, int *n)
     return shorter ? gone : 0;
 }
 
-/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). place_solid sets the
+/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). solid_set_positions sets the
  * positions after the step. */
 static void external_for_step(struct simulation *s, double dt)
 {
@@ -122,7 +122,7 @@ void solid_only_step(struct simulation *s, double t_limit)
     else
         advance_lone(s, dt, n);
     if (external) book_external(s, (gone > 0 ? gone : dt) - 0.5 * dt);
-    place_solid(&s->kind[KIND_SOLID]);
+    solid_set_positions(&s->kind[KIND_SOLID]);
     phase_add(s, PHASE_solid, start);
     st->time = gone > 0 ? st->time + gone : hits ? t_limit : st->time + n * dt;
     book_lone(s, dt, n, cut ? BOUND_output : binding);

@@ -2,8 +2,7 @@
  * Symplectic predictor-corrector (Eqs. 22-24) of the paper: two evaluations a step. With solid
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
-#include "solid/interface.h"
-#include "time/filter.h"
+#include "coupling/motion.h"
 #include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
@@ -74,37 +73,6 @@ static void correct_solid(struct particles *p, double dt)
     }
 }
 
-/* Single rate: position and velocity that the fluid uses, and acceleration with the given
- * weight. */
-static void update_interface_state(struct particles *p, double newest)
-{
-    place_solid(p);
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->wx[i] = p->vx[i];
-        p->wy[i] = p->vy[i];
-        p->ax[i] += newest * (p->sx[i] - p->ax[i]);
-        p->ay[i] += newest * (p->sy[i] - p->ay[i]);
-    }
-}
-
-/* Sub-steps: position and velocity of the structure that the fluid uses half a step ahead
- * (T-35). */
-static void extrapolate_solid(struct simulation *s, double half)
-{
-    struct particles *const p = &s->kind[KIND_SOLID];
-    /* Age of its acceleration at that time. */
-    const double since = fluid_eval_lag(s, s->state.dt) + 0.5 * s->state.dt + 0.5 * half;
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        const double ax = p->ax[i] + since * p->jx[i], ay = p->ay[i] + since * p->jy[i];
-        p->x[i] = p->X[i] + p->ux[i] + half * (p->wx[i] + 0.5 * half * ax);
-        p->y[i] = p->Y[i] + p->uy[i] + half * (p->wy[i] + 0.5 * half * ay);
-        p->wx[i] += half * ax;
-        p->wy[i] += half * ay;
-    }
-}
-
 void symplectic_step(struct simulation *s, double t_limit)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
@@ -118,22 +86,20 @@ void symplectic_step(struct simulation *s, double t_limit)
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
     book_check(s);
-    if (s->effects & FX_IMPEDANCE) follow_exchange(s, dt); /* for the force of the corrector */
     predict_fluid(fluid, 0.5 * dt);
-    if (coupled && multirate) extrapolate_solid(s, 0.5 * dt);
+    if (coupled && multirate) coupling_predict(&s->coupling, dt, s->state.dt);
     if (coupled && !multirate) {
         predict_solid(solid, 0.5 * dt);
         s->solid.time = time + 0.5 * dt;
         solid_place_clamps(&s->solid, solid, s->solid.time);
-        update_interface_state(solid, 0);
+        motion_at_single_rate(&s->coupling, 0);
     }
     phase_add(s, PHASE_update, clock);
 
     evaluate_fluid(s, time + 0.5 * dt);
     book_midpoint(s, dt);
     clock = wall_clock();
-    if (s->effects & FX_IMPEDANCE) interface_settle(&s->solid, solid, dt);
-    if (coupled && multirate) advance_solid(s, dt, timestep_substeps(s, dt), true);
+    if (coupled && multirate) advance_structure(s, dt, dt);
     if (coupled && !multirate) rates_of_solid(s);
     clock = phase_add(s, PHASE_solid, clock);
 
@@ -143,7 +109,7 @@ void symplectic_step(struct simulation *s, double t_limit)
         book_solid(s, dt, 1, true);
         solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
         solid_place_clamps(&s->solid, solid, time + dt);
-        update_interface_state(solid, filter_weight(s, dt));
+        motion_at_single_rate(&s->coupling, dt / (dt + averaging_time(&s->coupling)));
         s->state.solid_substeps++;
         s->substeps = 1;
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "time/filter.h"
+#include "coupling/bounds.h"
 #include "time/timestep.h"
 
 #include <math.h>
@@ -56,29 +56,13 @@ static double bound_repulsion(const struct simulation *s, const struct fluid_ext
     return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
 }
 
-/* T-35g: viscosity stops the particles at the corner of a structure at this rate, 1/s. It is held over a
- * step of the fluid. */
-static double rate_of_drag(const struct simulation *s)
-{
-    double rate = 0;
-    if (!(s->effects & FX_COUPLING)) return rate;
-    for (int k = 0; k < s->solid.n_bodies; k++) {
-        if (s->scene->solid[k].slip != SLIP_NONE) continue;
-        const double finer = s->scene->top.dp / scene_solid_dp(s->scene, k);
-        rate = max2(rate, 8.6 * finer * s->fluid.k.nu * s->scene->rho0 /
-                              (square(s->fluid.k.h) * s->solid.body[k].density));
-    }
-    return rate;
-}
-
 /* Morris et al. 1997, Eq. 21. L-6b gives pairs with a surface twice the weight. */
 static double bound_viscous(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
     const double weight = s->effects & FX_NO_SLIP && s->effects & FX_ONE_SIDED ? 2 : 1;
     const double inside = 0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.nu);
-    const double rate = rate_of_drag(s);
-    return rate > 0 ? min2(inside, 0.9 / (2 * (1 + extrapolated_halves(s)) * rate)) : inside;
+    return s->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&s->coupling)) : inside;
 }
 
 static double bound_solid(const struct simulation *s, const struct fluid_extremes *now)
@@ -96,25 +80,11 @@ static double bound_contact(const struct simulation *s, const struct fluid_extre
     return s->effects & FX_MULTIRATE ? s->contact.approach : s->dt_solid;
 }
 
-/* Largest added mass over a particle's own mass, for a body of the fluid's density (T-35d).
- * Measured; results are as good from 1.5 to 2.75 (docs/theory.md). */
-#define ADDED_MASS 2
-
-double timestep_added_mass(const struct simulation *s, int *lightest)
-{
-    const struct solid_body *const body = s->solid.body;
-    *lightest = 0;
-    for (int k = 1; k < s->solid.n_bodies; k++)
-        if (body[k].density < body[*lightest].density) *lightest = k;
-    const double b = 2 / (1 + ADDED_MASS * s->scene->rho0 / body[*lightest].density);
-    return smoothing_lag(s) * b / ((1 + (filter_lead(s) - 1) * b) * extrapolated_halves(s));
-}
-
 static double bound_added_mass(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
     int lightest;
-    return timestep_added_mass(s, &lightest);
+    return coupling_added_mass_step(&s->coupling, &lightest);
 }
 
 /* Set below, where the remaining time is known. */

@@ -19,9 +19,6 @@ double timestep_fluid_limit(const struct simulation *s);
 double timestep_courant(const struct simulation *s);
 bool timestep_beyond(const struct simulation *s, double cfl);
 
-/* T-35d: largest step with the acceleration of the lightest body as the fluid uses it, s. */
-double timestep_added_mass(const struct simulation *s, int *lightest);
-
 /* An interval of outputs that the case may give: where, and its value, s; 0: there are none. */
 struct output_interval {
     enum section_id section;

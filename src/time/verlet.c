@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
-#include "solid/interface.h"
-#include "time/filter.h"
 #include "time/booking.h"
 #include "time/integrators.h"
 #include "time/timestep.h"
-
-#include <math.h>
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
  * previous state, dt_old + dt: as printed, a free fall would lose g (dt_old - dt). */
@@ -35,30 +31,6 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
     }
 }
 
-/* One component of T-36a: the force and its mean. The mean starts with the first force and ends
- * when it is below any significant force, N/m. */
-SPHFSI_INLINE double extrapolated(double *mean, double force, double per_time, double newest)
-{
-    const double least = 1e-30, old = *mean != 0 ? *mean : force;
-    const double next = old + newest * (force - old);
-    *mean = fabs(next) > least ? next : 0;
-    return force + per_time * (force - old);
-}
-
-/* T-36a: the constant force over the sub-steps is that at their start; `ahead`: the time from there
- * to the middle of their kicks. */
-static void extrapolate_force(struct simulation *s, double ahead)
-{
-    struct particles *const p = &s->kind[KIND_SOLID];
-    const double since = s->state.dt, newest = filter_weight(s, since);
-    const double per_time = ahead / (since + smoothing_lag(s));
-#pragma omp parallel for simd schedule(static)
-    for (int64_t i = 0; i < p->n; i++) {
-        p->fx[i] = extrapolated(&p->mean_fx[i], p->fx[i], per_time, newest);
-        p->fy[i] = extrapolated(&p->mean_fy[i], p->fy[i], per_time, newest);
-    }
-}
-
 void verlet_step(struct simulation *s, double t_limit)
 {
     evaluate_start(s);
@@ -71,15 +43,7 @@ void verlet_step(struct simulation *s, double t_limit)
     if (euler) book_restart(s);
     advance_fluid(s, update_rows, &(struct step_sizes){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
-    if (s->effects & FX_COUPLING) {
-        const int n = timestep_substeps(s, dt);
-        if (s->effects & FX_IMPEDANCE) {
-            interface_settle(&s->solid, &s->kind[KIND_SOLID], dt);
-            follow_exchange(s, dt);
-        }
-        if (s->effects & FX_FORCE_EXTRAPOLATION) extrapolate_force(s, 0.5 * (dt - dt / n));
-        advance_solid(s, dt, n, false);
-    }
+    if (s->effects & FX_COUPLING) advance_structure(s, dt, dt);
     clock = phase_add(s, PHASE_solid, clock);
     timestep_book(s, dt, t_limit, hits);
     phase_add(s, PHASE_update, clock);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "case/case.h"
+#include "coupling/bounds.h"
 #include "time/timestep.h"
 
 /* The step length as given by the case. */
@@ -49,7 +50,7 @@ static void warn_of_light_bodies(const struct simulation *s, struct diag *d)
     const double fixed = s->scene->numerics.fixed_step;
     if (!(s->effects & FX_COUPLING) || !(fixed > 0)) return;
     int lightest;
-    const double bound = timestep_added_mass(s, &lightest);
+    const double bound = coupling_added_mass_step(&s->coupling, &lightest);
     if (fixed <= bound) return;
     const struct scene_solid *const b = &s->scene->solid[lightest];
     char place[LOCATION_TEXT];

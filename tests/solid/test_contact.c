@@ -427,7 +427,8 @@ static void test_with_fluid(void)
                "[fluid drop]\nshape = box -0.05, 0, 0, 0.04\nsound_speed = 12\nvelocity = 1, 0\n"
                "[domain]\nlower = -0.2, -0.1\nupper = 0.3, 0.15\n",
         "numerics.multirate=on");
-    rig.sim.solid.impedance = 0; /* no interface impulse to be returned */
+    rig.sim.coupling.impedance = 0; /* no interface impulse to be returned */
+    rig.sim.solid.kick = solid_free_kick;
     const struct sums before = sums();
     double most = 0;
     while (rig.sim.state.time < 0.02) {

@@ -5,7 +5,8 @@
 
 #include "rig.h"
 #include "time/account.h"
-#include "time/filter.h"
+#include "coupling/motion.h"
+#include "coupling/bounds.h"
 #include "time/timestep.h"
 #include "unity.h"
 
@@ -27,7 +28,7 @@ void tearDown(void) { rig_close(&rig); }
 static double complex velocity_ratio(double z, double dt)
 {
     const bool corrector = rig.sim.scene->top.integrator == INTEGRATOR_SYMPLECTIC;
-    const double lag = fluid_eval_lag(&rig.sim, dt) / dt, weight = 1 / (1 + lag);
+    const double lag = reduced_averaging_time(&rig.sim.coupling, dt) / dt, weight = 1 / (1 + lag);
     const double complex before = cexp(-i_unit * z), mean = (1 - before) / (i_unit * z);
     const double complex filter = weight / (1 - (1 - weight) * before);
     const double complex a = filter * (1 - before), j = filter * a * (1 - before);
@@ -51,8 +52,8 @@ static void test_small_steps_have_the_excess_of_the_theory(void)
 {
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         rig_open(&rig, coupled, row[k].name, NULL);
-        const double time = smoothing_lag(&rig.sim), dt = 1e-4 * time;
-        const double theta = 0.5 * extrapolated_halves(&rig.sim) * dt;
+        const double time = averaging_time(&rig.sim.coupling), dt = 1e-4 * time;
+        const double theta = 0.5 * extrapolated_halves(&rig.sim.coupling) * dt;
         for (double of = 0.25; of < 5; of *= 2) { /* the frequency times h/c0 */
             const double wanted = theta / time * 2 * pow(of, 4) / square(1 + of * of);
             assert_near(2e-3 * wanted, wanted, excess(of * dt / time, dt), row[k].name);
@@ -64,7 +65,7 @@ static void test_the_structure_is_damped(void)
 {
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         rig_open(&rig, coupled, row[k].name, NULL);
-        const double time = smoothing_lag(&rig.sim);
+        const double time = averaging_time(&rig.sim.coupling);
         for (double share = 0.01; share <= 1; share += 0.03)
             for (double z = 0.01; z < row[k].fastest; z += 0.01)
                 TEST_ASSERT_TRUE_MESSAGE(excess(z, share * row[k].most * time) < 1, row[k].name);
@@ -77,9 +78,9 @@ static void test_light_bodies_have_the_same_excess_with_all_integrators(void)
     double first = 0;
     for (size_t k = 0; k < COUNT_OF(row); k++) {
         rig_open(&rig, coupled, row[k].name, "plate.density=20", NULL);
-        const double time = smoothing_lag(&rig.sim);
+        const double time = averaging_time(&rig.sim.coupling);
         int lightest;
-        const double step = timestep_added_mass(&rig.sim, &lightest);
+        const double step = coupling_added_mass_step(&rig.sim.coupling, &lightest);
         const double most = excess(2 * step / time, step);
         if (k == 0) first = most;
         assert_near(0.05 * first, first, most, row[k].name);

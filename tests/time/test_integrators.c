@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * One step of each integrator against Eqs. 22-27 written out, with the rates taken from the sweeps;
  * and motions that the schemes hold exactly. */
-#include "time/filter.h"
+#include "coupling/motion.h"
 #include "time/integrators.h"
 
 #include "rig.h"
@@ -31,11 +31,12 @@ static struct memory f0, f1, s0, s1;
 void setUp(void) {}
 void tearDown(void) { rig_close(&rig); }
 
-/* Without the impedance of the interface, which tests/solid/test_interface.c has. */
+/* Without the impedance of the interface, which tests/coupling/test_impulse.c has. */
 static void open(const char *integrator, const char *rate)
 {
     rig_open(&rig, gate, integrator, rate, NULL);
-    rig.sim.solid.impedance = 0;
+    rig.sim.coupling.impedance = 0;
+    rig.sim.solid.kick = solid_free_kick;
     fluid = &rig.sim.kind[KIND_FLUID];
     solid = &rig.sim.kind[KIND_SOLID];
     TEST_ASSERT_TRUE(fluid->n <= MOST && solid->n <= MOST);
@@ -55,7 +56,7 @@ static void open(const char *integrator, const char *rate)
         solid->vx[i] = solid->wx[i] = solid->free[i] * 0.1 * noise(&seed);
         solid->vy[i] = solid->wy[i] = solid->free[i] * 0.1 * noise(&seed);
     }
-    place_solid(solid);
+    solid_set_positions(solid);
 }
 
 /* State and rates as they stand. */
@@ -151,7 +152,7 @@ static void test_symplectic_step(void)
         solid->wx[i] = solid->vx[i] += 0.5 * dt * s0.ax[i];
         solid->wy[i] = solid->vy[i] += 0.5 * dt * s0.ay[i];
     }
-    place_solid(solid);
+    solid_set_positions(solid);
     rates();
     take_fluid(&f1);
     take_solid(&s1);
@@ -174,7 +175,7 @@ static void test_symplectic_step(void)
     }
     put_fluid(&f0);
     put_solid(&s0);
-    place_solid(solid);
+    solid_set_positions(solid);
     rig_steps(&rig, 1, 1);
     TEST_ASSERT_TRUE(rig.sim.state.dt == dt);
     compare(&f1, &s1);
@@ -490,8 +491,9 @@ static void test_least_lag_of_what_the_fluid_sees(void)
 {
     open("integrator=leapfrog", "numerics.multirate=on");
     const double lag = 0.0135 / 20;
-    assert_near(1e-15, lag - 1.25e-5, fluid_eval_lag(&rig.sim, 1e-5), "a short step");
-    assert_near(1e-15, lag / 4, fluid_eval_lag(&rig.sim, lag), "a long one");
+    assert_near(1e-15, lag - 1.25e-5, reduced_averaging_time(&rig.sim.coupling, 1e-5),
+                "a short step");
+    assert_near(1e-15, lag / 4, reduced_averaging_time(&rig.sim.coupling, lag), "a long one");
 }
 
 /* A block of fluid without pressure falls: v = g t and y = g t^2/2 are exact for every scheme, whatever

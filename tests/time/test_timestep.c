@@ -3,6 +3,7 @@
  * is the one that matters: stable below, unstable above. */
 #include "time/warnings.h"
 #include "rig.h"
+#include "coupling/bounds.h"
 #include "time/timestep.h"
 #include "unity.h"
 
@@ -199,12 +200,12 @@ static void test_added_mass_bound_by_hand(void)
     /* At a single rate the structure has a velocity of its own, which is not extrapolated. */
     rig_open(&rig, text, "integrator=symplectic", "numerics.multirate=off", NULL);
     int first;
-    assert_near(1e-12 * lag, lag * b / (1 + 0.75 * b), timestep_added_mass(&rig.sim, &first),
-                "one rate");
+    assert_near(1e-12 * lag, lag * b / (1 + 0.75 * b),
+                coupling_added_mass_step(&rig.sim.coupling, &first), "one rate");
     /* Of bodies that are equally light the first is named. */
     rig_open(&rig, text, "gate.density=200", NULL);
     int lightest;
-    timestep_added_mass(&rig.sim, &lightest);
+    coupling_added_mass_step(&rig.sim.coupling, &lightest);
     TEST_ASSERT_EQUAL_INT(0, lightest);
     /* The step that it allows keeps the mean's weight at b. */
     rig_open(&rig, text, "cork.density=100", NULL);

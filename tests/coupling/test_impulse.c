@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The fluid's answer to a structure within its sub-steps (T-35a, T-35b). */
+ * The impedance of the fluid within a structure's sub-steps, and the impulse (T-35a, T-35b). */
+#include "coupling/impulse.h"
 #include "time/account.h"
 #include "time/integrators.h"
-#include "solid/interface.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -36,14 +36,14 @@ static void test_wherever_there_are_substeps(void)
     for (size_t k = 0; k < COUNT_OF(single); k++) {
         open(single[k], NULL);
         TEST_ASSERT_FALSE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, single[k]);
-        TEST_ASSERT_TRUE(rig.sim.solid.impedance == 0);
+        TEST_ASSERT_TRUE(rig.sim.coupling.impedance == 0);
         rig_close(&rig);
     }
     static const char *const densities[] = {"block.density=100", "block.density=7800"};
     for (size_t k = 0; k < COUNT_OF(densities); k++) {
         open(densities[k], "block.young=1e8");
         TEST_ASSERT_TRUE_MESSAGE(rig.sim.effects & FX_IMPEDANCE, densities[k]);
-        assert_near(1e-12, 1000 * 20, rig.sim.solid.impedance, "rho0 c0");
+        assert_near(1e-12, 1000 * 20, rig.sim.coupling.impedance, "rho0 c0");
         rig_close(&rig);
     }
 }
@@ -81,13 +81,7 @@ static void face_one(void)
     solid->vy[0] = 4;
     solid->wx[0] = 0;
     solid->wy[0] = 1.25;
-    interface_begin(&rig.sim.solid, solid, 1e-4);
-}
-
-static double along(void)
-{
-    const struct particles *const p = &rig.sim.kind[KIND_SOLID];
-    return p->vx[0] * p->face_x[0] + p->vy[0] * p->face_y[0];
+    impulse_begin(&rig.sim.coupling, 1e-4);
 }
 
 /* By hand: mass 100 * 1e-4 = 0.01 kg/m, rho0 c0 = 2e4, dt = 1e-4: k = 1e-4 * 2e4 * 0.01/0.01 = 2;
@@ -100,14 +94,14 @@ static void test_kick_and_settling_by_hand(void)
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         open(integrators[k], NULL);
         face_one();
-        rig.sim.solid.exchange_time = 1e-3;
-        impedance_kick(solid, 0, along());
+        rig.sim.state.exchange_time = 1e-3;
+        impedance_kick(solid, 0, 1, 0, 0);
         assert_near(1e-12, 3 - 1.6, solid->vx[0], "vx");
         assert_near(1e-12, 4 - 6.4 / 3, solid->vy[0], "vy");
         /* At the mean velocity the impulse does the work that the kinetic energy shows. */
         assert_near(1e-12, 0.5 * (square(3 - 1.6) + square(4 - 6.4 / 3) - 25), solid->face_work[0],
                     "work");
-        interface_end(&rig.sim.solid, solid);
+        impulse_end(&rig.sim.coupling);
         assert_near(1e-14, -0.016, solid->interface_impulse_x[0], "impulse, x");
         assert_near(1e-14, -0.064 / 3, solid->interface_impulse_y[0], "impulse, y");
         assert_near(1e-8, -0.08 / 3 / (0.5 * 0.01 * 1e-3), solid->interface_pressure[0],
@@ -115,7 +109,7 @@ static void test_kick_and_settling_by_hand(void)
         for (int kick = 0; kick < 2; kick++) {
             const double waits = kick ? 0.75 * 0.75 : 0.75;
             solid->fx[0] = 7;
-            interface_settle(&rig.sim.solid, solid, 0.25e-3);
+            impulse_return(&rig.sim.coupling, 0.25e-3);
             assert_near(1e-10, 7 + waits / 0.75 * 0.016 / 1e-3, solid->fx[0], "fx");
             assert_near(1e-14, -0.016 * waits, solid->interface_impulse_x[0], "waits, x");
             assert_near(1e-14, -0.064 / 3 * waits, solid->interface_impulse_y[0], "waits, y");
@@ -132,17 +126,17 @@ static void test_kicks_of_a_heavy_body(void)
 {
     open("block.density=20000", "block.young=1e8");
     face_one();
-    impedance_kick(solid, 0, along());
+    impedance_kick(solid, 0, 1, 0, 0);
     assert_near(1e-12, 3 - 0.6 * 4 / 101, solid->vx[0], "vx");
     assert_near(1e-12, 4 - 0.8 * 4 / 101, solid->vy[0], "vy");
-    impedance_kick(solid, 0, along());
+    impedance_kick(solid, 0, 1, 0, 0);
     assert_near(1e-12, 3 - 0.6 * 4 * (1 - square(100 / 101.0)), solid->vx[0], "vx, twice");
-    interface_end(&rig.sim.solid, solid);
+    impulse_end(&rig.sim.coupling);
     assert_near(1e-13, -2 * 0.6 * 4 * (1 - square(100 / 101.0)), solid->interface_impulse_x[0],
                 "impulse, x");
     solid->free[0] = 0;
     face_one();
-    impedance_kick(solid, 0, along());
+    impedance_kick(solid, 0, 1, 0, 0);
     TEST_ASSERT_TRUE(solid->vx[0] == 3 && solid->vy[0] == 4);
 }
 
@@ -203,6 +197,13 @@ static void substeps_by_hand(double dt, int n, bool centred)
     }
 }
 
+static void advance_only(double dt, int n, bool centred)
+{
+    impulse_begin(&rig.sim.coupling, dt / n);
+    solid_advance(&rig.sim.solid, solid, dt / n, n, centred);
+    impulse_end(&rig.sim.coupling);
+}
+
 static void twin(const char *integrator, bool centred)
 {
     enum { FIELDS = 6, MOST = 32 };
@@ -225,7 +226,7 @@ static void twin(const char *integrator, bool centred)
     substeps_by_hand(dt, 5, centred);
     for (int f = 0; f < FIELDS; f++) memcpy(end[f], field[f], bytes);
     for (int f = 0; f < FIELDS; f++) memcpy(field[f], start[f], bytes);
-    advance_solid(&rig.sim, 5 * dt, 5, centred);
+    advance_only(5 * dt, 5, centred);
     double impulse = 0;
     for (int64_t i = 0; i < solid->n; i++) {
         for (int f = 0; f < FIELDS; f++)
@@ -282,23 +283,23 @@ static void test_verlet_receives_equal_parts(void)
     double received = 0, sum = 0;
     solid->wet_x[0] = 1;
     solid->wet_y[0] = 0;
-    rig.sim.solid.exchange_time = 1e-3;
-    interface_begin(&rig.sim.solid, solid, 1e-4);
+    rig.sim.state.exchange_time = 1e-3;
+    impulse_begin(&rig.sim.coupling, 1e-4);
     solid->face_x[0] = 1;
     solid->face_y[0] = 0;
     solid->face_dv[0] = 1 / rig.sim.solid.body[0].mass;
-    interface_end(&rig.sim.solid, solid);
+    impulse_end(&rig.sim.coupling);
     assert_near(1e-12, -1000, solid->interface_pressure[0],
                 "half of -1 N s over 1 ms on half of 1 m");
     static const double kicks[] = {1e-3, 1e-9, 1e-3};
     for (size_t k = 0; k < COUNT_OF(kicks); k++) {
         const double force = 0.5 * solid->interface_pressure[0];
         solid->fx[0] = force; /* that of the pressure itself */
-        interface_settle(&rig.sim.solid, solid, kicks[k]);
+        impulse_return(&rig.sim.coupling, kicks[k]);
         received += force * kicks[k];
         sum += solid->fx[0] * kicks[k];
-        interface_begin(&rig.sim.solid, solid, 1e-4);
-        interface_end(&rig.sim.solid, solid);
+        impulse_begin(&rig.sim.coupling, 1e-4);
+        impulse_end(&rig.sim.coupling);
         if (k == 0) assert_near(1e-12, -0.5, received, "half in the first step");
         assert_near(1e-12, -1 - received, solid->interface_impulse_x[0], "the rest waits");
     }
@@ -342,14 +343,14 @@ static void test_small_surface_has_no_large_pressure(void)
 {
     open(NULL, NULL);
     face_one();
-    impedance_kick(solid, 0, along());
-    interface_end(&rig.sim.solid, solid);
+    impedance_kick(solid, 0, 1, 0, 0);
+    impulse_end(&rig.sim.coupling);
     const double pressure = solid->interface_pressure[0];
     solid->wet_x[0] *= 1e-3;
     solid->wet_y[0] *= 1e-3;
-    interface_begin(&rig.sim.solid, solid, 1e-4);
-    interface_settle(&rig.sim.solid, solid, 1e-12);
-    interface_end(&rig.sim.solid, solid);
+    impulse_begin(&rig.sim.coupling, 1e-4);
+    impulse_return(&rig.sim.coupling, 1e-12);
+    impulse_end(&rig.sim.coupling);
     assert_near(1e-6 * fabs(pressure), pressure, solid->interface_pressure[0], "pressure");
 }
 
@@ -364,10 +365,9 @@ static void test_the_exchange_follows_the_steps(void)
     solid->interface_pressure[0] = 5;
     solid->interface_later[0] = 3;
     for (size_t k = 0; k < COUNT_OF(steps); k++) {
-        follow_exchange(&rig.sim, steps[k]);
-        const double now = rig.sim.solid.exchange_time;
+        impulse_set_time(&rig.sim.coupling, steps[k]);
+        const double now = rig.sim.state.exchange_time;
         assert_near(2e-9, left[k], now, "time");
-        TEST_ASSERT_TRUE(now == rig.sim.state.exchange_time);
         assert_near(1e-15, 5e-3, solid->interface_pressure[0] * now, "waits");
         assert_near(1e-15, 3e-3, solid->interface_later[0] * now, "waits for later");
     }
@@ -468,7 +468,7 @@ static void test_dry_particles_owe_nothing(void)
     for (int64_t i = 0; i < solid->n; i++) {
         TEST_ASSERT_TRUE(solid->wet_x[i] == 0);
         assert_at_most(kept, fabs(solid->interface_impulse_x[i]), "impulse");
-        assert_at_most(kept / rig.sim.solid.exchange_time, fabs(solid->fx[i]), "force");
+        assert_at_most(kept / rig.sim.state.exchange_time, fabs(solid->fx[i]), "force");
     }
 }
 

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT
+ * The impedance of the fluid at a structure within the structure's sub-steps, and the impulse that it
+ * exchanges (T-35a to T-35e). */
+#ifndef SPHFSI_COUPLING_IMPULSE_H
+#define SPHFSI_COUPLING_IMPULSE_H
+
+#include "coupling/coupling.h"
+
+/* Before sub-steps of dt: the wetted normals. Afterwards: the impulse of the sub-steps, and the pressure
+ * that gives it to the fluid. */
+void impulse_begin(struct coupling *coupling, double dt);
+void impulse_end(struct coupling *coupling);
+
+/* A kick and drift of sub-steps with T-35a. */
+solid_kick impedance_kick;
+
+/* T-35b: after an evaluation whose rates act for `kick`. */
+void impulse_return(struct coupling *coupling, double kick);
+
+/* T-35e: the exchange time follows the steps, here one of dt. */
+void impulse_set_time(struct coupling *coupling, double dt);
+
+/* Particle i and the fluid have no impulse to exchange. */
+void impulse_clear(struct particles *p, int64_t i);
+
+#endif
