@@ -3,6 +3,7 @@
 #include "coupling/coupling.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "coupling/impulse.h"
 #include "coupling/motion.h"
@@ -24,6 +25,27 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
     coupling->solid->kick = impedance ? impedance_kick : solid_free_kick;
     if (!impedance) *coupling->exchange_time = 0;
     if (impedance && *coupling->exchange_time == 0) *coupling->exchange_time = longest;
+}
+
+static void clear(double *field, int64_t n)
+{
+    if (field) memset(field, 0, (size_t)n * sizeof *field);
+}
+
+void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                          const struct cells *cells)
+{
+    const bool mixed = coupling->scene->top.precision == PRECISION_MIXED;
+    force_sweep *const find_force = mixed ? find_force_mixed : find_force_double;
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
+        struct particles *const p = &kinds[kind];
+        if (!p->fx) continue;
+        clear(p->fx, p->n); /* those without fluid nearby get no force */
+        clear(p->fy, p->n);
+        clear(p->wet_x, p->n);
+        clear(p->wet_y, p->n);
+        find_force(coupling->fluid, p, (enum kind)kind, cells);
+    }
 }
 
 /* One component of T-36a: the force and its mean. The mean starts with the first force and ends

@@ -8,6 +8,11 @@
 #include "fluid/fluid.h"
 #include "solid/solid.h"
 
+/* Eq. 21b for particles of a kind near fluid (force.h). */
+typedef void force_sweep(const struct fluid *f, struct particles *p, enum kind kind,
+                         const struct cells *c);
+extern force_sweep find_force_mixed, find_force_double;
+
 struct coupling {
     const struct scene *scene;
     const struct fluid *fluid;
@@ -25,6 +30,10 @@ struct coupling {
 
 void coupling_create(struct coupling *coupling, const struct scene *scene,
                      const struct fluid *fluid, struct solid *solid, struct particles *particles);
+
+/* After fluid_evaluate: the force of the fluid on structures, and on walls that have one. */
+void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
+                          const struct cells *cells);
 
 /* Sub-steps or not, which follows from the bounds of the step; the exchange time begins with the fluid's
  * longest step. Also after a checkpoint has been loaded, which has the exchange time of its run. */

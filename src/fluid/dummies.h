@@ -65,77 +65,7 @@ static void mirrored_velocity(const struct neighbours *neighbours, const struct 
     }
 }
 
-/* Adds sums over pairs, times a factor and the volume of each receiver, to its force. */
-SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS], double factor,
-                             const double *volume, double *fx, double *fy)
-{
-    real x[GROUPS], y[GROUPS];
-    total(sum_x, x);
-    total(sum_y, y);
-    for (int g = 0; g < GROUPS; g++) {
-        fx[g] += factor * volume[g] * (double)x[g];
-        fy[g] += factor * volume[g] * (double)y[g];
-    }
-}
-
-/* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
- * the mirrored velocity. */
-static void drag_force(const struct fluid *f, const struct neighbours *neighbours,
-                       const struct receiver *s, const double *volume,
-                       const struct vector_constants *k, double *fx, double *fy)
-{
-    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
-            const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
-            sum_x[part] = vfma(weight, q.u, sum_x[part]);
-            sum_y[part] = vfma(weight, q.v, sum_y[part]);
-        }
-    add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
-}
-
-/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with opposite
- * sign, N/m per depth; equal and opposite to the fluid's sums. With FX_IMPEDANCE also the surface
- * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
-SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
-                               const struct receiver *s, const real *own, const double *volume,
-                               const struct vector_constants *k, effect_set effects,
-                               double *const force[2], double *const wet[2])
-{
-    const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
-    const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
-    const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
-    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
-    for (int m = 0; m < neighbours->n; m++)
-        for (int part = 0; part < PARTS; part++) {
-            const uint32_t code = neighbours->code[m];
-            const real *const b = candidates(neighbours, code, part);
-            struct pair q = pair_load(s, code, b);
-            q.p = lane(b, PACKED_P);
-            vreal stress = fx_pressure(s, &q);
-            if (effects & FX_ONE_SIDED)
-                stress =
-                    stress + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
-            if (effects & FX_REPULSION)
-                stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
-            if (effects & FX_WALL_DAMPING)
-                stress = stress + fx_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.vx, k);
-            const vreal g = q.slope * stress;
-            sum_x[part] = vfma(g, q.x, sum_x[part]);
-            sum_y[part] = vfma(g, q.y, sum_y[part]);
-            if (!(effects & FX_IMPEDANCE)) continue;
-            wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
-            wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
-        }
-    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
-    if (effects & FX_IMPEDANCE)
-        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
-}
-
-/* Effects with code of their own for walls and structures; without them that code is compiled
- * out. */
+/* Effects that need more of walls and structures than pressure and velocity. */
 #define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION)
 
 /* The particles of a cluster: their number and their indices in the arrays. */
@@ -210,37 +140,6 @@ SPHFSI_INLINE void pack_surface_fields(const struct fluid *f, const struct parti
     }
 }
 
-/* Forces on the kinds that store them. */
-SPHFSI_INLINE void dummies_forces(const struct fluid *f, struct particles *p,
-                                  const struct dummies *d, const struct neighbours *neighbours,
-                                  const struct cell_sides *sides, const struct vector_constants *k,
-                                  effect_set fx)
-{
-    double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
-           wet_y[CLUSTER] = {0};
-    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS) {
-        const real *const own = d->packed + r;
-        struct receiver s = receiver_at(sides, own);
-        s.u = vspread(own + PACKED_U * CLUSTER);
-        s.v = vspread(own + PACKED_V * CLUSTER);
-        s.p = vspread(own + PACKED_P * CLUSTER);
-        double volume[GROUPS];
-        for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
-        fluid_force(f, neighbours, &s, own, volume, k, fx, (double *[]){&force_x[r], &force_y[r]},
-                    (double *[]){&wet_x[r], &wet_y[r]});
-        if (!(fx & FX_NO_SLIP)) continue;
-        s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
-        s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
-        for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
-        drag_force(f, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
-    }
-    scatter(d, force_x, p->fx);
-    scatter(d, force_y, p->fy);
-    if (!(fx & FX_IMPEDANCE)) return;
-    scatter(d, wet_x, p->wet_x);
-    scatter(d, wet_y, p->wet_y);
-}
-
 /* Mirrored velocities where the fluid sticks; elsewhere the body's own velocity. With one-sided
  * pressure a particle's own image has 2 v_s - v_a: twice the weight beside v_s (L-6b). */
 static void no_slip(const struct fluid *f, const struct particles *p, const struct dummies *d,
@@ -292,17 +191,6 @@ SPHFSI_INLINE void dummies_pressure(const struct fluid *f, const struct particle
     }
 }
 
-/* The pressure on their side of a pair: that of T-10, or none where the fluid's own takes its place
- * (L-6), and on a structure that of the interface impulse (T-35b). */
-SPHFSI_INLINE void pack_acting_pressure(const struct fluid *f, const struct particles *p,
-                                        const struct dummies *d, const double pressure[CLUSTER])
-{
-    double acting[CLUSTER];
-    gather(d, d->kind == KIND_SOLID ? p->interface_pressure : NULL, acting);
-    for (int r = 0; r < CLUSTER && !(f->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
-    pack_four(d, acting, PACKED_P);
-}
-
 /* State from that pressure. Eqs. 19-21 with the volume of each dummy itself: a solid may be finer
  * than the fluid. */
 SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
@@ -310,8 +198,12 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
                                  const double dens[CLUSTER], effect_set fx)
 {
     const double mean = f->k.mass / f->k.rho0 * square(1 / f->k.h);
-    double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0};
+    double u[CLUSTER], v[CLUSTER], volume[CLUSTER] = {0}, acting[CLUSTER];
     gather_velocity(d, p, fx, u, v);
+    /* On their side of a pair: the pressure of T-10, or none where the fluid's own takes its place
+     * (L-6); and on a structure that of the interface impulse (T-35b). */
+    gather(d, d->kind == KIND_SOLID ? p->interface_pressure : NULL, acting);
+    for (int r = 0; r < CLUSTER && !(f->effects & FX_ONE_SIDED); r++) acting[r] += pressure[r];
     for (int r = 0; r < d->count; r++) volume[r] = mean * f->volume[d->kind][p->body[d->at[r]]];
     for (int r = 0; r < CLUSTER; r++) volume[r] /= 1 + dens[r];
     scatter(d, pressure, p->p);
@@ -319,7 +211,7 @@ SPHFSI_INLINE void dummies_state(const struct fluid *f, struct particles *p,
     pack_four(d, u, PACKED_U);
     pack_four(d, v, PACKED_V);
     pack_four(d, volume, PACKED_VOLUME);
-    pack_acting_pressure(f, p, d, pressure);
+    pack_four(d, acting, PACKED_P);
     pack_four(d, dens, PACKED_DENS);
 }
 
@@ -350,48 +242,35 @@ SPHFSI_INLINE void dummies_state_of_cell(const struct fluid *f, struct particles
     }
 }
 
-/* After it: what the effects of a surface need, and the forces of the fluid. */
-SPHFSI_INLINE void dummies_surface_of_cell(const struct fluid *f, struct particles *p,
-                                           enum kind kind, const struct cells *c, int32_t cell,
-                                           effect_set fx)
+/* After it: what the effects of a surface need. */
+static void dummies_surface_of_cell(const struct fluid *f, const struct particles *p,
+                                    enum kind kind, const struct cells *c, int32_t cell)
 {
     struct neighbour_scratch *const neighbour_scratch = &f->neighbour_scratch[thread_index()];
     const struct cell_sides sides = cell_sides_of(f, c);
-    const struct vector_constants k =
-        fx & SURFACE_EFFECTS ? constants_of_sweep(f) : (struct vector_constants){0};
     for (int32_t m = 0; m < clusters_in(&c->kind[kind], cell); m++) {
         const struct dummies d = dummies_at(f, c, kind, cell, m);
-        if (fx & SURFACE_EFFECTS) pack_surface_fields(f, p, &d, fx);
-        if (!p->fx && !(fx & FX_NO_SLIP)) continue;
+        pack_surface_fields(f, p, &d, f->effects);
+        if (!(f->effects & FX_NO_SLIP)) continue;
         const struct neighbours neighbours =
             gather_clusters(neighbour_scratch, f, KIND_FLUID, kind, (int32_t)d.cluster);
-        if (fx & FX_NO_SLIP) no_slip(f, p, &d, &neighbours, &sides);
-        if (p->fx) dummies_forces(f, p, &d, &neighbours, &sides, &k, fx);
+        no_slip(f, p, &d, &neighbours, &sides);
     }
 }
 
-/* Both for a cell, for the sets of effects that are frequent; `any` has those of the case. They are called
- * by address, so what is compiled into one does not change the other. */
+/* The state of a cell, with a constant kind and without tests for motion. */
 typedef void SWEEP(dummies_cell)(const struct fluid *f, struct particles *p, enum kind kind,
                                  const struct cells *c, int32_t cell);
-#define DUMMIES(name, of_cell, of_kind, set)                                                      \
+#define DUMMIES(name, of_kind, set)                                                               \
     static void SWEEP(dummies_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
                                       const struct cells *c, int32_t cell)                        \
     {                                                                                             \
         (void)kind;                                                                               \
-        of_cell(f, p, (of_kind), c, cell, (set));                                                 \
+        dummies_state_of_cell(f, p, (of_kind), c, cell, (set));                                   \
     }
-#define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
-DUMMIES(wall, dummies_state_of_cell, KIND_WALL, 0u)
-DUMMIES(moving_wall, dummies_state_of_cell, KIND_WALL, FX_MOTION)
-DUMMIES(solid, dummies_state_of_cell, KIND_SOLID, 0u)
-DUMMIES(surface_bare, dummies_surface_of_cell, kind, 0u)
-DUMMIES(surface_impedance, dummies_surface_of_cell, KIND_SOLID, FX_IMPEDANCE)
-DUMMIES(surface_standard, dummies_surface_of_cell, kind, STANDARD_SURFACE)
-DUMMIES(surface_standard_impedance, dummies_surface_of_cell, KIND_SOLID,
-        STANDARD_SURFACE | FX_IMPEDANCE)
-DUMMIES(surface_any, dummies_surface_of_cell, kind,
-        f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+DUMMIES(wall, KIND_WALL, 0u)
+DUMMIES(moving_wall, KIND_WALL, FX_MOTION)
+DUMMIES(solid, KIND_SOLID, 0u)
 #undef DUMMIES
 
 static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind kind)
@@ -400,26 +279,15 @@ static SWEEP(dummies_cell) * SWEEP(dummies_state)(effect_set effects, enum kind 
     return effects & FX_MOTION ? SWEEP(dummies_moving_wall) : SWEEP(dummies_wall);
 }
 
-static SWEEP(dummies_cell) * SWEEP(dummies_surface)(effect_set effects, enum kind kind)
-{
-    const bool impedance = kind == KIND_SOLID && effects & FX_IMPEDANCE;
-    const effect_set surface = effects & (SURFACE_EFFECTS | FX_WALL_DAMPING);
-    if (surface == 0)
-        return impedance ? SWEEP(dummies_surface_impedance) : SWEEP(dummies_surface_bare);
-    if (surface != STANDARD_SURFACE) return SWEEP(dummies_surface_any);
-    return impedance ? SWEEP(dummies_surface_standard_impedance) : SWEEP(dummies_surface_standard);
-}
-
 static void SWEEP(dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                            const struct cells *c, enum kind kind)
 {
     struct particles *const p = &kinds[kind];
     SWEEP(dummies_cell) *const state = SWEEP(dummies_state)(f->effects, kind);
-    SWEEP(dummies_cell) *const surface =
-        p->fx || f->effects & SURFACE_EFFECTS ? SWEEP(dummies_surface)(f->effects, kind) : NULL;
 #pragma omp parallel for schedule(static) num_threads(f->threads)
     for (int32_t k = 0; k < f->n_near_fluid[kind]; k++) {
         state(f, p, kind, c, f->near_fluid[kind][k]);
-        if (surface) surface(f, p, kind, c, f->near_fluid[kind][k]);
+        if (f->effects & SURFACE_EFFECTS)
+            dummies_surface_of_cell(f, p, kind, c, f->near_fluid[kind][k]);
     }
 }

@@ -92,8 +92,8 @@ struct fluid_sweeps {
     /* Renormalised gradient of the fluid's density, and its packed fields. */
     void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                    const struct cells *c);
-    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), their packed fields,
-     * and the fluid's force on solid particles (Eq. 21b). */
+    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed fields.
+     * The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
     /* Corrected gradients of the fluid's fields, and the Laplacian of its velocity. */

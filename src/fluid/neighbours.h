@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The neighbour clusters of a cluster of particles, and the pairs of both. Included by
- * fluid/sweep.h, once for each precision. */
+ * fluid/sweep.h and coupling/force.h, once for each precision. */
 
 _Static_assert((int)CLUSTER == (int)GROUP, "a group of lanes is a cluster");
 
@@ -13,6 +13,12 @@ enum { ROWS = (int)CLUSTER / (int)GROUPS };
 
 /* A field of the particles at b, in every group. */
 #define lane(b, field) vfour((b) + (field)*CLUSTER)
+
+/* The packed fields of a cluster; those of its field m are at packed + m CLUSTER. */
+SPHFSI_INLINE real *cluster_packed(const struct packed_fields *packed, size_t cluster)
+{
+    return (real *)packed->cluster + cluster * (size_t)(packed->n * CLUSTER);
+}
 
 /* The neighbour clusters of one kind. */
 struct neighbours {
@@ -76,7 +82,7 @@ struct cell_sides {
     real x, y;
 };
 
-static struct cell_sides cell_sides_of(const struct fluid *f, const struct cells *c)
+SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *f, const struct cells *c)
 {
     return (struct cell_sides){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
 }

@@ -5,12 +5,6 @@
 /* In units of h; the kernel ends at 2. */
 #define FAR 1e9
 
-/* The packed fields of a cluster; those of its field m are at packed + m CLUSTER. */
-SPHFSI_INLINE real *cluster_packed(const struct packed_fields *packed, size_t cluster)
-{
-    return (real *)packed->cluster + cluster * (size_t)(packed->n * CLUSTER);
-}
-
 /* Fills a cluster after its first `count` particles. */
 static void cluster_close(real *packed, int fields, int count)
 {

@@ -35,6 +35,25 @@ struct vector_constants {
     vreal eta2;           /* (eta/h)^2 = 0.01 */
 };
 
+SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *f)
+{
+    const struct fluid_constants *const fk = &f->k;
+    const double per_c2 = fk->h / square(fk->c0);
+    return (struct vector_constants){
+        .viscosity = vset((real)sqrt(2 * fk->alpha * fk->c0 * fk->rho0)),
+        .laminar = vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
+        .tensile = vset((real)fk->tensile),
+        .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
+        .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
+        .wall_damping = vset((real)(fk->wall_damping * fk->rho0 * fk->c0)),
+        .lowest = vset((real)fk->lowest_wall_pressure),
+        .gx = vset((real)(fk->gravity[0] * per_c2)),
+        .gy = vset((real)(fk->gravity[1] * per_c2)),
+        .diffusion = vset((real)(fk->delta * fk->c0)),
+        .eta2 = vset((real)ETA2),
+    };
+}
+
 /* Eq. 4a: a pair's term of the sum of V_b v_ab . grad W. */
 SPHFSI_INLINE vreal fx_continuity(const struct pair *q) { return q->slope * q->vx; }
 

@@ -73,24 +73,20 @@ void evaluate_fluid(struct simulation *s, double time)
     if (s->evaluated) return;
     if (s->effects & FX_MOTION) move_walls(s, time);
     if (s->gravity_varies) scene_gravity_at(s->scene, time, s->fluid.k.gravity);
-    /* The force arrays still hold the interface impulse applied in the last step. Particles without
-     * fluid nearby get no new force from an evaluation, so clear them all. */
-    if (s->effects & (FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION)) {
-        const struct particles *const solid = &s->kind[KIND_SOLID];
-        memset(solid->fx, 0, (size_t)solid->n * sizeof *solid->fx);
-        memset(solid->fy, 0, (size_t)solid->n * sizeof *solid->fy);
-    }
     if (s->effects & FX_OPEN) {
-        const double clock = wall_clock();
+        const double start = wall_clock();
         /* The predictor's state, half a step ahead, adds nothing to the energy account. */
         const bool counts = time == s->state.time;
         open_set(&s->open, &s->fluid.k, &s->kind[KIND_FLUID], &s->cells, time, counts);
-        phase_add(s, PHASE_open, clock);
+        phase_add(s, PHASE_open, start);
     }
     const bool predicts = s->scene->top.integrator == INTEGRATOR_SYMPLECTIC;
     s->fluid.counts_touch = !predicts || time != s->state.time; /* symplectic: of the corrector */
     if (s->effects & FX_ANTUONO) s->fluid.keeps_slopes = keeps_slopes(s, time);
     fluid_evaluate(&s->fluid, s->kind, &s->cells, s->phase_seconds);
+    const double clock = wall_clock();
+    coupling_find_forces(&s->coupling, s->kind, &s->cells);
+    phase_add(s, PHASE_wall, clock);
     if (s->effects & FX_OPEN) open_hold(&s->open, &s->fluid.k, &s->kind[KIND_FLUID]);
     if (s->external[KIND_FLUID].at) add_external(s, time);
     if (s->external[KIND_SOLID].at) find_external(s, KIND_SOLID, time);

@@ -98,6 +98,7 @@ void rig_evaluate(struct rig *r)
 {
     double seconds[PHASE_COUNT] = {0};
     fluid_evaluate(&r->sim.fluid, r->sim.kind, &r->sim.cells, seconds);
+    coupling_find_forces(&r->sim.coupling, r->sim.kind, &r->sim.cells);
 }
 
 void rig_one_thread(void) { thread_use(1); }

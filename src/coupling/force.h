@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT
+ * The force of the fluid on structures, and on walls that move or whose force is probed (Eq. 21b).
+ * Included by force_mixed.c and force_double.c after the header of their precision. */
+#include <math.h>
+#include <string.h>
+
+#include "coupling/coupling.h"
+#include "particles/kernel.h"
+
+#include "fluid/neighbours.h"
+/* After the definitions that they need. */
+#include "fluid/pair_laws.h"
+
+/* Adds sums over pairs, times a factor and the volume of each receiver, to its force. */
+SPHFSI_INLINE void add_force(const vreal sum_x[PARTS], const vreal sum_y[PARTS], double factor,
+                             const double *volume, double *fx, double *fy)
+{
+    real x[GROUPS], y[GROUPS];
+    total(sum_x, x);
+    total(sum_y, y);
+    for (int g = 0; g < GROUPS; g++) {
+        fx[g] += factor * volume[g] * (double)x[g];
+        fy[g] += factor * volume[g] * (double)y[g];
+    }
+}
+
+/* The opposite of the laminar force that sum_dummies adds to the fluid, as in fluid_force; s has
+ * the mirrored velocity. */
+static void drag_force(const struct fluid *f, const struct neighbours *neighbours,
+                       const struct receiver *s, const double *volume,
+                       const struct vector_constants *k, double *fx, double *fy)
+{
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}};
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const struct pair q = pair_load(s, code, candidates(neighbours, code, part));
+            const vreal weight = fx_laminar(&q, vset(1) / (q.r2 + k->eta2), k);
+            sum_x[part] = vfma(weight, q.u, sum_x[part]);
+            sum_y[part] = vfma(weight, q.v, sum_y[part]);
+        }
+    add_force(sum_x, sum_y, -PAIR_SLOPE * f->k.h, volume, fx, fy);
+}
+
+/* Eq. 21b: force of the fluid on solid particles, V_s sum of V_f (P_s + P_f) grad W with opposite
+ * sign, N/m per depth; equal and opposite to the fluid's sums. With FX_IMPEDANCE also the surface
+ * per depth, m: the force of a pressure of 1 Pa on both sides of the pairs. */
+SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *neighbours,
+                               const struct receiver *s, const real *own, const double *volume,
+                               const struct vector_constants *k, effect_set effects,
+                               double *const force[2], double *const wet[2])
+{
+    const vreal lift_x = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_X * CLUSTER) : vset(0);
+    const vreal lift_y = effects & FX_ONE_SIDED ? vspread(own + PACKED_LIFT_Y * CLUSTER) : vset(0);
+    const vreal near = effects & FX_REPULSION ? vspread(own + PACKED_NEAR * CLUSTER) : vset(0);
+    vreal sum_x[PARTS] = {{0}}, sum_y[PARTS] = {{0}}, wet_x[PARTS] = {{0}}, wet_y[PARTS] = {{0}};
+    for (int m = 0; m < neighbours->n; m++)
+        for (int part = 0; part < PARTS; part++) {
+            const uint32_t code = neighbours->code[m];
+            const real *const b = candidates(neighbours, code, part);
+            struct pair q = pair_load(s, code, b);
+            q.p = lane(b, PACKED_P);
+            vreal stress = fx_pressure(s, &q);
+            if (effects & FX_ONE_SIDED)
+                stress =
+                    stress + fx_one_sided(q.p, lane(b, PACKED_DENS), -q.x, -q.y, lift_x, lift_y, k);
+            if (effects & FX_REPULSION)
+                stress = stress + fx_repulsion(near, vset(1) / (q.r2 + k->eta2), k);
+            if (effects & FX_WALL_DAMPING)
+                stress = stress + fx_wall_damping(near, vset(1) / (q.r2 + k->eta2), q.vx, k);
+            const vreal g = q.slope * stress;
+            sum_x[part] = vfma(g, q.x, sum_x[part]);
+            sum_y[part] = vfma(g, q.y, sum_y[part]);
+            if (!(effects & FX_IMPEDANCE)) continue;
+            wet_x[part] = vfma(q.slope, q.x, wet_x[part]);
+            wet_y[part] = vfma(q.slope, q.y, wet_y[part]);
+        }
+    add_force(sum_x, sum_y, PAIR_SLOPE * f->k.h, volume, force[0], force[1]);
+    if (effects & FX_IMPEDANCE)
+        add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
+}
+
+/* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed fields. */
+SPHFSI_INLINE void force_on_cluster(const struct fluid *f, struct particles *p,
+                                    const int32_t *index, int count, const real *own,
+                                    const struct neighbours *neighbours,
+                                    const struct cell_sides *sides,
+                                    const struct vector_constants *k, effect_set fx)
+{
+    double force_x[CLUSTER] = {0}, force_y[CLUSTER] = {0}, wet_x[CLUSTER] = {0},
+           wet_y[CLUSTER] = {0};
+    for (int r = 0; r < CLUSTER && neighbours->n; r += GROUPS, own += GROUPS) {
+        struct receiver s = receiver_at(sides, own);
+        s.u = vspread(own + PACKED_U * CLUSTER);
+        s.v = vspread(own + PACKED_V * CLUSTER);
+        s.p = vspread(own + PACKED_P * CLUSTER);
+        double volume[GROUPS];
+        for (int g = 0; g < GROUPS; g++) volume[g] = (double)own[PACKED_VOLUME * CLUSTER + g];
+        fluid_force(f, neighbours, &s, own, volume, k, fx, (double *[]){&force_x[r], &force_y[r]},
+                    (double *[]){&wet_x[r], &wet_y[r]});
+        if (!(fx & FX_NO_SLIP)) continue;
+        s.u = vspread(own + PACKED_MIRROR_U * CLUSTER);
+        s.v = vspread(own + PACKED_MIRROR_V * CLUSTER);
+        for (int g = 0; g < GROUPS; g++) volume[g] *= (double)own[PACKED_STICKS * CLUSTER + g];
+        drag_force(f, neighbours, &s, volume, k, &force_x[r], &force_y[r]);
+    }
+    for (int r = 0; r < count; r++) {
+        p->fx[index[r]] = force_x[r];
+        p->fy[index[r]] = force_y[r];
+        if (!(fx & FX_IMPEDANCE)) continue;
+        p->wet_x[index[r]] = wet_x[r];
+        p->wet_y[index[r]] = wet_y[r];
+    }
+}
+
+SPHFSI_INLINE void force_on_cell(const struct fluid *f, struct particles *p, enum kind kind,
+                                 const struct cells *c, int32_t cell,
+                                 const struct vector_constants *k, effect_set fx)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    struct neighbour_scratch *const scratch = &f->neighbour_scratch[thread_index()];
+    const struct cell_sides sides = cell_sides_of(f, c);
+    gather_around_cell(scratch, f, c, KIND_FLUID, cell);
+    for (int32_t m = 0; m < clusters_in(list, cell); m++) {
+        const int32_t cluster = list->cluster[cell] + m;
+        const struct neighbours neighbours = gather_clusters(scratch, f, KIND_FLUID, kind, cluster);
+        force_on_cluster(f, p, &list->order[list->start[cell] + m * CLUSTER],
+                         particles_in(list, cell, m),
+                         cluster_packed(&f->packed[kind], (size_t)cluster), &neighbours, &sides, k,
+                         fx);
+    }
+}
+
+/* A cell, for the sets of effects that are frequent; `any` has those of the case. */
+typedef void SWEEP(force)(const struct fluid *f, struct particles *p, enum kind kind,
+                          const struct cells *c, int32_t cell, const struct vector_constants *k);
+#define FORCE(name, set)                                                                        \
+    static void SWEEP(force_##name)(const struct fluid *f, struct particles *p, enum kind kind, \
+                                    const struct cells *c, int32_t cell,                        \
+                                    const struct vector_constants *k)                           \
+    {                                                                                           \
+        force_on_cell(f, p, kind, c, cell, k, (set));                                           \
+    }
+#define FORCE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION | FX_WALL_DAMPING)
+#define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
+FORCE(bare, 0u)
+FORCE(impedance, FX_IMPEDANCE)
+FORCE(standard, STANDARD_SURFACE)
+FORCE(standard_impedance, STANDARD_SURFACE | FX_IMPEDANCE)
+FORCE(any, f->effects & ~(effect_set)(kind == KIND_SOLID ? 0 : FX_IMPEDANCE))
+#undef FORCE
+
+void SWEEP(find_force)(const struct fluid *f, struct particles *p, enum kind kind,
+                       const struct cells *c)
+{
+    const struct vector_constants k = constants_of_sweep(f);
+    const bool impedance = kind == KIND_SOLID && f->effects & FX_IMPEDANCE;
+    const effect_set surface = f->effects & FORCE_EFFECTS;
+    SWEEP(force) *const force =
+        surface == 0 ? (impedance ? SWEEP(force_impedance) : SWEEP(force_bare))
+        : surface == STANDARD_SURFACE
+            ? (impedance ? SWEEP(force_standard_impedance) : SWEEP(force_standard))
+            : SWEEP(force_any);
+#pragma omp parallel for schedule(static) num_threads(f->threads)
+    for (int32_t n = 0; n < f->n_near_fluid[kind]; n++)
+        force(f, p, kind, c, f->near_fluid[kind][n], &k);
+}
