@@ -119,16 +119,12 @@ void effect_caller_text(const struct scene *s, const struct effect_caller *by,
     snprintf(text, EFFECT_CALLER_TEXT, "%s: %s%s", where, name, by->key);
 }
 
-unsigned effects_groups(effect_set effects, enum kind kind, int integrator)
+unsigned effects_groups(effect_set effects, enum kind kind)
 {
     unsigned groups = 0;
     for (int k = 0; k < EFFECT_COUNT; k++)
         if ((effects & EFFECT_BIT(k)) && effect_table[k].kind == kind)
             groups |= effect_table[k].groups;
-    if (!groups) return 0;
-    if (kind == KIND_FLUID && integrator == INTEGRATOR_SYMPLECTIC)
-        groups |= G_STAGE | G_STAGE_FLUID;
-    if (kind == KIND_SOLID) groups |= G_STAGE;
     return groups;
 }
 

@@ -89,7 +89,7 @@ SPHFSI_INLINE bool phase_runs(enum phase phase, effect_set effects)
     return phase_table[phase].when == FX_ALWAYS || phase_table[phase].when & effects;
 }
 
-/* Field groups that the set needs for particles of one kind with the scene's integrator. */
-unsigned effects_groups(effect_set effects, enum kind kind, int integrator);
+/* Field groups that the set needs for particles of one kind. */
+unsigned effects_groups(effect_set effects, enum kind kind);
 
 #endif

@@ -184,7 +184,7 @@ struct scene_reference {
 #undef NUMBERS
 
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
-enum integrator { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
+enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
 enum precision { PRECISION_MIXED, PRECISION_DOUBLE };
 enum scene_kind {
     SCENE_SOLID,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/probes.h"
+#include "output/fluid_sample.h"
 #include "base/elementary.h"
 
 #include <math.h>
@@ -390,14 +391,14 @@ static void surface_pressure(const struct probe *pr, const struct simulation *s,
     double from[2] = {pr->point[0], pr->point[1]}, to[2] = {pr->to[0], pr->to[1]};
     move_with_wall(pr, s, from);
     move_with_wall(pr, s, to);
-    simulation_pressure_on(s, from, to, out);
+    fluid_pressure_on(s, from, to, out);
 }
 
 static void fluid_velocity(const struct probe *pr, const struct simulation *s, double out[2])
 {
     double x[2];
     place(pr, s, x);
-    const struct sample at = simulation_sample(s, x[0], x[1]);
+    const struct sample at = fluid_sample(s, x[0], x[1]);
     out[0] = at.vx;
     out[1] = at.vy;
 }
@@ -418,13 +419,13 @@ static void values(const struct probe *pr, struct simulation *s, double *row)
     switch ((enum probe_quantity)pr->quantity) {
     case PROBE_DISPLACEMENT: weighted_sum(pr, solid->ux, solid->uy, row); break;
     case PROBE_VELOCITY: velocity(pr, s, row); break;
-    case PROBE_PRESSURE: *row = simulation_pressure_at(s, at[0], at[1]); break;
+    case PROBE_PRESSURE: *row = fluid_pressure_at(s, at[0], at[1]); break;
     case PROBE_STRESS: stress(pr, s, row); break;
-    case PROBE_LEVEL: *row = simulation_level(s, at[0], at[1]); break;
+    case PROBE_LEVEL: *row = fluid_level(s, at[0], at[1]); break;
     case PROBE_FORCE: force(pr, s, row); break;
-    case PROBE_FRONT: *row = simulation_front(s, pr->direction); break;
+    case PROBE_FRONT: *row = fluid_front(s, pr->direction); break;
     case PROBE_ENERGY: energy(pr, s, row); break;
-    case PROBE_FLUX: *row = simulation_flux(s, pr->point, pr->to); break;
+    case PROBE_FLUX: *row = fluid_flux(s, pr->point, pr->to); break;
     case PROBE_STRAIN: strain(pr, s, row); break;
     case PROBE_ACCELERATION: acceleration(pr, s, row); break;
     case PROBE_POSE: pose(pr, s, row); break;

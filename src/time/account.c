@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "fluid/eos.h"
-#include "time/simulation.h"
 #include "particles/kernel.h"
+#include "time/near.h"
 
 int account_entry(enum kind kind, int section) { return (int)kind * SCENE_MAX_SECTIONS + section; }
 
@@ -247,8 +247,8 @@ void account_alternating(const struct simulation *s, double of[SCENE_MAX_SECTION
 static void add_shared(const struct simulation *s, struct energies *of)
 {
     double repulsion[SCENE_MAX_SECTIONS] = {0}, alternating[SCENE_MAX_SECTIONS] = {0};
-    if (s->effects & FX_REPULSION) simulation_repulsion(s, repulsion);
-    if (s->effects & FX_VERLET) account_alternating(s, alternating);
+    if (s->effects & FX_REPULSION) repulsion_energy(s, repulsion);
+    if (s->integrator->alternates) account_alternating(s, alternating);
     for (int k = 0; k < s->scene->n_fluid; k++) {
         struct energies *const e = &of[account_entry(KIND_FLUID, k)];
         e->repulsion = repulsion[k];

@@ -4,7 +4,7 @@
 #ifndef SPHFSI_TIME_ACCOUNT_H
 #define SPHFSI_TIME_ACCOUNT_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* Whether an account read from a file is valid. */
 enum err account_check(const struct account *a, struct diag *d) SPHFSI_CHECKED;

@@ -4,7 +4,7 @@
 #ifndef SPHFSI_TIME_BOOKING_H
 #define SPHFSI_TIME_BOOKING_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* After an evaluation at the present state, from which a step of dt starts: counts its rates over
  * half of the last step and half of this one, and checks the account in between if that is due. */

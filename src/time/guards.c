@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "time/simulation.h"
+#include "time/penetration.h"
 #include "time/timestep.h"
 
 /* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h. Steps over
@@ -463,7 +463,7 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
     if (!(s->effects & (FX_WALL | FX_COUPLING)) || s->state.steps % CROSSING_INTERVAL)
         return ERR_OK;
     int64_t first;
-    const int64_t count = monitor_crossed(s, &first);
+    const int64_t count = penetration_count(s, &first);
     const struct particles *const p = &s->kind[KIND_FLUID];
     if (count == 0) return ERR_OK;
     s->state.entered = s->state.entered > count ? s->state.entered : count;

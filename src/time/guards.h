@@ -3,7 +3,7 @@
 #ifndef SPHFSI_TIME_GUARDS_H
 #define SPHFSI_TIME_GUARDS_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* Steps of the fluid between two checks of the solid's deformation, which need a pass of their
  * own. At a tenth of the speed of sound, neighbours approach by a third of their distance in
@@ -20,9 +20,6 @@ enum err guards_penetration(struct simulation *s, struct diag *d) SPHFSI_CHECKED
 
 /* Says that fluid has left the domain: the particles from `first` on, which are no longer in a cell. */
 void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d);
-
-/* Number of fluid particles inside a wall or solid; the index of the first of them, or -1. */
-int64_t monitor_crossed(const struct simulation *s, int64_t *first);
 
 /* Whether surfaces in contact are pressed harder than the modulus of contact. */
 bool guards_contact_hard(const struct simulation *s);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fluid/eos.h"
-#include "time/simulation.h"
+#include "time/evaluation.h"
 
 /* Sums over the fluid in groups of eight, so that their order is the same on every machine. */
 enum { ABREAST = 8 };

@@ -3,6 +3,8 @@
 #ifndef SPHFSI_TIME_LEDGER_H
 #define SPHFSI_TIME_LEDGER_H
 
+#include "time/state.h"
+
 /* One row of ledger.csv. Per depth. */
 struct ledger {
     double time, kinetic, potential, internal, elastic, hourglass, contact, dissipated;
@@ -27,5 +29,8 @@ struct ledger {
     LEDGER(det_low, "1", "current smallest det F")                                                \
     LEDGER(dt, "s", "last time step")
 /* clang-format on */
+
+/* Present energy, momentum and extremes; calls simulation_refresh. */
+struct ledger simulation_ledger(struct simulation *sim);
 
 #endif

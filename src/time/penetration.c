@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * Fluid inside a wall or a solid: fluid particles at the places of the body's own particles. */
-#include <math.h>
+#include "time/penetration.h"
 
-#include "time/guards.h"
-#include "time/simulation.h"
+#include <math.h>
 
 /* The shorter distance where opposite sides are joined. */
 static double nearest(const struct cells *c, int axis, double d)
@@ -53,7 +52,7 @@ static bool taken(const struct simulation *s, int32_t cell, double x, double y)
     return false;
 }
 
-int64_t monitor_crossed(const struct simulation *s, int64_t *first)
+int64_t penetration_count(const struct simulation *s, int64_t *first)
 {
     const struct cells *const c = &s->cells;
     const struct cell_list *const fluid = &c->kind[KIND_FLUID];

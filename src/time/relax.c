@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "time/integrators.h"
+#include "time/evaluation.h"
+#include "time/simulation.h"
 #include "time/timestep.h"
 
 bool relax_due(const struct simulation *s)
@@ -43,7 +44,7 @@ static void stop_solid(struct simulation *s)
     clear(p->vy, p->n);
     clear(p->wx, p->n);
     clear(p->wy, p->n);
-    if (s->scene->top.integrator != INTEGRATOR_VERLET || p->n == 0) return;
+    if (s->integrator->centred || p->n == 0) return;
     solid_stress(&s->solid, p);
     solid_forces(&s->solid, p);
     for (int64_t i = 0; i < p->n; i++) {

@@ -3,7 +3,7 @@
 #ifndef SPHFSI_TIME_RELAX_H
 #define SPHFSI_TIME_RELAX_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* Whether the scene asks for a state of rest that has not been found yet. */
 bool relax_due(const struct simulation *s);

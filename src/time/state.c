@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Names of the bounds of the time step. */
+ * Names of the bounds of the time step, and the times of the phases of a step. */
 #include "time/state.h"
 
 const char *const bound_names[BOUND_COUNT] = {
@@ -12,3 +12,17 @@ const char *const bound_sources[BOUND_COUNT] = {
 #include "time/bounds.def"
 #undef BOUND
 };
+
+double phase_add(struct simulation *sim, enum phase phase, double since)
+{
+    if (!phase_runs(phase, sim->effects)) return since; /* what there is goes to the next one */
+    const double now = wall_clock();
+    sim->phase_seconds[phase] += now - since;
+    if (phase == PHASE_solid && sim->effects & FX_CONTACT) {
+        /* Its forces are computed during the solid's sub-steps. */
+        sim->phase_seconds[PHASE_solid] -= sim->contact.seconds;
+        sim->phase_seconds[PHASE_contact] += sim->contact.seconds;
+        sim->contact.seconds = 0;
+    }
+    return now;
+}

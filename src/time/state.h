@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT
- * What a run carries from step to step beside its particles: scalars, the account of energy, limits of the
- * guards. */
+ * The state of a run in memory: what it carries from step to step, and `struct simulation`, which all files
+ * of this folder work on. */
 #ifndef SPHFSI_TIME_STATE_H
 #define SPHFSI_TIME_STATE_H
 
-#include "case/scene.h"
-#include "particles/particles.h"
+#include "coupling/coupling.h"
+#include "fluid/open.h"
+#include "fluid/wall_motion.h"
+#include "particles/cells.h"
+#include "solid/contact.h"
+#include "solid/loads.h"
 
 /* An entry for each [fluid], [wall] and [solid] section, one kind after the other. */
 enum { ACCOUNT_ENTRIES = KIND_COUNT * SCENE_MAX_SECTIONS };
@@ -87,5 +91,81 @@ struct state {
     int64_t bound_steps[BOUND_COUNT]; /* steps that each bound has limited */
     struct account account;           /* of energy, by regions */
 };
+
+struct simulation;
+
+/* Extremes of density (rho/rho0 - 1) and squared speed ((m/s)^2). The maxima may skip values that
+ * are not numbers; the NaN probe is zero if there are none. */
+struct extremes {
+    double dens_low, dens_high, speed2, nan_probe;
+};
+
+/* Accelerations from outside, added to those of the model by a program that uses the library. */
+typedef void external_function(void *context, double time, const struct particles *p, double *ax,
+                               double *ay);
+struct external {
+    external_function *at; /* NULL: none */
+    void *context;
+    double *ax, *ay; /* m/s^2 */
+};
+
+/* What differs between the time integrators of Sec. 2.4. */
+struct integrator {
+    /* One step of fluid, walls and structures, which ends no later than t_limit. */
+    void (*step)(struct simulation *sim, double t_limit);
+    /* One step of a solid without fluid; NULL: by solid_advance. */
+    void (*solid_step)(struct simulation *sim, double dt);
+    double largest_cfl; /* up to it the fluid is stable */
+    /* T-33b: a decay of density or velocity at a rate m is followed up to m dt of these. */
+    double density_decay, velocity_decay;
+    unsigned fluid_groups; /* fields that it needs beside those of its effect */
+    double ahead;    /* the rates that advance the fluid are found this fraction of a step ahead */
+    bool centred;    /* the solid kicks in the middle of its drifts, else before them */
+    bool alternates; /* carries on two solutions, by turns */
+};
+
+struct simulation {
+    const struct scene *scene; /* borrowed; outlives the simulation */
+    const struct integrator *integrator;
+    struct arena arena;
+    struct particles kind[KIND_COUNT]; /* fluid, wall, solid */
+    struct cells cells;
+    struct fluid fluid; /* model and sweeps of fluid, walls and coupling; unused without fluid */
+    struct wall_motion wall_motion; /* walls that move; unused where none does */
+    struct open open;               /* open boundaries; unused without any */
+    struct solid solid;             /* model of the solid; unused without one */
+    struct coupling coupling;       /* of fluid and solid; unused without both */
+    struct contact contact;         /* of the solid; unused without it */
+    struct loads loads;             /* of the solid; unused without loads and moving clamps */
+    effect_set effects;             /* bits of case/effects.h */
+    struct state state;
+    double dt_bound[BOUND_COUNT]; /* bounds found at the last step, s; INFINITY where none */
+    double dt_solid;              /* stable step of the solid times its safety, s */
+    double dt_lone_solid;         /* the same as if there were no contact */
+    int substeps;                 /* solid steps in the last fluid step */
+    double phase_seconds[PHASE_COUNT];
+    struct extremes extremes; /* of the fluid */
+    double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
+    double solid_max_move;    /* of a solid particle in the last step, m (not with symplectic) */
+    double shifted;   /* largest shift of a fluid particle in the last step, m; 0: no shifting */
+    double skin_left; /* distance that two particles may move until a sorting is due, m */
+    bool evaluated;   /* rates, pressures and the fluid's force are those of the present state */
+    bool
+        cells_overfull; /* cells hold more particles than the sweeps support: evaluations do nothing */
+    bool gravity_varies; /* with time */
+    int uneven; /* the output, from 1, that has no such grid with those before it; 0: none */
+    double output_grid; /* s, of all frequent outputs; 0: none is needed (T-34d) */
+    struct {
+        int64_t n;
+        double *value;
+    } carried; /* by probes from step to step (output/probes.h): checkpointed, not hashed */
+    struct guard guard;
+    struct external external[KIND_COUNT]; /* of fluid and solid */
+    struct gain gain;                     /* of the last check of the account */
+    bool checked;                         /* the guards have yet to read it */
+};
+
+/* Adds the time since `since` to a phase and returns the present time. */
+double phase_add(struct simulation *sim, enum phase phase, double since);
 
 #endif

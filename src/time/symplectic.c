@@ -3,8 +3,10 @@
  * sub-steps the predictor extrapolates the structure (T-35), and the corrector's force acts on both
  * sides over the whole step. */
 #include "coupling/motion.h"
+#include "time/advance.h"
 #include "time/booking.h"
-#include "time/integrators.h"
+#include "time/evaluation.h"
+#include "time/integrator.h"
 #include "time/timestep.h"
 
 static void predict_fluid(struct particles *p, double half)
@@ -73,7 +75,7 @@ static void correct_solid(struct particles *p, double dt)
     }
 }
 
-void symplectic_step(struct simulation *s, double t_limit)
+static void symplectic_step(struct simulation *s, double t_limit)
 {
     struct particles *const fluid = &s->kind[KIND_FLUID], *const solid = &s->kind[KIND_SOLID];
     const bool coupled = s->effects & FX_COUPLING, multirate = s->effects & FX_MULTIRATE;
@@ -117,7 +119,7 @@ void symplectic_step(struct simulation *s, double t_limit)
     phase_add(s, PHASE_update, clock);
 }
 
-void symplectic_solid(struct simulation *s, double dt)
+static void symplectic_solid(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     rates_of_solid(s);
@@ -130,3 +132,14 @@ void symplectic_solid(struct simulation *s, double dt)
     s->solid.time += 0.5 * dt;
     solid_place_clamps(&s->solid, p, s->solid.time);
 }
+
+const struct integrator integrator_symplectic = {
+    .step = symplectic_step,
+    .solid_step = symplectic_solid,
+    .largest_cfl = 0.4,
+    .density_decay = 2,
+    .velocity_decay = 2,
+    .fluid_groups = G_STAGE | G_STAGE_FLUID,
+    .ahead = 0.5,
+    .centred = true,
+};

@@ -27,18 +27,16 @@ static double bound_decay(const struct simulation *s, double limit, double rate)
     return 0.9 * limit * s->fluid.k.h / (rate * s->fluid.k.c0);
 }
 
-/* Adams and Bashforth's third-order rule holds to 6/11. */
 static double bound_diffusion(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return bound_decay(s, s->effects & FX_LEAPFROG ? 6.0 / 11 : 2, 6.5 * s->fluid.k.delta);
+    return bound_decay(s, s->integrator->density_decay, 6.5 * s->fluid.k.delta);
 }
 
-/* Leapfrog's velocity, used half a step late, to 1. */
 static double bound_artificial(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return bound_decay(s, s->effects & FX_LEAPFROG ? 1 : 2, 2.3 * s->fluid.k.alpha);
+    return bound_decay(s, s->integrator->velocity_decay, 2.3 * s->fluid.k.alpha);
 }
 
 /* T-33c. */

@@ -3,7 +3,7 @@
 #ifndef SPHFSI_TIME_TIMESTEP_H
 #define SPHFSI_TIME_TIMESTEP_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* Steps before an output time that are made equal: one step more in so many is a small change. */
 enum { EQUAL_STEPS = 64 };

@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
+#include "time/advance.h"
 #include "time/booking.h"
-#include "time/integrators.h"
+#include "time/evaluation.h"
+#include "time/integrator.h"
 #include "time/timestep.h"
 
 /* Eq. 25, or Eq. 26 with `euler`. With variable steps the 2 dt of Eq. 25 is the time since the
@@ -31,7 +33,7 @@ static void update_rows(struct particles *p, const void *by, int64_t from, int64
     }
 }
 
-void verlet_step(struct simulation *s, double t_limit)
+static void verlet_step(struct simulation *s, double t_limit)
 {
     evaluate_start(s);
     double clock = wall_clock();
@@ -48,3 +50,11 @@ void verlet_step(struct simulation *s, double t_limit)
     timestep_book(s, dt, t_limit, hits);
     phase_add(s, PHASE_update, clock);
 }
+
+const struct integrator integrator_verlet = {
+    .step = verlet_step,
+    .largest_cfl = 0.2,
+    .density_decay = 2,
+    .velocity_decay = 2,
+    .alternates = true,
+};

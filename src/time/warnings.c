@@ -22,8 +22,7 @@ static void text_of_step(const struct simulation *s, char text[64])
  * leapfrog the analysis of docs/theory.md gives the same. */
 static void warn_of_cfl(const struct simulation *s, struct diag *d)
 {
-    static const double largest[] = {0.4, 0.2, 0.6};
-    const double limit = largest[s->scene->top.integrator];
+    const double limit = s->integrator->largest_cfl;
     char given[64];
     text_of_step(s, given);
     if (timestep_beyond(s, limit))

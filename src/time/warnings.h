@@ -3,7 +3,7 @@
 #ifndef SPHFSI_TIME_WARNINGS_H
 #define SPHFSI_TIME_WARNINGS_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* Steps longer than the stable one; to be called after the rate of the solid's steps has been
  * chosen. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Plane Poiseuille flow from a parabolic inflow to an outlet of given pressure: u = 4 U y (H - y)/H^2 and a
  * pressure that falls by 8 nu rho U/H^2 a metre, Re = 20 by the mean velocity. */
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -45,8 +46,8 @@ static struct errors errors_at(int n, const char *set)
             place[row] += 6 * p->y[i] * (1 - p->y[i]);
             count[row]++;
         }
-        drop += (simulation_pressure_at(&rig.sim, 0.4, 0.5) -
-                 simulation_pressure_at(&rig.sim, 1.6, 0.5)) /
+        drop += (fluid_pressure_at(&rig.sim, 0.4, 0.5) -
+                 fluid_pressure_at(&rig.sim, 1.6, 0.5)) /
                 TIMES;
     }
     struct errors e = {0, fabs(drop / (600 * 1.2) - 1)};

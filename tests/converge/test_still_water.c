@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Still water in a rigid tank, H = 0.2 m, dp = H/20: the pressure it settles to, and that it comes to
  * rest. */
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -103,8 +104,8 @@ static void test_pressure_within_two_percent(void)
                         "pressure");
     for (double y = 0.02; y < 0.17; y += 0.03)
         assert_near(0.02 * rho * g * H, rho * g * (H - y),
-                    simulation_pressure_at(&rig.sim, 0.05, y), "pressure at a fixed point");
-    TEST_ASSERT_TRUE(simulation_pressure_at(&rig.sim, 0.05, 0.25) == 0);
+                    fluid_pressure_at(&rig.sim, 0.05, y), "pressure at a fixed point");
+    TEST_ASSERT_TRUE(fluid_pressure_at(&rig.sim, 0.05, 0.25) == 0);
 }
 
 /* Let go without pressure the water bounces like a spring and comes to rest: a hundredth of the

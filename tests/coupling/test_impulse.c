@@ -2,7 +2,7 @@
  * The impedance of the fluid within a structure's sub-steps, and the impulse (T-35a, T-35b). */
 #include "coupling/impulse.h"
 #include "time/account.h"
-#include "time/integrators.h"
+#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 

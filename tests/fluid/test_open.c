@@ -2,6 +2,7 @@
  * Open boundaries: what comes in and goes is counted, streams pass at any angle and in either
  * direction, sound leaves, and what makes no sense is refused. */
 #include "geometry/load.h"
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -207,7 +208,7 @@ static void pulse(const char *length, const char *absorb, double p[POINTS])
              length, absorb, NULL);
     rig_run(&rig, 0.32);
     for (int k = 0; k < POINTS; k++)
-        p[k] = simulation_pressure_at(&rig.sim, 0.3 + 2.4 * k / POINTS, 0.05);
+        p[k] = fluid_pressure_at(&rig.sim, 0.3 + 2.4 * k / POINTS, 0.05);
 }
 
 static double most_difference(const double a[POINTS], const double b[POINTS])
@@ -242,8 +243,8 @@ static void test_a_level(void)
              "[outflow right]\nfrom = 1, 0\nto = 1, 0.4\nlevel = 0.4\n",
              NULL);
     rig_run(&rig, 1);
-    assert_near(0.0125, 0.4, simulation_level(&rig.sim, 0.5, 0.1), "level");
-    assert_near(0.02 * 3924, 3924 * 0.75, simulation_pressure_at(&rig.sim, 0.5, 0.1), "pressure");
+    assert_near(0.0125, 0.4, fluid_level(&rig.sim, 0.5, 0.1), "level");
+    assert_near(0.02 * 3924, 3924 * 0.75, fluid_pressure_at(&rig.sim, 0.5, 0.1), "pressure");
 }
 
 /* A channel with a free surface, Froude number 0.5: inflow of given discharge, outflow of given level. */
@@ -259,8 +260,8 @@ static void test_a_channel_with_a_level(void)
              NULL);
     rig_run(&rig, 2);
     const double a[2] = {0.75, 0.6}, b[2] = {0.75, 0};
-    assert_near(0.01, 0.4, simulation_level(&rig.sim, 0.75, 0.1), "level");
-    assert_near(0.01, 0.4, fabs(simulation_flux(&rig.sim, a, b)), "discharge");
+    assert_near(0.01, 0.4, fluid_level(&rig.sim, 0.75, 0.1), "level");
+    assert_near(0.01, 0.4, fabs(fluid_flux(&rig.sim, a, b)), "discharge");
     TEST_ASSERT_TRUE(rig.sim.open.count[1][OPEN_LEFT] > 1000);
     TEST_ASSERT_EQUAL_INT64(0, rig.sim.state.lost);
 }

@@ -3,6 +3,7 @@
  *
  * The pair of test_fluid.c through a side: h = 1 m, m = 640 kg/m, c0 = 10 m/s, x_ab = (0.6, 0.8),
  * rho = 1010 and 1020 kg/m^3: 0.6822899792818219 m/s^2 apart. */
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -183,9 +184,9 @@ static void test_moving_wall_goes_through_the_side(void)
     TEST_ASSERT_TRUE(beyond > 0);
     TEST_ASSERT_TRUE(wet > 5);
     /* The probe meets the same fluid from both ends of the period. */
-    const double left = simulation_pressure_at(&rig.sim, -0.1, 0.03);
+    const double left = fluid_pressure_at(&rig.sim, -0.1, 0.03);
     TEST_ASSERT_TRUE(left > 0);
-    assert_near(1e-9 * left, left, simulation_pressure_at(&rig.sim, 0.2, 0.03), "pressure");
+    assert_near(1e-9 * left, left, fluid_pressure_at(&rig.sim, 0.2, 0.03), "pressure");
 }
 
 int main(void)

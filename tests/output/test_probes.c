@@ -2,6 +2,7 @@
  * Probes: exact values on states made by hand; names of columns; files. */
 #include "case/params.h"
 #include "output/probes.h"
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "tiny.h"
 #include "unity.h"
@@ -157,7 +158,7 @@ static void pressure_is_a_mean_of_the_near_fluid(void)
     const double *const g = rig.sim.fluid.k.gravity;
     for (int64_t i = 0; i < p->n; i++) p->dens[i] = 1e-3, p->ax[i] = g[0], p->ay[i] = g[1];
     assert_near(1e-9, 400.0 * 1000 / 7 * (pow(1.001, 7) - 1),
-                simulation_pressure_at(&rig.sim, 0.001, 0.03), "pressure of equal density");
+                fluid_pressure_at(&rig.sim, 0.001, 0.03), "pressure of equal density");
 }
 
 static void level_of_still_water(void)

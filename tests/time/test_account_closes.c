@@ -3,6 +3,7 @@
  * which falls with the step, and a run that becomes unstable is named as soon as it does. */
 #include "time/account.h"
 #include "time/guards.h"
+#include "time/near.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -140,7 +141,7 @@ static void test_repulsion_is_counted(void)
         double held[SCENE_MAX_SECTIONS], most = 0;
         while (rig.sim.state.time < 0.035) {
             go_on(rig.sim.state.time + 1e-3);
-            simulation_repulsion(&rig.sim, held);
+            repulsion_energy(&rig.sim, held);
             most = fmax(most, held[0]);
         }
         printf("%s: held %.3f, gained %.2e, of the available energy\n", integrators[k],
@@ -165,7 +166,7 @@ static void test_what_repulsion_holds(void)
     double work = 0, before, after, of[SCENE_MAX_SECTIONS];
     const double from = 4e-3, way = 1e-6;
     p->y[0] = from;
-    simulation_repulsion(&rig.sim, of);
+    repulsion_energy(&rig.sim, of);
     before = of[0];
     for (; p->y[0] > -1e-3;) {
         p->y[0] -= 0.5 * way;
@@ -173,7 +174,7 @@ static void test_what_repulsion_holds(void)
         work += rig.sim.fluid.k.mass * p->ay[0] * way;
         p->y[0] -= 0.5 * way;
     }
-    simulation_repulsion(&rig.sim, of);
+    repulsion_energy(&rig.sim, of);
     after = of[0];
     printf("stored %.6g J/m, work %.6g J/m\n", after - before, work);
     TEST_ASSERT_TRUE(after > 1e-3);

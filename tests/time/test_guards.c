@@ -3,7 +3,7 @@
 #include "time/account.h"
 #include "time/guards.h"
 
-#include "time/integrators.h"
+#include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
 

@@ -2,7 +2,7 @@
  * One step of each integrator against Eqs. 22-27 written out, with the rates taken from the sweeps;
  * and motions that the schemes hold exactly. */
 #include "coupling/motion.h"
-#include "time/integrators.h"
+#include "time/advance.h"
 
 #include "rig.h"
 #include "unity.h"

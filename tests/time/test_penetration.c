@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Fluid inside of walls: at any size, on any side of their particles, and across joined sides. */
-#include "time/guards.h"
+#include "time/penetration.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -29,7 +29,7 @@ static int64_t found(double dp, const char *periodic, double share)
     }
     rig_sort(&rig);
     int64_t first;
-    return monitor_crossed(&rig.sim, &first);
+    return penetration_count(&rig.sim, &first);
 }
 
 static void test_fluid_in_a_bed(void)
@@ -70,7 +70,7 @@ static void test_fluid_in_a_stretched_body(void)
         int64_t first;
         char what[64];
         snprintf(what, sizeof what, "(%g, %g)", row[k].x, row[k].y);
-        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, monitor_crossed(&rig.sim, &first), what);
+        TEST_ASSERT_EQUAL_INT64_MESSAGE(row[k].inside, penetration_count(&rig.sim, &first), what);
         for (int64_t i = 0; i < p->n; i++) /* sorting has moved it */
             if (p->x[i] < 0.2) p->x[i] = 0.5, p->y[i] = 0.5;
     }

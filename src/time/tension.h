@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * Isolated particles, which the fluid does not resolve. */
-#ifndef SPHFSI_TIME_ISOLATED_H
-#define SPHFSI_TIME_ISOLATED_H
+#ifndef SPHFSI_TIME_TENSION_H
+#define SPHFSI_TIME_TENSION_H
 
-#include "time/simulation.h"
+#include "time/state.h"
 
 /* T-45: removes the tension of fluid particles far below the reference density with almost no
  * neighbours. To be called after a step, while cells are valid. */

@@ -1,10 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * Steps of a solid without fluid. */
+#include "time/solid_steps.h"
+
 #include <math.h>
 
 #include "time/account.h"
+#include "time/evaluation.h"
 #include "time/guards.h"
-#include "time/integrators.h"
 #include "time/timestep.h"
 
 /* Steps of a solid without fluid between two checks of its state. */
@@ -27,11 +29,11 @@ static enum bound lone_bounds(struct simulation *s)
 
 static void advance_lone(struct simulation *s, double dt, int n)
 {
-    const int by = s->scene->top.integrator;
-    if (by == INTEGRATOR_SYMPLECTIC) {
-        for (int k = 0; k < n; k++) symplectic_solid(s, dt);
+    const struct integrator *const by = s->integrator;
+    if (by->solid_step) {
+        for (int k = 0; k < n; k++) by->solid_step(s, dt);
     } else {
-        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, by == INTEGRATOR_LEAPFROG);
+        solid_advance(&s->solid, &s->kind[KIND_SOLID], dt, n, by->centred);
         s->state.solid_evaluations += n;
     }
 }
@@ -65,7 +67,7 @@ static double advance_near(struct simulation *s, double dt, int *n)
 static void external_for_step(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
-    const double half = s->scene->top.integrator == INTEGRATOR_VERLET ? 0 : 0.5 * dt;
+    const double half = s->integrator->centred ? 0.5 * dt : 0;
     for (int64_t i = 0; half > 0 && i < p->n; i++) {
         p->x[i] += half * p->vx[i];
         p->y[i] += half * p->vy[i];

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "time/isolated.h"
+#include "time/tension.h"
 
 #include <math.h>
 
 #include "particles/kernel.h"
 #include "time/booking.h"
+#include "time/near.h"
 
 void limit_isolated_tension(struct simulation *s)
 {
@@ -18,7 +19,7 @@ void limit_isolated_tension(struct simulation *s)
     const double reach = KERNEL_REACH * s->fluid.k.h / s->scene->top.dp;
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < p->n; i++) {
-        if (!(p->dens[i] < lowest) || simulation_near(s, p->x[i], p->y[i]) > most) continue;
+        if (!(p->dens[i] < lowest) || particles_near(s, p->x[i], p->y[i]) > most) continue;
         book_reset(s, i);
         p->dens[i] = 0;
         if (p->dens_slow) p->dens_slow[i] = 0;

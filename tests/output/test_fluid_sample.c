@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * Values of the fluid at points and lines: by hand in water at rest, and the same in a scene that is moved
  * anywhere, mirrored, or periodic. */
+#include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
 
@@ -37,33 +38,32 @@ static void test_anywhere(void)
         const double x = places[k][0], y = places[k][1];
         open_at(x, y);
         const struct simulation *const s = &rig.sim;
-        const struct sample in = simulation_sample(s, x + 0.2, y + 0.1);
+        const struct sample in = fluid_sample(s, x + 0.2, y + 0.1);
         assert_near(0.01, 1, in.fill, "fill");
         assert_near(1e-12, 0, in.occupied, "occupied");
         assert_near(0.02 * 1000, 1000, in.pressure, "pressure at half depth");
         assert_near(1e-12, 2, in.vx, "vx");
         assert_near(1e-12, 3, in.vy, "vy");
-        assert_near(0, in.pressure, simulation_pressure_at(s, x + 0.2, y + 0.1), "pressure alone");
-        const struct sample air = simulation_sample(s, x + 0.2, y + 0.25);
+        assert_near(0, in.pressure, fluid_pressure_at(s, x + 0.2, y + 0.1), "pressure alone");
+        const struct sample air = fluid_sample(s, x + 0.2, y + 0.25);
         assert_near(0, 0, air.fill + air.pressure + air.vx + air.vy, "air");
-        assert_near(0.05, 1, simulation_sample(s, x + 0.2, y - 0.02).occupied, "wall");
+        assert_near(0.05, 1, fluid_sample(s, x + 0.2, y - 0.02).occupied, "wall");
         /* Above water, from any point in it, below it within reach, and where there is none. */
-        assert_near(0.002, y + 0.2, simulation_level(s, x + 0.2, y + 0.05), "level");
-        assert_near(0.002, y + 0.2, simulation_level(s, x + 0.2, y + 0.195),
-                    "level from the surface");
-        assert_near(0, y + 0.21, simulation_level(s, x + 0.2, y + 0.21), "level of air");
-        assert_near(1e-9, x + 0.4, simulation_front(s, DIRECTION_RIGHT), "front to the right");
-        assert_near(1e-9, x, simulation_front(s, DIRECTION_LEFT), "front to the left");
-        assert_near(1e-9, y + 0.2, simulation_front(s, DIRECTION_UP), "front up");
-        assert_near(1e-9, y, simulation_front(s, DIRECTION_DOWN), "front down");
+        assert_near(0.002, y + 0.2, fluid_level(s, x + 0.2, y + 0.05), "level");
+        assert_near(0.002, y + 0.2, fluid_level(s, x + 0.2, y + 0.195), "level from the surface");
+        assert_near(0, y + 0.21, fluid_level(s, x + 0.2, y + 0.21), "level of air");
+        assert_near(1e-9, x + 0.4, fluid_front(s, DIRECTION_RIGHT), "front to the right");
+        assert_near(1e-9, x, fluid_front(s, DIRECTION_LEFT), "front to the left");
+        assert_near(1e-9, y + 0.2, fluid_front(s, DIRECTION_UP), "front up");
+        assert_near(1e-9, y, fluid_front(s, DIRECTION_DOWN), "front down");
         /* Through a line across half the depth, to the right of its direction; and through none. */
         const double low[2] = {x + 0.2, y + 0.05}, high[2] = {x + 0.2, y + 0.15};
         const double left[2] = {x + 0.1, y + 0.1}, right[2] = {x + 0.3, y + 0.1};
-        assert_near(0.01 * 0.2, 2 * 0.1, simulation_flux(s, low, high), "flux across");
-        assert_near(0.01 * 0.2, -2 * 0.1, simulation_flux(s, high, low), "flux, line turned round");
-        assert_near(0.01 * 0.6, -3 * 0.2, simulation_flux(s, left, right), "flux up");
+        assert_near(0.01 * 0.2, 2 * 0.1, fluid_flux(s, low, high), "flux across");
+        assert_near(0.01 * 0.2, -2 * 0.1, fluid_flux(s, high, low), "flux, line turned round");
+        assert_near(0.01 * 0.6, -3 * 0.2, fluid_flux(s, left, right), "flux up");
         double of[3];
-        simulation_pressure_on(s, left, right, of);
+        fluid_pressure_on(s, left, right, of);
         assert_near(20, 1000, of[0], "mean pressure on a line");
         assert_near(1e-9, 0, of[1], "force along the line");
         assert_near(0.02 * 200, -1000 * 0.2, of[2], "force of the fluid above the line");
@@ -80,16 +80,16 @@ static void test_pressure_at_a_wall(void)
         const struct simulation *const s = &rig.sim;
         struct particles *const p = &rig.sim.kind[KIND_FLUID];
         for (int64_t i = 0; i < p->n; i++) p->ax[i] = p->ay[i] = 0;
-        const double floor = simulation_pressure_at(s, x + 0.2, y),
-                     side = simulation_pressure_at(s, x, y + 0.1);
+        const double floor = fluid_pressure_at(s, x + 0.2, y),
+                     side = fluid_pressure_at(s, x, y + 0.1);
         assert_near(0.005 * 2000, 2000, floor, "floor");
-        assert_near(0.005 * 2000, 2000, simulation_pressure_at(s, x, y), "corner");
+        assert_near(0.005 * 2000, 2000, fluid_pressure_at(s, x, y), "corner");
         assert_near(0.005 * 2000, 1000, side, "side");
-        assert_near(0.005 * 2000, 50, simulation_pressure_at(s, x + 0.2, y + 0.195), "surface");
+        assert_near(0.005 * 2000, 50, fluid_pressure_at(s, x + 0.2, y + 0.195), "surface");
         /* Beside air the slope is that of the fluid's acceleration, here none: the mean over the fluid. */
         for (int64_t i = 0; i < p->n; i++) p->ay[i] = -10;
-        TEST_ASSERT_TRUE(simulation_pressure_at(s, x + 0.2, y + 0.195) > 70);
-        assert_near(0.001 * floor, floor, simulation_pressure_at(s, x + 0.2, y), "floor at rest");
+        TEST_ASSERT_TRUE(fluid_pressure_at(s, x + 0.2, y + 0.195) > 70);
+        assert_near(0.001 * floor, floor, fluid_pressure_at(s, x + 0.2, y), "floor at rest");
         tearDown();
     }
 }
@@ -106,7 +106,7 @@ static void test_pressure_at_a_moving_wall(void)
                  "motion = m\n[motion m]\nkind = expression\ny = %d*t^2\n", 5 * (k - 1));
         rig_open(&rig, text, NULL);
         rig_evaluate(&rig);
-        floor[k] = simulation_pressure_at(&rig.sim, 0.2, 0);
+        floor[k] = fluid_pressure_at(&rig.sim, 0.2, 0);
         tearDown();
     }
     assert_near(0.005 * 2000, 2000, floor[1], "at rest");
@@ -121,9 +121,9 @@ static void test_flux_of_denser_water(void)
     open_at(0, 0);
     struct particles *const p = &rig.sim.kind[KIND_FLUID];
     for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0;
-    const double flux = simulation_flux(&rig.sim, from, to);
+    const double flux = fluid_flux(&rig.sim, from, to);
     for (int64_t i = 0; i < p->n; i++) p->dens[i] = 0.1;
-    assert_near(1e-12, flux / 1.1, simulation_flux(&rig.sim, from, to), "flux");
+    assert_near(1e-12, flux / 1.1, fluid_flux(&rig.sim, from, to), "flux");
 }
 
 /* Water up to the top of the domain, and a surface just above it: the level is that of the water, not that of
@@ -139,7 +139,7 @@ static void test_level_at_the_top_of_the_domain(void)
         const double rise = 0.0005 * k;
         for (int64_t i = 0; i < p->n; i++) p->y[i] += k ? 0.0005 : 0;
         rig_evaluate(&rig);
-        assert_near(0.0007, 0.2 + rise, simulation_level(&rig.sim, 0.2, 0.1), "level");
+        assert_near(0.0007, 0.2 + rise, fluid_level(&rig.sim, 0.2, 0.1), "level");
     }
 }
 
@@ -159,11 +159,11 @@ static void test_level_of_volume(void)
     }
     const double along[] = {0.2, 0.2031, 0.25, 0.0, 0.012};
     for (size_t k = 0; k < COUNT_OF(along); k++)
-        assert_near(0.03 * dp, 0.2, simulation_level(s, along[k], 0.05), "level over two rows");
+        assert_near(0.03 * dp, 0.2, fluid_level(s, along[k], 0.05), "level over two rows");
     for (int64_t i = 0; i < p->n; i++)
         if (p->y[i] > 3 * dp) p->y[i] = 9;
     for (size_t k = 0; k < COUNT_OF(along); k++)
-        assert_near(0.03 * dp, 3 * dp, simulation_level(s, along[k], dp), "level of a layer");
+        assert_near(0.03 * dp, 3 * dp, fluid_level(s, along[k], dp), "level of a layer");
 }
 
 /* Water that moves within a spacing of a line alone passes it as if all did. */
@@ -174,7 +174,7 @@ static void test_flux_is_that_at_the_line(void)
     for (int64_t i = 0; i < p->n; i++)
         if (fabs(p->x[i] - 0.2) > rig.sim.scene->top.dp) p->vx[i] = 0;
     const double low[2] = {0.2, 0.05}, high[2] = {0.2, 0.15};
-    assert_near(0.01 * 0.2, 2 * 0.1, simulation_flux(&rig.sim, low, high), "flux");
+    assert_near(0.01 * 0.2, 2 * 0.1, fluid_flux(&rig.sim, low, high), "flux");
 }
 
 /* Water without a surface in both directions: nothing differs at the sides. */
@@ -185,21 +185,21 @@ static void test_across_periodic_sides(void)
              "velocity = 1, 0\n[domain]\nlower = 0, -0.3\nupper = 0.3, 0\nperiodic = xy\n",
              NULL);
     rig_evaluate(&rig);
-    const struct sample middle = simulation_sample(&rig.sim, 0.15, -0.15);
+    const struct sample middle = fluid_sample(&rig.sim, 0.15, -0.15);
     const double ends[][2] = {{0, -0.15}, {0.3, -0.15}, {0.15, 0}, {0.15, -0.3}, {0.3, 0}};
     for (size_t k = 0; k < COUNT_OF(ends); k++) {
-        const struct sample at = simulation_sample(&rig.sim, ends[k][0], ends[k][1]);
+        const struct sample at = fluid_sample(&rig.sim, ends[k][0], ends[k][1]);
         assert_near(1e-9, middle.fill, at.fill, "fill");
         assert_near(1e-9, middle.vx, at.vx, "vx");
     }
-    assert_near(1e-9, 0, simulation_level(&rig.sim, 0.15, -0.2), "water up to the top");
+    assert_near(1e-9, 0, fluid_level(&rig.sim, 0.15, -0.2), "water up to the top");
     /* Lines over the whole period, from any side, in it or on it, and over two of them. */
     static const double lines[][4] = {{0.01, 0, 0.01, -0.3},     {0.01, -0.3, 0.01, 0},
                                       {0, -0.15, 0, 0.15},       {0.15, -0.1, 0.15, -0.4},
                                       {0.0533, -0.3, 0.0533, 0}, {0.1, 0, 0.1, -0.6}};
     for (size_t k = 0; k < COUNT_OF(lines); k++)
-        assert_near(1e-9, lines[k][3] - lines[k][1],
-                    simulation_flux(&rig.sim, lines[k], lines[k] + 2), "flux over the period");
+        assert_near(1e-9, lines[k][3] - lines[k][1], fluid_flux(&rig.sim, lines[k], lines[k] + 2),
+                    "flux over the period");
 }
 
 int main(void)

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT
+ * Sampling the fluid: at a point, at its surface, at its front, through a line. */
+#include "output/fluid_sample.h"
+#include "base/elementary.h"
+
+#include <math.h>
+
+#include "fluid/eos.h"
+#include "particles/kernel.h"
+#include "time/near.h"
+
+/* Below a tenth of a full neighbourhood a point counts as dry. */
+#define DRY 0.1
+
+static void each_near(const struct simulation *sim, enum kind kind, double x, double y,
+                      visitor *visit, void *sums)
+{
+    each_within(sim, kind, x, y, KERNEL_REACH * sim->fluid.k.h, visit, sums);
+}
+
+/* The sums of a sample. */
+struct sampling {
+    struct sample sum;
+    double x, y;
+    double dx, dy;         /* to the place from the fluid within reach, m */
+    double rho;            /* of this fluid, kg/m^3 */
+    double ax, ay;         /* of this fluid, m/s^2 */
+    double wall_x, wall_y; /* of walls and structures, m/s^2 */
+};
+
+static void add_to_sample(const struct simulation *sim, enum kind kind, int64_t i, double r,
+                          void *sums)
+{
+    struct sampling *const at = sums;
+    const struct particles *const p = &sim->kind[kind];
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double w = kernel_w(r, k->h) * square(sim->scene->top.dp);
+    if (kind != KIND_FLUID) {
+        at->sum.occupied += w;
+        at->wall_x += w * (p->ax ? p->ax[i] : 0);
+        at->wall_y += w * (p->ay ? p->ay[i] : 0);
+        return;
+    }
+    at->sum.fill += w;
+    at->sum.pressure += w * eos_pressure(p->dens[i], k->rho0, k->c0);
+    at->sum.vx += w * p->vx[i];
+    at->sum.vy += w * p->vy[i];
+    at->dx += w * cells_minimum_image(&sim->cells, 0, at->x - p->x[i]);
+    at->dy += w * cells_minimum_image(&sim->cells, 1, at->y - p->y[i]);
+    at->rho += w * k->rho0 * (1 + p->dens[i]);
+    at->ax += w * p->ax[i];
+    at->ay += w * p->ay[i];
+}
+
+/* T-10a: from the mean over the fluid to a place beside it. */
+static double rise_to_place(const struct simulation *sim, const struct sampling *at, double mean)
+{
+    const double air = max2(0, 1 - at->sum.fill - at->sum.occupied),
+                 missing = at->sum.occupied + air;
+    if (missing <= 0) return 0;
+    const double ax = (at->wall_x + air * mean * at->ax) / missing,
+                 ay = (at->wall_y + air * mean * at->ay) / missing;
+    const double *const g = sim->fluid.k.gravity;
+    return square(mean) * at->rho * ((g[0] - ax) * at->dx + (g[1] - ay) * at->dy);
+}
+
+struct sample fluid_sample(const struct simulation *sim, double x, double y)
+{
+    struct sampling at = {.x = x, .y = y};
+    struct sample *const sum = &at.sum;
+    if (!(sim->effects & FX_FLUID)) return *sum;
+    each_near(sim, KIND_FLUID, x, y, add_to_sample, &at);
+    if (sim->effects & FX_WALL) each_near(sim, KIND_WALL, x, y, add_to_sample, &at);
+    if (sim->effects & FX_COUPLING) each_near(sim, KIND_SOLID, x, y, add_to_sample, &at);
+    const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
+    sum->pressure = mean * sum->pressure + rise_to_place(sim, &at, mean);
+    sum->vx *= mean;
+    sum->vy *= mean;
+    return *sum;
+}
+
+double fluid_pressure_at(const struct simulation *sim, double x, double y)
+{
+    return fluid_sample(sim, x, y).pressure;
+}
+
+/* The water's volume fraction of the space outside walls and structures. */
+static double wetness(const struct simulation *sim, double x, double y)
+{
+    const struct sample at = fluid_sample(sim, x, y);
+    return at.fill / max2(1 - at.occupied, 0.05);
+}
+
+/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above has the
+ * volume of that within reach. Unlike the height of half wetness it does not move when rows near the
+ * surface do, while their mean height stays. `y` is the last wet height below the surface. */
+static double dividing_surface(const struct simulation *sim, double x, double y, double step)
+{
+    const int reach = (int)(KERNEL_REACH * sim->fluid.k.h / step);
+    const double at_y = wetness(sim, x, y);
+    double level = y, before = at_y;
+    for (int k = 1; k <= reach; k++) {
+        const double now = wetness(sim, x, y + k * step);
+        if (now > 0.5) break; /* other water above */
+        level += 0.5 * (before + now) * step;
+        before = now;
+    }
+    before = at_y;
+    for (int k = 1; k <= reach; k++) {
+        const double now = wetness(sim, x, y - k * step);
+        if (now <= 0.5) break; /* below a thin layer */
+        level -= (1 - 0.5 * (before + now)) * step;
+        before = now;
+    }
+    return level;
+}
+
+double fluid_level(const struct simulation *sim, double x, double y)
+{
+    const double step = 0.25 * sim->scene->top.dp,
+                 top = sim->cells.lower[1] + sim->cells.ny * sim->cells.side[1];
+    const int reach = (int)(KERNEL_REACH * sim->fluid.k.h / step),
+              most = (int)((top - y) / step) + 1;
+    bool wet = wetness(sim, x, y) > 0.5;
+    for (int k = 1; k <= most && (wet || k <= reach); k++) {
+        const bool now = wetness(sim, x, y + k * step) > 0.5;
+        if (wet && !now) return dividing_surface(sim, x, y + (k - 1) * step, step);
+        wet = now;
+    }
+    return wet ? top : y;
+}
+
+struct neighbour_count {
+    int64_t self;
+    int neighbours;
+};
+
+static void count_neighbour(const struct simulation *sim, enum kind kind, int64_t i, double r,
+                            void *sums)
+{
+    struct neighbour_count *const count = sums;
+    (void)kind;
+    if (i != count->self && r < KERNEL_REACH * sim->fluid.k.h) count->neighbours++;
+}
+
+/* The thinnest tongue of water is a row of particles; the first of them has two others within
+ * reach. */
+static bool belongs_together(const struct simulation *sim, int64_t i)
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    struct neighbour_count count = {i, 0};
+    each_near(sim, KIND_FLUID, p->x[i], p->y[i], count_neighbour, &count);
+    return count.neighbours >= 2;
+}
+
+double fluid_front(const struct simulation *sim, int direction)
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const bool vertical = direction == DIRECTION_UP || direction == DIRECTION_DOWN;
+    const double sign = direction == DIRECTION_RIGHT || direction == DIRECTION_UP ? 1 : -1;
+    const double *const coordinate = vertical ? p->y : p->x;
+    double foremost = -(double)INFINITY, any = -(double)INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double ahead = sign * coordinate[i];
+        any = max2(any, ahead);
+        if (ahead > foremost && belongs_together(sim, i)) foremost = ahead;
+    }
+    if (p->n == 0) return (double)NAN;
+    /* The water ends half a spacing beyond the last particle's centre. */
+    return sign * ((isfinite(foremost) ? foremost : any) + 0.5 * sim->scene->top.dp);
+}
+
+/* A line, and how many of a particle's images on each side of the nearest one it may meet. */
+struct flux_line {
+    double length, along[2], period[2];
+    int images[2];
+};
+
+static struct flux_line flux_line(const struct simulation *sim, const double a[2],
+                                  const double b[2])
+{
+    struct flux_line line = {.length = elementary_hypot(b[0] - a[0], b[1] - a[1])};
+    for (int c = 0; c < 2; c++) {
+        line.along[c] = (b[c] - a[c]) / line.length;
+        line.period[c] = sim->scene->domain_upper[c] - sim->scene->domain_lower[c];
+        if (scene_periodic(sim->scene, c))
+            line.images[c] = 1 + (int)ceil(fabs(b[c] - a[c]) / line.period[c]);
+    }
+    return line;
+}
+
+/* The bell's sum over a particle's images at the place (x, y) from the line's first end. */
+static double images_at_line(const struct flux_line *line, double reach, double x, double y)
+{
+    const double tx = line->along[0], ty = line->along[1];
+    double sum = 0;
+    for (int i = -line->images[0]; i <= line->images[0]; i++)
+        for (int j = -line->images[1]; j <= line->images[1]; j++) {
+            const double X = x + i * line->period[0], Y = y + j * line->period[1];
+            const double along = X * tx + Y * ty, across = X * ty - Y * tx;
+            if (along < 0 || along > line->length || fabs(across) >= reach) continue;
+            sum += 0.5 / reach * (1 + elementary_cos(PI * across / reach));
+        }
+    return sum;
+}
+
+double fluid_flux(const struct simulation *sim, const double a[2], const double b[2])
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct flux_line line = flux_line(sim, a, b);
+    const double tx = line.along[0], ty = line.along[1];
+    /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side is the least
+     * for which its sum over a lattice is exact. A wider strip would miss what flows into an opening
+     * round its edge. */
+    const double dp = sim->scene->top.dp, reach = dp;
+    double sum = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double x = cells_minimum_image(&sim->cells, 0, p->x[i] - a[0]);
+        const double y = cells_minimum_image(&sim->cells, 1, p->y[i] - a[1]);
+        const double bell = images_at_line(&line, reach, x, y);
+        if (bell == 0) continue;
+        const double m = p->m ? p->m[i] : 1;
+        sum += bell * m * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
+    }
+    return sum;
+}
+
+void fluid_pressure_on(const struct simulation *sim, const double a[2], const double b[2],
+                       double out[3])
+{
+    const double dx = b[0] - a[0], dy = b[1] - a[1];
+    const int n = (int)max2(1, ceil(elementary_hypot(dx, dy) / sim->scene->top.dp - 1e-9));
+    double sum = 0;
+    for (int k = 0; k < n; k++) {
+        const double at = (k + 0.5) / n;
+        sum += fluid_pressure_at(sim, a[0] + at * dx, a[1] + at * dy);
+    }
+    out[0] = sum / n;
+    out[1] = out[0] * dy;
+    out[2] = -out[0] * dx;
+}

@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/advance.h"
+
+#include <math.h>
+
+#include "time/booking.h"
+#include "time/timestep.h"
+
+void advance_structure(struct simulation *sim, double dt, double kick)
+{
+    const int n = timestep_substeps(sim, dt);
+    sim->solid_max_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
+    book_solid(sim, dt, n, sim->coupling.centred);
+    sim->substeps = n;
+    sim->state.solid_substeps += n;
+    sim->state.solid_evaluations += n;
+}
+
+/* The extremes over a range of fluid particles, without branches. */
+static struct extremes extremes_of(const struct particles *p, int64_t from, int64_t end)
+{
+    vdouble low = vset_double(0), high = low, speed2 = low, nan_probe = low;
+    int64_t i = from;
+    for (; i + LANES_DOUBLE <= end; i += LANES_DOUBLE) {
+        const vdouble vx = vload_double(&p->vx[i]), vy = vload_double(&p->vy[i]);
+        const vdouble d = vload_double(&p->dens[i]), v2 = vx * vx + vy * vy;
+        low = vmin_double(d, low);
+        high = vmax_double(d, high);
+        speed2 = vmax_double(v2, speed2);
+        nan_probe = nan_probe + (v2 + d) * 0.0;
+    }
+    struct extremes e = {-vtop_double(-low), vtop_double(high), vtop_double(speed2),
+                         vsum_double(nan_probe)};
+    for (; i < end; i++) {
+        const double v2 = p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i];
+        e.dens_low = min2(e.dens_low, p->dens[i]);
+        e.dens_high = max2(e.dens_high, p->dens[i]);
+        e.speed2 = max2(e.speed2, v2);
+        e.nan_probe += 0 * (v2 + p->dens[i]);
+    }
+    return e;
+}
+
+void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by)
+{
+    enum { BLOCK = 256 };
+    struct particles *const p = &sim->kind[KIND_FLUID];
+    double low = 0, high = 0, speed2 = 0, nan_probe = 0;
+#pragma omp parallel for schedule(static) reduction(min : low) reduction(max : high, speed2) \
+    reduction(+ : nan_probe)
+    for (int64_t from = 0; from < p->n; from += BLOCK) {
+        const int64_t end = from + BLOCK < p->n ? from + BLOCK : p->n;
+        if (rows) rows(p, by, from, end);
+        const struct extremes e = extremes_of(p, from, end);
+        low = min2(low, e.dens_low);
+        high = max2(high, e.dens_high);
+        speed2 = max2(speed2, e.speed2);
+        nan_probe += e.nan_probe;
+    }
+    sim->extremes = (struct extremes){low, high, speed2, nan_probe};
+}
+
+void update_extremes(struct simulation *sim) { advance_fluid(sim, NULL, NULL); }
+
+void find_speed(struct simulation *sim)
+{
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    double top = sim->extremes.speed2;
+#pragma omp parallel for schedule(static) reduction(max : top) if (solid->n > 0)
+    for (int64_t i = 0; i < solid->n; i++)
+        top = max2(top, solid->vx[i] * solid->vx[i] + solid->vy[i] * solid->vy[i]);
+    sim->speed2 = top;
+    if (sim->effects & FX_MOTION)
+        sim->speed2 =
+            max2(sim->speed2, wall_motion_speed2(&sim->wall_motion, &sim->kind[KIND_WALL]));
+}

@@ -1,0 +1,21 @@
+/* SPDX-License-Identifier: MIT
+ * The advance of fluid and structure, which all integrators share. */
+#ifndef SPHFSI_TIME_ADVANCE_H
+#define SPHFSI_TIME_ADVANCE_H
+
+#include "time/state.h"
+
+/* Advances the fluid by `rows`, which updates velocities and densities of the particles from to end
+ * - 1; `by` holds its parameters. Finds their extremes while they are in the caches. */
+typedef void advance_rows(struct particles *p, const void *by, int64_t from, int64_t end);
+void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
+
+/* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the fluid for
+ * `kick`. */
+void advance_structure(struct simulation *sim, double dt, double kick);
+
+/* Finds the extremes of the fluid's present state; and the speed of the fastest particle of any kind. */
+void update_extremes(struct simulation *sim);
+void find_speed(struct simulation *sim);
+
+#endif

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/initial.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "fluid/eos.h"
+#include "particles/kernel.h"
+#include "time/advance.h"
+#include "time/evaluation.h"
+#include "time/sorting.h"
+#include "time/timestep.h"
+#include "time/warnings.h"
+
+static unsigned groups_of(const struct simulation *sim, enum kind kind)
+{
+    const unsigned groups = effects_groups(sim->effects, kind);
+    if (!groups || kind == KIND_WALL) return groups;
+    return groups | (kind == KIND_FLUID ? sim->integrator->fluid_groups : G_STAGE);
+}
+
+static enum err fill_kind(struct simulation *sim, enum kind kind, int64_t first_id, struct diag *d)
+{
+    const struct scene_points *const points = &sim->scene->points[kind];
+    const unsigned groups = groups_of(sim, kind);
+    struct particles *const p = &sim->kind[kind];
+    memset(p, 0, sizeof *p);
+    if (!groups || points->n == 0) return ERR_OK;
+    const int64_t most = groups & G_OPEN ? open_places(sim->scene) : points->n;
+    TRY(particles_create(p, &sim->arena, most, groups, kind_names[kind], d));
+    p->n = points->n;
+    for (int64_t i = 0; i < p->n; i++) {
+        p->x[i] = points->x[i];
+        p->y[i] = points->y[i];
+        p->id[i] = first_id + i;
+        p->body[i] = points->body[i];
+        if (p->X) p->X[i] = points->x[i];
+        if (p->Y) p->Y[i] = points->y[i];
+        if (p->open) p->open[i] = points->open[i];
+        if (p->free) p->free[i] = points->clamped && points->clamped[i] ? 0 : 1;
+    }
+    return ERR_OK;
+}
+
+static double expr_or(const struct expr *e, double x, double y, double otherwise)
+{
+    return e ? scene_expr_at(e, x, y) : otherwise;
+}
+
+static void start_fluid(struct simulation *sim)
+{
+    struct particles *const p = &sim->kind[KIND_FLUID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_fluid *const f = &sim->scene->fluid[p->body[i]];
+        const double x = p->x[i], y = p->y[i];
+        /* Hydrostatic start below the free surface. */
+        const double depth = isnan(f->surface) ? 0 : max2(0, f->surface - y);
+        const double pressure =
+            expr_or(f->pressure.e[0], x, y, -sim->scene->rho0 * sim->scene->top.gravity[1] * depth);
+        p->dens[i] = eos_dens(pressure, sim->scene->rho0, sim->scene->c0);
+        if (p->dens_slow) p->dens_slow[i] = p->dens[i];
+        if (p->m) p->m[i] = f->particle_mass == MASS_HYDROSTATIC ? 1 + p->dens[i] : 1;
+        p->vx[i] = expr_or(f->velocity.e[0], x, y, 0);
+        p->vy[i] = expr_or(f->velocity.e[1], x, y, 0);
+        if (p->vx_half) {
+            p->vx_half[i] = p->vx[i];
+            p->vy_half[i] = p->vy[i];
+        }
+        if (!p->vx_old) continue;
+        p->vx_old[i] = p->vx[i];
+        p->vy_old[i] = p->vy[i];
+        p->dens_old[i] = p->dens[i];
+    }
+}
+
+static void start_solid(struct simulation *sim)
+{
+    struct particles *const p = &sim->kind[KIND_SOLID];
+    for (int64_t i = 0; i < p->n; i++) {
+        const struct scene_solid *const b = &sim->scene->solid[p->body[i]];
+        p->vx[i] = p->free[i] * expr_or(b->velocity.e[0], p->X[i], p->Y[i], 0);
+        p->vy[i] = p->free[i] * expr_or(b->velocity.e[1], p->X[i], p->Y[i], 0);
+        if (!p->wx) continue;
+        p->wx[i] = p->vx[i];
+        p->wy[i] = p->vy[i];
+    }
+}
+
+/* What makes the steps of fluid and solid so different, and its remedy. */
+static const char *remedy_of_substeps(const struct simulation *sim)
+{
+    const double free = solid_step_of(square(sim->solid.omega_max), 0);
+    bool damped = false;
+    for (int k = 0; k < sim->scene->n_solid; k++) damped |= sim->scene->solid[k].damping_time > 0;
+    const double sound = sim->scene->numerics.cfl * sim->fluid.k.h / sim->fluid.k.c0;
+    if (sim->scene->numerics.fixed_step > sound) return "reduce fixed_step, or leave it out";
+    if (damped && sim->solid.stable_step < 0.5 * free)
+        return "reduce the damping_time of the [solid]";
+    return "reduce young of the [solid], or raise its density or the sound_speed of the [fluid]";
+}
+
+/* Sub-steps help where the solid's step is the smaller one. */
+static enum err choose_rate(struct simulation *sim, struct diag *d)
+{
+    if (!(sim->effects & FX_COUPLING)) return ERR_OK;
+    const double ratio = timestep_fluid_limit(sim) / sim->dt_solid;
+    if (!(ratio <= SUBSTEPS_MOST))
+        return diag_fail(
+            d, ERR_INPUT,
+            "the solid's stable step of %.3g s needs %.3g sub-steps per fluid step, more than the "
+            "limit of %d; %s",
+            sim->dt_solid, ratio, SUBSTEPS_MOST, remedy_of_substeps(sim));
+    const int wish = sim->scene->numerics.multirate;
+    const bool binds = sim->dt_solid < timestep_fluid_limit(sim);
+    if (wish == MULTIRATE_ON || (wish == MULTIRATE_AUTO && binds)) sim->effects |= FX_MULTIRATE;
+    if (!(sim->effects & FX_MULTIRATE))
+        sim->effects &= ~(effect_set)(FX_IMPEDANCE | FX_FORCE_EXTRAPOLATION);
+    sim->fluid.effects = sim->effects;
+    coupling_set_rate(&sim->coupling, sim->effects, timestep_fluid_limit(sim));
+    return ERR_OK;
+}
+
+static void set_guards(struct simulation *sim)
+{
+    sim->guard = (struct guard){
+        .dens_limit = 0.3,
+        .speed_limit = sim->effects & FX_FLUID ? sim->scene->c0 : (double)INFINITY,
+        .step_limit = 1e-4 * (sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid),
+    };
+}
+
+static enum err create_fluid(struct simulation *sim, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    const double reach = KERNEL_REACH * scene->h, stray = scene->numerics.skin * scene->h;
+    TRY(cells_create(&sim->cells, &sim->arena, scene->domain_lower, scene->domain_upper, reach,
+                     stray, sim->kind, d));
+    for (int axis = 0; axis < 2; axis++)
+        if (scene_periodic(scene, axis)) TRY(cells_make_periodic(&sim->cells, axis, reach, d));
+    TRY(fluid_create(&sim->fluid, &sim->arena, scene, sim->effects, sim->kind, &sim->cells, d));
+    start_fluid(sim);
+    return ERR_OK;
+}
+
+enum err initial_state(struct simulation *sim, struct diag *d)
+{
+    sim->gravity_varies = scene_gravity_varies(sim->scene);
+    int64_t id = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        TRY(fill_kind(sim, (enum kind)kind, id, d));
+        id += sim->kind[kind].n;
+    }
+    if (sim->effects & FX_FLUID) TRY(create_fluid(sim, d));
+    if (sim->effects & FX_OPEN) TRY(open_create(&sim->open, &sim->arena, sim->scene, id, d));
+    if (sim->effects & FX_SOLID) {
+        TRY(solid_create(&sim->solid, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
+        start_solid(sim);
+        solid_find_step(&sim->solid, &sim->kind[KIND_SOLID]);
+        if (sim->effects & FX_CONTACT)
+            TRY(contact_create(&sim->contact, &sim->arena, sim->scene, &sim->solid,
+                               &sim->kind[KIND_SOLID], d));
+        if (sim->effects & (FX_LOAD | FX_CLAMP_MOTION)) {
+            TRY(loads_create(&sim->loads, &sim->arena, sim->scene, &sim->kind[KIND_SOLID], d));
+            sim->solid.loads = &sim->loads;
+        }
+        sim->solid.gravity = sim->gravity_varies ? sim->scene : NULL;
+        sim->state.solid_stiffening = sim->state.solid_slowing = 1;
+        timestep_set_solid(sim);
+    }
+    if (sim->effects & FX_MOTION) {
+        TRY(wall_motion_create(&sim->wall_motion, &sim->arena, sim->scene, &sim->kind[KIND_WALL],
+                               d));
+        move_walls(sim, 0);
+    }
+    coupling_create(&sim->coupling, sim->scene, &sim->fluid, &sim->solid, &sim->kind[KIND_SOLID]);
+    sim->coupling.exchange_time = &sim->state.exchange_time;
+    sim->coupling.ahead = sim->integrator->ahead;
+    sim->coupling.centred = sim->integrator->centred;
+    TRY(choose_rate(sim, d));
+    timestep_find_grid(sim);
+    simulation_warn_of_steps(sim, d);
+    set_guards(sim);
+    update_extremes(sim);
+    find_speed(sim);
+    return sim->effects & FX_FLUID ? sort_particles(sim, d) : ERR_OK;
+}

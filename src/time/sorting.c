@@ -1,0 +1,141 @@
+/* SPDX-License-Identifier: MIT */
+#include "time/sorting.h"
+
+#include <math.h>
+
+#include "fluid/eos.h"
+#include "particles/kernel.h"
+#include "time/account.h"
+#include "time/guards.h"
+#include "time/timestep.h"
+
+/* Energy that a fluid particle carries, J/m. */
+static double energy_of(const struct simulation *sim, const struct particles *p, int64_t i)
+{
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double *const g = sim->scene->top.gravity;
+    const double m = p->m ? p->m[i] : 1;
+    return m * k->mass *
+           (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] - g[1] * p->y[i] +
+            eos_energy(p->dens[i], k->c0));
+}
+
+/* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
+ * one. */
+static void book_crossings(struct simulation *sim)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        const double given = sim->fluid.k.mass * sim->scene->top.gravity[axis] *
+                             (double)sim->cells.crossings[axis] *
+                             (sim->scene->domain_upper[axis] - sim->scene->domain_lower[axis]);
+        sim->state.periodic_energy += given;
+        sim->state.account.put[account_entry(KIND_FLUID, 0)] += given;
+    }
+}
+
+static void forget(struct particles *p, int64_t i)
+{
+    p->p[i] = p->dens[i] = 0;
+    if (p->fx) p->fx[i] = p->fy[i] = 0;
+    if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
+}
+
+/* Clears the fluid sums of structure particles. Evaluations skip those without fluid nearby, so
+ * this is done before the cells change. */
+static void forget_touch(struct simulation *sim, enum kind kind)
+{
+    struct particles *const p = &sim->kind[kind];
+    const struct cell_list *const list = &sim->cells.kind[kind];
+    for (int32_t k = 0; k < sim->fluid.n_near_fluid[kind]; k++) {
+        const int32_t cell = sim->fluid.near_fluid[kind][k];
+        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
+            forget(p, list->order[j]);
+        }
+    }
+}
+
+/* A checkpoint contains the sums of the last evaluation before it. */
+void forget_all_touch(struct particles *p)
+{
+    for (int64_t i = 0; i < p->n; i++) forget(p, i);
+}
+
+/* Sets the cells' skin from a new measurement. The next evaluation uses the present state; the
+ * predictor's second one is half a step of the present velocities later. */
+void find_skin_left(struct simulation *sim)
+{
+    const bool predicts = sim->integrator->ahead > 0;
+    const double ahead = predicts ? 1.1 * timestep_fluid_limit(sim) * sqrt(sim->speed2) : 0;
+    sim->skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + ahead);
+}
+
+/* Sorts fluid, structure and moving walls into cells; removes fluid outside the domain. */
+enum err sort_particles(struct simulation *sim, struct diag *d)
+{
+    struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
+    if (sim->effects & FX_WALL) forget_touch(sim, KIND_WALL);
+    if (sim->effects & FX_COUPLING) forget_touch(sim, KIND_SOLID);
+    if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, &sim->fluid.k, fluid, d));
+    const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
+    if (lost && sim->state.lost == 0) guards_warn_of_loss(sim, fluid->n - lost, d);
+    for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
+        const double energy = energy_of(sim, fluid, i);
+        sim->state.lost_energy += energy;
+        sim->state.account.put[account_entry(KIND_FLUID, fluid->body[i])] -= energy;
+    }
+    if (sim->effects & FX_PERIODIC) book_crossings(sim);
+    fluid->n -= lost;
+    sim->state.lost += lost;
+    if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, fluid, d));
+    if ((sim->effects & FX_WALL) && sim->state.sorts == 0)
+        cells_sort(&sim->cells, KIND_WALL, &sim->kind[KIND_WALL]);
+    else if (sim->effects & FX_MOTION)
+        wall_motion_sort(&sim->wall_motion, &sim->cells, &sim->kind[KIND_WALL]);
+    if (sim->effects & FX_COUPLING) cells_sort(&sim->cells, KIND_SOLID, solid);
+    fluid_find_near(&sim->fluid, &sim->cells);
+    sim->state.sorts++;
+    const int32_t fullest = fluid_fullest_cell(&sim->cells);
+    sim->cells_overfull = fullest > CELL_CAPACITY;
+    find_skin_left(sim);
+    if (sim->cells_overfull && sim->state.steps == 0)
+        return diag_fail(
+            d, ERR_INPUT,
+            "%d particles start in one cell of %.3g m, more than the limit of %d; use a smaller "
+            "numerics.h_over_dp, or a dp of solids closer to that of the fluid",
+            fullest, sim->cells.side[0], CELL_CAPACITY);
+    if (sim->cells_overfull)
+        return diag_fail(
+            d, ERR_GUARD,
+            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where about twenty "
+            "are usual, so the run is unstable; a smaller cfl or another sound_speed may help",
+            sim->state.time, fullest, sim->cells.side[0]);
+    return ERR_OK;
+}
+
+/* Subtracts the largest distance that two particles can have moved in the last step from the skin.
+ * For the fluid: the larger of its speeds before and after, half a step of its acceleration, and
+ * its shift. */
+void use_skin_left(struct simulation *sim, double speed2_before)
+{
+    const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
+                 moved = dt * (speed + 0.5 * dt * sqrt(sim->fluid.extremes.acceleration2)) +
+                         sim->shifted;
+    sim->skin_left -= moved + max2(moved, sim->solid_max_move);
+}
+
+/* Whether the cells may miss a pair at the next evaluations. Where displacements are bounded,
+ * cells need not be measured at every step. Rounding errors of the displacements are below the
+ * tolerance. */
+bool sorting_due(struct simulation *sim)
+{
+    if (sim->effects & FX_OPEN && open_due(&sim->open, &sim->kind[KIND_FLUID], sim->scene->top.dp))
+        return true;
+    const bool bounded = sim->integrator->ahead == 0 && !(sim->effects & FX_MOTION);
+    const double tolerance = 1e-6 * sim->fluid.k.h;
+    if (bounded && sim->skin_left > tolerance) return false;
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        if (sim->cells.kind[kind].n_active && (kind != KIND_WALL || sim->wall_motion.moved))
+            cells_measure_overhang(&sim->cells, (enum kind)kind, &sim->kind[kind]);
+    find_skin_left(sim);
+    return !(sim->skin_left > 0);
+}
