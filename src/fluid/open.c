@@ -97,21 +97,24 @@ enum err open_create(struct open *o, struct arena *a, const struct scene *s, int
 
 /* Sums of the kernel over the fluid around a point: of its fields and of the vector to it. */
 struct across {
-    double w, p, u, v;
+    const struct fluid_constants *k;
+    const struct particles *p;
+    double w, p_w, u, v;
     double x, y, xx, xy, yy; /* of the vector from the point to the particles */
     double ux, uy, vx, vy;
     double mass_x, mass_y; /* of rho/rho0 times the vector back */
 };
 
-SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
-                              const struct particles *p, int64_t i, double x, double y)
+static void add_across(void *context, int64_t i, double x, double y, double r)
 {
-    const double r2 = x * x + y * y;
-    if (r2 >= square(KERNEL_REACH * k->h) || p->open[i]) return;
-    const double w = kernel_w(sqrt(r2), k->h);
+    struct across *const s = context;
+    const struct fluid_constants *const k = s->k;
+    const struct particles *const p = s->p;
+    if (p->open[i]) return;
+    const double w = kernel_w(r, k->h);
     const double u = p->vx[i], v = p->vy[i], mass = w * (1 + p->dens[i]);
     s->w += w;
-    s->p += w * eos_pressure(p->dens[i], k->rho0, k->c0);
+    s->p_w += w * eos_pressure(p->dens[i], k->rho0, k->c0);
     s->u += w * u;
     s->v += w * v;
     s->x += w * x;
@@ -127,31 +130,12 @@ SPHFSI_INLINE void add_across(struct across *s, const struct fluid_constants *k,
     s->mass_y -= mass * y;
 }
 
-/* The fluid within reach of a point, without the buffers. Particles may have moved out of their
- * cells. */
+/* The fluid within reach of a point, without the buffers. */
 static struct across state_across(const struct fluid_constants *k, const struct particles *p,
                                   const struct cells *c, const double at[2])
 {
-    const struct cell_list *const list = &c->kind[KIND_FLUID];
-    const double reach = KERNEL_REACH * k->h + c->skin;
-    struct across sums = {0};
-    int first[2], n[2];
-    for (int axis = 0; axis < 2; axis++) {
-        const int cells = axis ? c->ny : c->nx;
-        const double place = (at[axis] - c->lower[axis]) / c->side[axis],
-                     part = reach / c->side[axis];
-        first[axis] = (int)max2(-1, min2(cells, floor(place - part)));
-        n[axis] = (int)max2(-1, min2(cells, floor(place + part))) - first[axis] + 1;
-        if (c->periodic[axis] && n[axis] > cells) n[axis] = cells;
-    }
-    for (int j = 0; j < n[1]; j++)
-        for (int i = 0; i < n[0]; i++) {
-            const int32_t cell = cell_at(c, first[0] + i, first[1] + j);
-            if (cell < 0) continue;
-            for (int32_t m = list->start[cell]; m < list->start[cell] + list->count[cell]; m++)
-                add_across(&sums, k, p, m, cells_minimum_image(c, 0, p->x[m] - at[0]),
-                           cells_minimum_image(c, 1, p->y[m] - at[1]));
-        }
+    struct across sums = {.k = k, .p = p};
+    cells_each_near(c, KIND_FLUID, p, at, KERNEL_REACH * k->h, add_across, &sums);
     return sums;
 }
 
@@ -215,7 +199,7 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
     o->mirror_u[m] = p->vx[i];
     o->mirror_v[m] = p->vy[i];
     if (b->kind == OPEN_PRESSURE) {
-        o->mirror_p[m] = s.w > 0 ? s.p / s.w : (double)NAN;
+        o->mirror_p[m] = s.w > 0 ? s.p_w / s.w : (double)NAN;
         see_velocity(o, m, k, p, c, foot);
         return;
     }
@@ -223,8 +207,8 @@ static void see(struct open *o, int64_t m, const struct fluid_constants *k,
     if (!(s.w > 0)) return;
     given_acceleration(o->at[p->open[i] - 1], k, foot, time, a);
     const double from[2] = {x[0] - mirror[0], x[1] - mirror[1]};
-    o->mirror_p[m] = (s.p + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
-                                       (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
+    o->mirror_p[m] = (s.p_w + k->rho0 * ((k->gravity[0] - a[0]) * (s.mass_x + s.w * from[0]) +
+                                         (k->gravity[1] - a[1]) * (s.mass_y + s.w * from[1]))) /
                      s.w;
 }
 

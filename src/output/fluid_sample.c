@@ -7,35 +7,28 @@
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
-#include "time/near.h"
 
 /* Below a tenth of a full neighbourhood a point counts as dry. */
 #define DRY 0.1
 
-static void each_near(const struct simulation *sim, enum kind kind, double x, double y,
-                      visitor *visit, void *sums)
-{
-    each_within(sim, kind, x, y, KERNEL_REACH * sim->fluid.k.h, visit, sums);
-}
-
 /* The sums of a sample. */
 struct sampling {
+    const struct simulation *sim;
+    enum kind kind; /* of the particles visited */
     struct sample sum;
-    double x, y;
     double dx, dy;         /* to the place from the fluid within reach, m */
     double rho;            /* of this fluid, kg/m^3 */
     double ax, ay;         /* of this fluid, m/s^2 */
     double wall_x, wall_y; /* of walls and structures, m/s^2 */
 };
 
-static void add_to_sample(const struct simulation *sim, enum kind kind, int64_t i, double r,
-                          void *sums)
+static void add_to_sample(void *context, int64_t i, double x, double y, double r)
 {
-    struct sampling *const at = sums;
-    const struct particles *const p = &sim->kind[kind];
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double w = kernel_w(r, k->h) * square(sim->scene->top.dp);
-    if (kind != KIND_FLUID) {
+    struct sampling *const at = context;
+    const struct particles *const p = &at->sim->kind[at->kind];
+    const struct fluid_constants *const k = &at->sim->fluid.k;
+    const double w = kernel_w(r, k->h) * square(k->dp);
+    if (at->kind != KIND_FLUID) {
         at->sum.occupied += w;
         at->wall_x += w * (p->ax ? p->ax[i] : 0);
         at->wall_y += w * (p->ay ? p->ay[i] : 0);
@@ -45,8 +38,8 @@ static void add_to_sample(const struct simulation *sim, enum kind kind, int64_t 
     at->sum.pressure += w * eos_pressure(p->dens[i], k->rho0, k->c0);
     at->sum.vx += w * p->vx[i];
     at->sum.vy += w * p->vy[i];
-    at->dx += w * cells_minimum_image(&sim->cells, 0, at->x - p->x[i]);
-    at->dy += w * cells_minimum_image(&sim->cells, 1, at->y - p->y[i]);
+    at->dx -= w * x;
+    at->dy -= w * y;
     at->rho += w * k->rho0 * (1 + p->dens[i]);
     at->ax += w * p->ax[i];
     at->ay += w * p->ay[i];
@@ -66,12 +59,15 @@ static double rise_to_place(const struct simulation *sim, const struct sampling 
 
 struct sample fluid_sample(const struct simulation *sim, double x, double y)
 {
-    struct sampling at = {.x = x, .y = y};
+    struct sampling at = {.sim = sim};
     struct sample *const sum = &at.sum;
     if (!(sim->effects & FX_FLUID)) return *sum;
-    each_near(sim, KIND_FLUID, x, y, add_to_sample, &at);
-    if (sim->effects & FX_WALL) each_near(sim, KIND_WALL, x, y, add_to_sample, &at);
-    if (sim->effects & FX_COUPLING) each_near(sim, KIND_SOLID, x, y, add_to_sample, &at);
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        if (!sim->cells.kind[kind].n_active) continue;
+        at.kind = (enum kind)kind;
+        cells_each_near(&sim->cells, at.kind, &sim->kind[kind], (double[]){x, y},
+                        KERNEL_REACH * sim->fluid.k.h, add_to_sample, &at);
+    }
     const double mean = sum->fill > DRY ? 1 / sum->fill : 0;
     sum->pressure = mean * sum->pressure + rise_to_place(sim, &at, mean);
     sum->vx *= mean;
@@ -130,17 +126,10 @@ double fluid_level(const struct simulation *sim, double x, double y)
     return wet ? top : y;
 }
 
-struct neighbour_count {
-    int64_t self;
-    int neighbours;
-};
-
-static void count_neighbour(const struct simulation *sim, enum kind kind, int64_t i, double r,
-                            void *sums)
+static void count(void *n, int64_t i, double x, double y, double r)
 {
-    struct neighbour_count *const count = sums;
-    (void)kind;
-    if (i != count->self && r < KERNEL_REACH * sim->fluid.k.h) count->neighbours++;
+    (void)i, (void)x, (void)y, (void)r;
+    ++*(int *)n;
 }
 
 /* The thinnest tongue of water is a row of particles; the first of them has two others within
@@ -148,9 +137,10 @@ static void count_neighbour(const struct simulation *sim, enum kind kind, int64_
 static bool belongs_together(const struct simulation *sim, int64_t i)
 {
     const struct particles *const p = &sim->kind[KIND_FLUID];
-    struct neighbour_count count = {i, 0};
-    each_near(sim, KIND_FLUID, p->x[i], p->y[i], count_neighbour, &count);
-    return count.neighbours >= 2;
+    int n = 0; /* with itself */
+    cells_each_near(&sim->cells, KIND_FLUID, p, (double[]){p->x[i], p->y[i]},
+                    KERNEL_REACH * sim->fluid.k.h, count, &n);
+    return n >= 3;
 }
 
 double fluid_front(const struct simulation *sim, int direction)

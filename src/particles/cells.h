@@ -137,4 +137,36 @@ SPHFSI_INLINE bool cells_is_near(const struct cells *c, int32_t cell, double x, 
     return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
+/* Called for particle i at the vector (x, y) from a point, r long, m. */
+typedef void cells_visitor(void *context, int64_t i, double x, double y, double r);
+
+/* Visits the particles p of a kind that are nearer to a point than `distance`, although they may have
+ * moved by the skin since they were sorted. */
+SPHFSI_INLINE void cells_each_near(const struct cells *c, enum kind kind, const struct particles *p,
+                                   const double at[2], double distance, cells_visitor *visit,
+                                   void *context)
+{
+    const struct cell_list *const list = &c->kind[kind];
+    int first[2], n[2];
+    for (int axis = 0; axis < 2; axis++) {
+        const int cells = axis ? c->ny : c->nx;
+        const double place = (at[axis] - c->lower[axis]) / c->side[axis],
+                     part = (distance + c->skin) / c->side[axis];
+        first[axis] = (int)max2(-1, min2(cells, __builtin_floor(place - part)));
+        n[axis] = (int)max2(-1, min2(cells, __builtin_floor(place + part))) - first[axis] + 1;
+        if (c->periodic[axis] && n[axis] > cells) n[axis] = cells;
+    }
+    for (int m = 0; m < n[0] * n[1]; m++) {
+        const int32_t cell = cell_at(c, first[0] + m % n[0], first[1] + m / n[0]);
+        if (cell < 0) continue;
+        for (int32_t k = list->start[cell]; k < list->start[cell] + list->count[cell]; k++) {
+            const int64_t i = list->order ? list->order[k] : k;
+            const double x = cells_minimum_image(c, 0, p->x[i] - at[0]);
+            const double y = cells_minimum_image(c, 1, p->y[i] - at[1]);
+            const double r2 = square(x) + square(y);
+            if (r2 < square(distance)) visit(context, i, x, y, __builtin_sqrt(r2));
+        }
+    }
+}
+
 #endif

@@ -7,7 +7,7 @@
 
 #include "fluid/eos.h"
 #include "particles/kernel.h"
-#include "time/near.h"
+#include "time/repulsion.h"
 
 int account_entry(enum kind kind, int section) { return (int)kind * SCENE_MAX_SECTIONS + section; }
 

@@ -4,13 +4,6 @@
 
 #include <math.h>
 
-/* The shorter distance where opposite sides are joined. */
-static double nearest(const struct cells *c, int axis, double d)
-{
-    const double width = c->side[axis] * (axis ? c->ny : c->nx);
-    return c->periodic[axis] ? d - width * rint(d / width) : d;
-}
-
 /* Distance from a particle of a body, in spacings, below which a fluid particle is inside. Fluid at
  * rest is one spacing from the particles at the surface; under high pressure it comes as close as a
  * half. */
@@ -21,7 +14,8 @@ static double nearest(const struct cells *c, int axis, double d)
 static bool takes(const struct simulation *s, enum kind kind, int64_t i, double x, double y)
 {
     const struct particles *const p = &s->kind[kind];
-    const double dx = nearest(&s->cells, 0, x - p->x[i]), dy = nearest(&s->cells, 1, y - p->y[i]);
+    const double dx = cells_minimum_image(&s->cells, 0, x - p->x[i]),
+                 dy = cells_minimum_image(&s->cells, 1, y - p->y[i]);
     if (kind != KIND_SOLID) return dx * dx + dy * dy < square(TAKEN * s->scene->top.dp);
     const double xx = 1 + p->Uxx[i], xy = p->Uxy[i], yx = p->Uyx[i], yy = 1 + p->Uyy[i];
     /* F^-1 times det F: no division. */
@@ -35,8 +29,8 @@ static bool wall_near(const struct simulation *s, int32_t cell, double x, double
 {
     const struct cells *const c = &s->cells;
     const double reach = TAKEN * s->scene->top.dp + (s->effects & FX_MOTION ? c->skin : 0);
-    return fabs(nearest(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
-           fabs(nearest(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
+    return fabs(cells_minimum_image(c, 0, x - cell_centre_x(c, cell))) < 0.5 * c->side[0] + reach &&
+           fabs(cells_minimum_image(c, 1, y - cell_centre_y(c, cell))) < 0.5 * c->side[1] + reach;
 }
 
 /* Whether (x, y) is that close to a wall or solid particle of one cell. */

@@ -5,6 +5,9 @@
 
 #include "time/state.h"
 
+/* Particles of all kinds within the kernel's reach of a point. */
+int particles_near(const struct simulation *sim, double x, double y);
+
 /* T-45: removes the tension of fluid particles far below the reference density with almost no
  * neighbours. To be called after a step, while cells are valid. */
 void limit_isolated_tension(struct simulation *s);

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT
  * Drops of a few particles, which tension would bind to each other for ever (T-45). */
-#include "time/near.h"
 #include "time/tension.h"
 
 #include "output/checkpoint.h"
