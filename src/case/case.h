@@ -79,8 +79,6 @@ struct reader {
     bool cause_named;     /* the message names the invalid constant */
     bool in_lost_section; /* after a section header that is invalid */
     bool lost;            /* invalid lines or sections are skipped */
-    bool shapes_wrong;    /* a problem may change which shapes are sampled */
-    bool places_wrong;    /* or what lies among them: open boundaries, the domain, probes */
     bool checked;         /* all checks have been made */
     int n_problems;       /* those beyond the array are only counted */
     struct problem problems[CASE_MAX_PROBLEMS];
@@ -102,18 +100,12 @@ void case_warn(const struct reader *r, int line, const char *format, ...) SPHFSI
 
 /* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
-/* case/rest.c: notes what a problem with a value spoils; with an unknown key, which may be meant for a key
- * of the section. What can still be checked. */
-void case_spoils(struct reader *r, const struct param *p);
-void case_spoils_unknown(struct reader *r, enum section_id section, const char *word);
-enum scene_rest case_rest(const struct reader *r);
 /* Whether all lines, keys and values of a section are valid, or it is not given. */
 bool case_sound(const struct reader *r, enum section_id id, int index);
 /* The same for all sections of a kind. */
 bool case_all_sound(const struct reader *r, enum section_id id);
-/* The problems stored so far, sorted by line, as the failure in the diag; ERR_OK: there are
- * none. */
-enum err case_report(struct reader *r) SPHFSI_CHECKED;
+/* The problems stored so far, sorted by line, as the failure in the diag. */
+void case_report(struct reader *r);
 
 /* case/lines.c: text to sections and entries, then --set arguments. */
 enum err case_split(struct reader *r, const char *text) SPHFSI_CHECKED;

@@ -413,11 +413,8 @@ static enum err check_sections(struct reader *r)
 {
     const struct scene *const s = r->scene;
     const bool top = case_sound(r, SECTION_top, 0);
-    int before = r->n_problems;
     for (int k = 0; k < s->n_solid; k++)
         if (top && case_all_sound(r, SECTION_solid)) TRY(case_go_on(r, check_joined(r, k)));
-    r->shapes_wrong |= r->n_problems > before;
-    before = r->n_problems;
     TRY(check_moved(r));
     for (int k = 0; k < s->n_motion; k++)
         if (top && case_sound(r, SECTION_motion, k))
@@ -426,7 +423,6 @@ static enum err check_sections(struct reader *r)
         case_all_sound(r, SECTION_fluid))
         TRY(case_go_on(r, case_check_open(r)));
     TRY(case_check_probes(r));
-    r->places_wrong |= r->n_problems > before;
     if (case_sound(r, SECTION_output, 0)) TRY(case_go_on(r, case_check_output(r)));
     for (int k = 0; k < s->n_contact; k++)
         if (case_sound(r, SECTION_contact, k)) TRY(case_go_on(r, check_contact(r, &s->contact[k])));
@@ -441,8 +437,7 @@ static enum err check_sections(struct reader *r)
 enum err case_check(struct reader *r)
 {
     struct scene *const s = r->scene;
-    const int before = r->n_problems;
-    const bool valid = before == 0, numerics = case_sound(r, SECTION_numerics, 0);
+    const bool valid = r->n_problems == 0, numerics = case_sound(r, SECTION_numerics, 0);
     if (s->numerics.cfl == 0) /* the largest step at which the integrator is accurate */
         s->numerics.cfl = s->top.integrator == INTEGRATOR_LEAPFROG ? CFL_LEAPFROG : CFL_PAPER;
     if (valid && s->n_fluid == 0 && s->n_solid == 0)
@@ -450,7 +445,6 @@ enum err case_check(struct reader *r)
                         "nothing to simulate: the case needs a [fluid NAME] or a [solid NAME] "
                         "section");
     if (case_sound(r, SECTION_numerics, 0)) TRY(case_go_on(r, check_solid_h(r)));
-    r->shapes_wrong |= r->n_problems > before;
     if (case_sound(r, SECTION_top, 0)) TRY(case_go_on(r, check_gravity(r)));
     if (case_sound(r, SECTION_relax, 0) && case_all_sound(r, SECTION_motion))
         TRY(case_go_on(r, check_relax(r)));

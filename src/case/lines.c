@@ -374,10 +374,6 @@ enum err case_apply_sets(struct reader *r, int n_sets, const char *const *sets)
     memcpy(more, r->sections, (size_t)r->n_sections * sizeof *more);
     r->entries = entries;
     r->sections = more;
-    for (int k = 0; k < n_sets; k++) {
-        const enum err set = apply_set(r, sets[k]);
-        r->shapes_wrong |= set != ERR_OK; /* it may be meant for a shape */
-        TRY(case_go_on(r, set));
-    }
+    for (int k = 0; k < n_sets; k++) TRY(case_go_on(r, apply_set(r, sets[k])));
     return ERR_OK;
 }

@@ -98,10 +98,10 @@ static void sort_problems(struct reader *r, int n)
     }
 }
 
-enum err case_report(struct reader *r)
+void case_report(struct reader *r)
 {
     const int n = r->n_problems < CASE_MAX_PROBLEMS ? r->n_problems : CASE_MAX_PROBLEMS;
-    if (n == 0) return ERR_OK;
+    if (n == 0) return;
     sort_problems(r, n);
     diag_fail(r->diag, ERR_INPUT, "%s", r->problems[0].text);
     for (int k = 1; k < n; k++) diag_more(r->diag, r->problems[k].text);
@@ -111,5 +111,4 @@ enum err case_report(struct reader *r)
                  r->scene->path, n);
         diag_more(r->diag, text);
     }
-    return ERR_INPUT;
 }

@@ -179,8 +179,7 @@ static enum err read_section(struct reader *r, int section)
     if (cs->id == SECTION_constants) return ERR_OK;
     const enum err inherited_well = inherit(r, section);
     TRY(case_go_on(r, inherited_well));
-    if (inherited_well)
-        r->sections[section].incomplete = r->sections[section].invalid = r->shapes_wrong = true;
+    if (inherited_well) r->sections[section].incomplete = r->sections[section].invalid = true;
     drop_rivals(r, section);
     const bool inherited = cs->id == SECTION_fluid || cs->id == SECTION_solid;
     void *const target = section_at(r->scene, (enum section_id)cs->id, cs->index);
@@ -192,14 +191,12 @@ static enum err read_section(struct reader *r, int section)
         if (!p && note_retired(r, e, cs->id)) continue;
         if (!p) {
             r->sections[section].incomplete = r->sections[section].invalid = true;
-            case_spoils_unknown(r, (enum section_id)cs->id, e->key);
             TRY(case_go_on(r, unknown_key(r, e, cs->id)));
             continue;
         }
         const struct entry **before = &given[p - param_table];
         if (*before && p->type != PARAM_SHAPES) {
             r->sections[section].invalid = true;
-            case_spoils(r, p);
             TRY(case_go_on(r,
                            bad_entry(r, e, "`%s` is given twice, first in line %d; leave one out",
                                      e->key, (*before)->line)));
@@ -211,7 +208,6 @@ static enum err read_section(struct reader *r, int section)
         if (inherited && strcmp(e->key, "like") == 0) continue;
         const enum err read = case_value(r, e, p, target);
         if (read) r->sections[section].invalid = true;
-        if (read) case_spoils(r, p);
         TRY(case_go_on(r, read));
     }
     const struct param *const like = param_find((enum section_id)cs->id, "like");
@@ -247,11 +243,19 @@ static enum err check_needed(struct reader *r)
                 scene_given(r->scene, (enum section_id)cs->id, cs->index, p->key))
                 continue;
             r->sections[k].invalid = true;
-            case_spoils(r, p);
             TRY(case_go_on(r, lacks(r, cs, p)));
         }
     }
     return ERR_OK;
+}
+
+/* The files that a case names; problems of both kinds are reported together. */
+static enum err load_tables(struct reader *r)
+{
+    const enum err gravity = gravity_load(r->scene, r->diag);
+    if (gravity != ERR_OK && gravity != ERR_INPUT) return gravity;
+    const enum err motion = motion_load(r->scene, r->diag);
+    return gravity ? gravity : motion;
 }
 
 static enum err read_all(struct reader *r, const char *text, int n_sets, const char *const *sets)
@@ -270,26 +274,14 @@ static enum err read_all(struct reader *r, const char *text, int n_sets, const c
     /* A name that is not found may be in an invalid line. */
     if (r->lost) return ERR_INPUT;
     TRY(case_check(r));
-    r->checked = true;
-    return r->n_problems > 0 ? ERR_INPUT : ERR_OK;
-}
-
-/* The files that a case names, whose problems are told after those of its values. */
-static enum err load_tables(struct reader *r)
-{
-    const enum err gravity = gravity_load(r->scene, r->diag);
-    if (gravity != ERR_OK && gravity != ERR_INPUT) return gravity;
-    const enum err motion = r->places_wrong ? ERR_OK : motion_load(r->scene, r->diag);
-    r->places_wrong |= motion != ERR_OK;
-    return gravity ? gravity : motion;
+    return r->n_problems > 0 ? ERR_INPUT : load_tables(r);
 }
 
 /* --- from text, from a file --- */
 
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
-                     const char *const *sets, enum scene_rest *rest, struct diag *d)
+                     const char *const *sets, struct diag *d)
 {
-    if (rest) *rest = REST_NOTHING;
     memset(s, 0, sizeof *s);
     if (strlen(path) >= sizeof s->path)
         return diag_fail(d, ERR_INPUT, "the path of the case file is longer than %zu bytes",
@@ -297,15 +289,9 @@ enum err scene_parse(struct scene *s, const char *text, const char *path, int n_
     memcpy(s->path, path, strlen(path) + 1);
     struct reader r = {.scene = s, .diag = d};
     enum err err = read_all(&r, text, n_sets, sets);
-    if (err == ERR_OK || err == ERR_INPUT) {
-        const enum err noted = case_report(&r);
-        if (noted) err = noted;
-        const enum err loaded = r.checked ? load_tables(&r) : ERR_OK;
-        if (!err || (loaded && loaded != ERR_INPUT)) err = loaded;
-    }
-    if (rest && err == ERR_INPUT) *rest = case_rest(&r);
+    if (err == ERR_INPUT) case_report(&r);
     arena_free(&r.temp);
-    if (err && (!rest || *rest == REST_NOTHING)) scene_free(s);
+    if (err) scene_free(s);
     return err;
 }
 
@@ -337,9 +323,8 @@ static enum err read_file(FILE *file, const char *path, char **text, struct diag
 }
 
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
-                    enum scene_rest *rest, struct diag *d)
+                    struct diag *d)
 {
-    if (rest) *rest = REST_NOTHING;
     /* Opening a pipe would wait for its writer, a terminal for input. */
     struct stat info;
     if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
@@ -350,7 +335,7 @@ enum err scene_read(struct scene *s, const char *path, int n_sets, const char *c
     char *text;
     enum err err = read_file(file, path, &text, d);
     fclose(file);
-    if (!err) err = scene_parse(s, text, path, n_sets, sets, rest, d);
+    if (!err) err = scene_parse(s, text, path, n_sets, sets, d);
     free(text);
     return err;
 }

@@ -337,19 +337,15 @@ struct scene {
     bool off_lattice; /* a shape does not fit the lattice: its sampled size depends on dp */
 };
 
-/* What can still be checked of a case with wrong values: nothing, the shapes, or also what lies among
- * them: open boundaries, the domain, probes. */
-enum scene_rest { REST_NOTHING, REST_SHAPES, REST_PLACES };
-
 /* Reads and checks a case file; geometry/load.h also samples its points. `sets` are the --set
  * arguments ("key=value" or "section.key=value"; a named section is section NAME: "solid
  * gate.young=1e6" or "gate.young=1e6"). After success the caller frees with scene_free; after a
- * failure only where `rest` is more than REST_NOTHING, else there is nothing to free. `rest` may be NULL. */
+ * failure there is nothing to free. */
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
-                    enum scene_rest *rest, struct diag *d) SPHFSI_CHECKED;
+                    struct diag *d) SPHFSI_CHECKED;
 /* The same from text in memory; messages use `path`, and file names are relative to it. */
 enum err scene_parse(struct scene *s, const char *text, const char *path, int n_sets,
-                     const char *const *sets, enum scene_rest *rest, struct diag *d) SPHFSI_CHECKED;
+                     const char *const *sets, struct diag *d) SPHFSI_CHECKED;
 void scene_free(struct scene *s);
 
 /* Whether opposite sides of the domain along an axis are joined. */

@@ -15,7 +15,4 @@ enum err scene_load_text(struct scene *s, const char *text, const char *path, in
 /* Samples all shapes into s->points; sets h and the effective domain (geometry/sampling.c). */
 enum err scene_sample(struct scene *s, struct diag *d) SPHFSI_CHECKED;
 
-/* Tells in `d`, which holds the problems of a case's values, those of its geometry as well. */
-void scene_check_rest(struct scene *s, enum scene_rest rest, struct diag *d);
-
 #endif

@@ -319,34 +319,14 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
     return ERR_OK;
 }
 
-/* The shapes alone. */
-static enum err sample_shapes(struct sampler *g, struct samples *points)
-{
-    g->scene->h = g->scene->numerics.h_over_dp * g->scene->top.dp;
-    TRY(geometry_sample(g, points));
-    TRY(geometry_check_regions(g));
-    return geometry_problems(g);
-}
-
-void scene_check_rest(struct scene *s, enum scene_rest rest, struct diag *d)
-{
-    struct sampler g = {.scene = s, .diag = d};
-    struct samples points = {0};
-    if (rest == REST_NOTHING) return;
-    enum err err = sample_shapes(&g, &points);
-    if (!err && rest == REST_PLACES) err = geometry_merge(&g, &points);
-    if (!err && rest == REST_PLACES) err = geometry_open(&g);
-    if (!err && rest == REST_PLACES) err = geometry_extent(&g);
-    if (!err && rest == REST_PLACES) err = geometry_check_joined(&g);
-    (void)err; /* the case has failed already */
-    arena_free(&g.temp);
-}
-
 enum err scene_sample(struct scene *s, struct diag *d)
 {
     struct sampler g = {.scene = s, .diag = d};
     struct samples points = {0};
-    enum err err = sample_shapes(&g, &points);
+    s->h = s->numerics.h_over_dp * s->top.dp;
+    enum err err = geometry_sample(&g, &points);
+    if (!err) err = geometry_check_regions(&g);
+    if (!err) err = geometry_problems(&g);
     if (!err) err = geometry_merge(&g, &points);
     if (!err) err = geometry_pack(&g);
     if (!err) err = geometry_open(&g);

@@ -234,14 +234,13 @@ static void test_a_key_wins_over_the_scheme(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-15, 1.8e-3, scene_solid_h(&scene, 0));
     TEST_ASSERT_TRUE(scene.fluid[0].density_diffusion == 0);
     TEST_ASSERT_EQUAL_INT(ERR_OK, scene_write(&scene, effective, &diag));
-    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, NULL, &diag),
-                                  diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_read(&again, effective, 0, NULL, &diag), diag.text);
     TEST_ASSERT_EQUAL_INT(SCHEME_STANDARD, again.top.scheme);
     TEST_ASSERT_TRUE(again.fluid[0].density_diffusion == 0);
     scene_free(&scene);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT,
                           scene_parse(&scene, TOP BLOCK "[numerics]\nsolid_h_over_dp = 0.5",
-                                      "x.cfg", 0, NULL, NULL, &diag));
+                                      "x.cfg", 0, NULL, &diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "too few neighbours"), diag.text);
 }
 
