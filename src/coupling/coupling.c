@@ -3,19 +3,9 @@
 #include "coupling/coupling.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "coupling/impulse.h"
 #include "coupling/motion.h"
-
-void coupling_create(struct coupling *coupling, const struct scene *scene,
-                     const struct fluid *fluid, struct solid *solid, struct particles *particles)
-{
-    coupling->scene = scene;
-    coupling->fluid = fluid;
-    coupling->solid = solid;
-    coupling->particles = particles;
-}
 
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest)
 {
@@ -27,11 +17,6 @@ void coupling_set_rate(struct coupling *coupling, effect_set effects, double lon
     if (impedance && *coupling->exchange_time == 0) *coupling->exchange_time = longest;
 }
 
-static void clear(double *field, int64_t n)
-{
-    if (field) memset(field, 0, (size_t)n * sizeof *field);
-}
-
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells)
 {
@@ -40,10 +25,10 @@ void coupling_find_forces(const struct coupling *coupling, struct particles kind
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++) {
         struct particles *const p = &kinds[kind];
         if (!p->fx) continue;
-        clear(p->fx, p->n); /* those without fluid nearby get no force */
-        clear(p->fy, p->n);
-        clear(p->wet_x, p->n);
-        clear(p->wet_y, p->n);
+        particles_clear(p->fx, p->n); /* those without fluid nearby get no force */
+        particles_clear(p->fy, p->n);
+        particles_clear(p->wet_x, p->n);
+        particles_clear(p->wet_y, p->n);
         find_force(coupling->fluid, p, (enum kind)kind, cells);
     }
 }

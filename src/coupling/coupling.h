@@ -13,6 +13,7 @@ typedef void force_sweep(const struct fluid *f, struct particles *p, enum kind k
                          const struct cells *c);
 extern force_sweep find_force_mixed, find_force_double;
 
+/* All but `substeps` and `impedance` are set by its owner. */
 struct coupling {
     const struct scene *scene;
     const struct fluid *fluid;
@@ -27,9 +28,6 @@ struct coupling {
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
     double *exchange_time;
 };
-
-void coupling_create(struct coupling *coupling, const struct scene *scene,
-                     const struct fluid *fluid, struct solid *solid, struct particles *particles);
 
 /* After fluid_evaluate: the force of the fluid on structures, and on walls that have one. */
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],

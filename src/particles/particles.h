@@ -65,4 +65,10 @@ uint64_t particles_hash(const struct particles *p, uint64_t seed);
 /* Bytes of all arrays of p. */
 size_t particles_bytes(const struct particles *p);
 
+/* Sets a field of n particles to zero; NULL: there is none. */
+SPHFSI_INLINE void particles_clear(double *field, int64_t n)
+{
+    for (int64_t i = 0; field && i < n; i++) field[i] = 0;
+}
+
 #endif

@@ -40,9 +40,9 @@ static enum err complain(const struct simulation *s, enum kind kind, struct find
 {
     const struct particles *const p = &s->kind[kind];
     return diag_fail(d, ERR_GUARD,
-                     "t = %.6g s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
+                     "%s, step %lld: %s particle %lld at (%.6g, %.6g) m has %s = %.6g, "
                      "which is not valid: %s",
-                     s->state.time, (long long)s->state.steps, kind_names[kind],
+                     time_text(s).text, (long long)s->state.steps, kind_names[kind],
                      (long long)p->id[f.at], p->x[f.at], p->y[f.at], f.quantity, f.value, cause);
 }
 
@@ -90,19 +90,18 @@ static enum err check_fluid(struct simulation *s, struct diag *d)
     }
     if (!s->guard.warned_speed && s->state.speed_high > SPEED_WARNING * s->scene->c0) {
         s->guard.warned_speed = true;
-        diag_warn(
-            d,
-            "t = %.6g s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
-            "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
-            s->state.time, s->state.speed_high, SPEED_WARNING, s->scene->c0);
+        diag_warn(d,
+                  "%s: the fluid's speed of %.4g m/s is above %g of the speed of sound, %.4g "
+                  "m/s, so the fluid is not weakly compressible; a higher sound_speed may help",
+                  time_text(s).text, s->state.speed_high, SPEED_WARNING, s->scene->c0);
     }
     const double dens = max2(s->state.dens_high, -s->state.dens_low);
     if (!s->guard.warned_dens && dens > DENS_WARNING) {
         s->guard.warned_dens = true;
         diag_warn(d,
-                  "t = %.6g s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
+                  "%s: the fluid's density deviates by %.3g %% from its reference. 1 %% is "
                   "usual, and the run stops at %g %%; a higher sound_speed may help",
-                  s->state.time, 100 * dens, 100 * s->guard.dens_limit);
+                  time_text(s).text, 100 * dens, 100 * s->guard.dens_limit);
     }
     return ERR_OK;
 }
@@ -165,8 +164,8 @@ static enum err check_contact(struct simulation *s, struct diag *d)
     const struct contact_depth *const at = &s->contact.deepest;
     char one[CONTACT_NAME], other[CONTACT_NAME];
     if (s->contact.list_full)
-        return diag_fail(d, ERR_MEMORY, "t = %.6g s: no memory for all pairs in contact",
-                         s->state.time);
+        return diag_fail(d, ERR_MEMORY, "%s: no memory for all pairs in contact",
+                         time_text(s).text);
     if (at->overlap < OVERLAP_WARNING || (s->guard.warned_contact && at->overlap < OVERLAP_LIMIT))
         return ERR_OK;
     contact_name(&s->contact, at->body, one);
@@ -175,15 +174,15 @@ static enum err check_contact(struct simulation *s, struct diag *d)
     if (s->guard.case_at_fault)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
+            "%s, step %lld: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) "
             "m, the limit of contact; a larger stiffness in [contact], a stiffer body or a slower "
             "motion may help",
-            s->state.time, (long long)s->state.steps, one, other, at->overlap, at->x, at->y);
+            time_text(s).text, (long long)s->state.steps, one, other, at->overlap, at->x, at->y);
     s->guard.warned_contact = true;
     diag_warn(d,
-              "t = %.6g s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
+              "%s: %s and %s overlap by %.3g particle spacings near (%.6g, %.6g) m: a "
               "larger stiffness in [contact] or a smaller dp reduces it; the run stops at 1",
-              s->state.time, one, other, at->overlap, at->x, at->y);
+              time_text(s).text, one, other, at->overlap, at->x, at->y);
     return ERR_OK;
 }
 
@@ -209,9 +208,9 @@ static enum err check_solid(struct simulation *s, struct diag *d)
         s->guard.warned_det = true;
         diag_warn(
             d,
-            "t = %.6g s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
+            "%s: solid particle %lld at (%.6g, %.6g) m is compressed to det F = %.3g. At 0 "
             "the material is inverted and the run stops; a finer dp or a stiffer law may help",
-            s->state.time, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
+            time_text(s).text, (long long)p->id[det.at], p->x[det.at], p->y[det.at], det.value);
     }
     return ERR_OK;
 }
@@ -242,21 +241,21 @@ static enum err check_step(struct simulation *s, struct diag *d)
     if (s->substeps > SUBSTEPS_MOST)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
+            "%s: the stable step of the solid has fallen to %.3g s, %d sub-steps per step, "
             "because its material is being crushed or torn; a finer dp may help",
-            s->state.time, s->dt_solid, s->substeps);
+            time_text(s).text, s->dt_solid, s->substeps);
     if (cut || s->state.dt > STEP_WARNING * limit) return ERR_OK;
     if (s->state.dt < limit)
         return diag_fail(d, ERR_GUARD,
-                         "t = %.6g s: the time step has fallen to %.3g s, because accelerations "
+                         "%s: the time step has fallen to %.3g s, because accelerations "
                          "grow without bound; a higher sound_speed or a smaller cfl may help",
-                         s->state.time, s->state.dt);
+                         time_text(s).text, s->state.dt);
     const int bound = binding_bound(s);
     if (!s->guard.warned_step)
         diag_warn(d,
-                  "t = %.6g s: the time step has fallen to %.3g s, limited by %s, and the run "
+                  "%s: the time step has fallen to %.3g s, limited by %s, and the run "
                   "stops at %.3g s; %s",
-                  s->state.time, s->state.dt, bound_names[bound], limit, step_remedy(s, bound));
+                  time_text(s).text, s->state.dt, bound_names[bound], limit, step_remedy(s, bound));
     s->guard.warned_step = true;
     return ERR_OK;
 }
@@ -277,10 +276,10 @@ static enum err check_motion(struct simulation *s, struct diag *d)
         s->guard.case_at_fault = true;
         return diag_fail(
             d, ERR_GUARD,
-            "%s: t = %.6g s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
+            "%s: %s: [motion %s] gives [wall %s] a displacement of (%g, %g) m, a velocity "
             "of (%g, %g) m/s and an acceleration of (%g, %g) m/s^2; all must be finite, so change "
             "its expression or table there",
-            place, s->state.time, motion->common.name, s->scene->wall[b->section].common.name,
+            place, time_text(s).text, motion->common.name, s->scene->wall[b->section].common.name,
             m->d[0], m->d[1], m->v[0], m->v[1], m->a[0], m->a[1]);
     }
     return ERR_OK;
@@ -304,11 +303,11 @@ static void check_voids(struct simulation *s, struct diag *d)
     if (!(missing > VOIDS_SHARE * start + margin)) return;
     s->guard.warned_voids = true;
     diag_warn(d,
-              "t = %.6g s: %.2g %% of the channel is empty: voids have opened where the pressure "
+              "%s: %.2g %% of the channel is empty: voids have opened where the pressure "
               "of the fluid fell below zero, and the flow round them is wrong. Only differences of "
               "pressure act on it, so give the open boundaries a `pressure` that is higher by "
               "about rho v^2/2 = %.3g Pa, by the largest speed so far",
-              s->state.time, 100 * missing / start,
+              time_text(s).text, 100 * missing / start,
               0.5 * scene->rho0 * square(s->state.speed_high));
 }
 
@@ -402,9 +401,9 @@ static void text_of_gain(const struct simulation *s, const struct gain *g, char 
     const bool one = account_name(s, g->entry, name) == 1;
     const int used =
         snprintf(text, 400,
-                 "t = %.6g s: %s %s gained %.3g J/m of energy that nothing supplied (available: "
+                 "%s: %s %s gained %.3g J/m of energy that nothing supplied (available: "
                  "%.3g J/m), in %s. Most of %s energy is in %s",
-                 s->state.time, name, one ? "has" : "have", g->energy, g->available,
+                 time_text(s).text, name, one ? "has" : "have", g->energy, g->available,
                  source_of(s, g), one ? "its" : "their", most_of(g));
     if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
@@ -448,10 +447,10 @@ void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag 
                              : y < low[1]   ? "lower"
                                             : "upper";
     diag_warn(d,
-              "t = %.6g s: fluid particle %lld has left the domain through its %s side, at (%.6g, "
+              "%s: fluid particle %lld has left the domain through its %s side, at (%.6g, "
               "%.6g) m, and is removed: its mass and pressure will be missing; a [wall] in its way "
               "or a larger [domain] keeps it",
-              s->state.time, (long long)p->id[first], side, x, y);
+              time_text(s).text, (long long)p->id[first], side, x, y);
 }
 
 /* Tolerated stray particles: a fraction of the fluid, and this number for any amount of fluid. */
@@ -470,17 +469,17 @@ enum err guards_penetration(struct simulation *s, struct diag *d)
     if (count > CROSSING_LEAST && (double)count > CROSSING_SHARE * (double)p->n)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s, step %lld: %lld fluid particles have entered a wall or solid, the first "
+            "%s, step %lld: %lld fluid particles have entered a wall or solid, the first "
             "is %lld at (%.6g, %.6g) m with speed = %.4g m/s; a larger wall_repulsion, a "
             "thickness of three particles or a higher sound_speed may help",
-            s->state.time, (long long)s->state.steps, (long long)count, (long long)p->id[first],
+            time_text(s).text, (long long)s->state.steps, (long long)count, (long long)p->id[first],
             p->x[first], p->y[first], elementary_hypot(p->vx[first], p->vy[first]));
     if (s->guard.warned_crossing) return ERR_OK;
     s->guard.warned_crossing = true;
     diag_warn(
         d,
-        "t = %.6g s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
+        "%s: fluid particle %lld at (%.6g, %.6g) m has entered a wall or solid; the "
         "run stops when more than 1 %% of the fluid has; a larger wall_repulsion may keep it out",
-        s->state.time, (long long)p->id[first], p->x[first], p->y[first]);
+        time_text(s).text, (long long)p->id[first], p->x[first], p->y[first]);
     return ERR_OK;
 }

@@ -172,10 +172,15 @@ enum err initial_state(struct simulation *sim, struct diag *d)
                                d));
         move_walls(sim, 0);
     }
-    coupling_create(&sim->coupling, sim->scene, &sim->fluid, &sim->solid, &sim->kind[KIND_SOLID]);
-    sim->coupling.exchange_time = &sim->state.exchange_time;
-    sim->coupling.ahead = sim->integrator->ahead;
-    sim->coupling.centred = sim->integrator->centred;
+    sim->coupling = (struct coupling){
+        .scene = sim->scene,
+        .fluid = &sim->fluid,
+        .solid = &sim->solid,
+        .particles = &sim->kind[KIND_SOLID],
+        .ahead = sim->integrator->ahead,
+        .centred = sim->integrator->centred,
+        .exchange_time = &sim->state.exchange_time,
+    };
     TRY(choose_rate(sim, d));
     timestep_find_grid(sim);
     simulation_warn_of_steps(sim, d);

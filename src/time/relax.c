@@ -29,21 +29,16 @@ static double kinetic_energy(const struct simulation *s)
     return 0.5 * (s->fluid.k.mass * fluid + solid);
 }
 
-static void clear(double *field, int64_t n)
-{
-    if (field && n > 0) memset(field, 0, (size_t)n * sizeof *field);
-}
-
 /* With `verlet` a solid's velocity is half a step behind its position: at rest it is that of half a
  * step before. Zero instead would put energy into the fastest modes. */
 static void stop_solid(struct simulation *s)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
     const double back = -0.5 * s->state.dt / s->substeps;
-    clear(p->vx, p->n);
-    clear(p->vy, p->n);
-    clear(p->wx, p->n);
-    clear(p->wy, p->n);
+    particles_clear(p->vx, p->n);
+    particles_clear(p->vy, p->n);
+    particles_clear(p->wx, p->n);
+    particles_clear(p->wy, p->n);
     if (s->integrator->centred || p->n == 0) return;
     solid_stress(&s->solid, p);
     solid_forces(&s->solid, p);
@@ -59,7 +54,7 @@ static void stop(struct simulation *s)
     const struct particles *const f = &s->kind[KIND_FLUID];
     double *const of_fluid[] = {f->vx,     f->vy,     f->vx_half,   f->vy_half,
                                 f->vx_old, f->vy_old, f->ddens_old, f->ddens_older};
-    for (size_t k = 0; k < COUNT_OF(of_fluid); k++) clear(of_fluid[k], f->n);
+    for (size_t k = 0; k < COUNT_OF(of_fluid); k++) particles_clear(of_fluid[k], f->n);
     if (s->effects & FX_SOLID) stop_solid(s);
     s->state.verlet_count = 0; /* the next step is an Euler step */
     s->state.relax_energy = 0;
@@ -167,44 +162,6 @@ static enum err check_held_fluid(const struct simulation *s, struct diag *d)
                      place, fall);
 }
 
-/* What the guards say of a search has its own time instead of that before t = 0. */
-static void tell_time(const struct simulation *s, const char *text, char *to, size_t size)
-{
-    const char *const at = strstr(text, "t = -"), *const end = at ? strstr(at, " s") : NULL;
-    if (!end)
-        snprintf(to, size, "%s", text);
-    else
-        snprintf(to, size, "%.*swhile rest is sought, after %.3g s%s", (int)(at - text), text,
-                 s->state.relax_time, end + 2);
-}
-
-struct listener {
-    const struct simulation *s;
-    const struct diag *of;
-};
-
-static void pass_on(void *context, const char *text)
-{
-    const struct listener *const l = context;
-    char told[sizeof l->of->text];
-    tell_time(l->s, text, told, sizeof told);
-    l->of->warn(l->of->warn_context, told);
-}
-
-/* A step of which the guards speak as of one of the search. */
-static enum err search_step(struct simulation *s, double limit, struct diag *d)
-{
-    struct diag own = {.code = ERR_OK};
-    struct listener l = {s, d};
-    if (!d) return simulation_step(s, limit, d);
-    if (d->warn) own.warn = pass_on, own.warn_context = &l;
-    const enum err e = simulation_step(s, limit, &own);
-    if (!e) return e;
-    char told[sizeof own.text];
-    tell_time(s, own.text, told, sizeof told);
-    return diag_fail(d, e, "%s", told);
-}
-
 enum err relax_step(struct simulation *s, struct diag *d)
 {
     enum { BATCH = 16 }; /* steps of a solid alone in a call */
@@ -215,7 +172,7 @@ enum err relax_step(struct simulation *s, struct diag *d)
     st->time = begin;
     if (s->effects & FX_CLAMP_MOTION) solid_place_clamps(&s->solid, &s->kind[KIND_SOLID], begin);
     if (s->effects & FX_MOTION) move_walls(s, begin);
-    const enum err e = search_step(s, begin + 1e6 * limit, d);
+    const enum err e = simulation_step(s, begin + 1e6 * limit, d);
     const double elapsed = st->time - begin;
     st->time = 0;
     st->substeps_needed = max2(st->substeps_needed, 0);

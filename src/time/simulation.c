@@ -127,54 +127,51 @@ static void take_work(struct simulation *sim)
     account_touch(sim);
 }
 
-/* Updates the solid's gradients if the guards or the search for the step read them after this
- * step. */
-static void show_strain(struct simulation *sim)
+/* Work and impulse of the last step, for the ledger and the account. */
+static void count_work(struct simulation *sim)
 {
-    if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
-}
-
-enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
-{
-    sim->solid.time = sim->state.time;
-    t_limit = timestep_stop(sim, t_limit);
-    if (!(sim->effects & FX_FLUID)) {
-        const int64_t steps = sim->state.steps;
-        solid_only_step(sim, t_limit);
-        take_work(sim);
-        if (sim->gravity_varies) add_gravity_work(sim);
-        if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
-        find_speed(sim);
-        show_strain(sim);
-        /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
-        book_check_solid_only(sim, steps);
-        TRY(guards_check(sim, d));
-        timestep_recheck_solid(sim);
-        return ERR_OK;
-    }
-    const double speed2_before = sim->extremes.speed2;
-    const double watch = wall_clock();
-    timestep_watch_contact(sim, sim->state.time, 1);
-    /* As phase_add takes all seconds of contact out of the solid's. */
-    if (sim->effects & FX_CONTACT) sim->phase_seconds[PHASE_solid] += wall_clock() - watch;
-    sim->integrator->step(sim, t_limit);
-    double clock = wall_clock();
-    /* Done here so that the state does not depend on output between two steps. */
-    if (sim->effects & FX_SHIFTING) clock = shift_fluid(sim, clock);
-    if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
-    show_strain(sim);
-    const enum err e = guards_check(sim, d);
-    find_speed(sim);
-    if (sim->effects & FX_MOTION)
-        sim->state.wall_work +=
-            sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
+    const double dt = sim->state.dt;
+    if (sim->effects & FX_MOTION && sim->effects & FX_FLUID)
+        sim->state.wall_work += dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
     if (sim->effects & FX_OPEN) {
-        open_book(&sim->open, sim->state.dt);
+        open_book(&sim->open, dt);
         book_open(sim);
     }
     take_work(sim);
     if (sim->gravity_varies) add_gravity_work(sim);
     if (sim->effects & FX_COUPLING) add_exchange(sim);
+}
+
+static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
+{
+    const int64_t steps = sim->state.steps;
+    solid_only_step(sim, t_limit);
+    count_work(sim);
+    if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
+    find_speed(sim);
+    if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+    /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
+    book_check_solid_only(sim, steps);
+    TRY(guards_check(sim, d));
+    timestep_recheck_solid(sim);
+    return ERR_OK;
+}
+
+static enum err step_with_fluid(struct simulation *sim, double t_limit, struct diag *d)
+{
+    const double speed2_before = sim->extremes.speed2;
+    double clock = wall_clock();
+    timestep_watch_contact(sim, sim->state.time, 1);
+    phase_add(sim, PHASE_solid, clock);
+    sim->integrator->step(sim, t_limit);
+    clock = wall_clock();
+    /* Done here so that the state does not depend on output between two steps. */
+    if (sim->effects & FX_SHIFTING) clock = shift_fluid(sim, clock);
+    if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
+    if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
+    const enum err e = guards_check(sim, d);
+    find_speed(sim);
+    count_work(sim);
     if (!e && guards_strain_due(sim)) timestep_recheck_solid(sim);
     clock = phase_add(sim, PHASE_update, clock);
     if (e) return e;
@@ -188,6 +185,14 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
     return ERR_OK;
 }
 
+enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
+{
+    sim->solid.time = sim->state.time;
+    t_limit = timestep_stop(sim, t_limit);
+    return sim->effects & FX_FLUID ? step_with_fluid(sim, t_limit, d)
+                                   : step_without_fluid(sim, t_limit, d);
+}
+
 enum err simulation_resume(struct simulation *sim, struct diag *d)
 {
     TRY(account_check(&sim->state.account, d));
@@ -199,8 +204,8 @@ enum err simulation_resume(struct simulation *sim, struct diag *d)
         if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, &sim->kind[KIND_FLUID], d));
         fluid_find_near(&sim->fluid, &sim->cells);
         find_skin_left(sim);
-        if (sim->effects & FX_COUPLING) forget_all_touch(&sim->kind[KIND_SOLID]);
-        if (sim->effects & FX_WALL) forget_all_touch(&sim->kind[KIND_WALL]);
+        if (sim->effects & FX_COUPLING) clear_fluid_sums(&sim->kind[KIND_SOLID]);
+        if (sim->effects & FX_WALL) clear_fluid_sums(&sim->kind[KIND_WALL]);
         if (fluid_fullest_cell(&sim->cells) > CELL_CAPACITY)
             return diag_fail(d, ERR_INPUT,
                              "the checkpoint cannot be used, because it has more than %d particles "

@@ -33,31 +33,10 @@ static void book_crossings(struct simulation *sim)
     }
 }
 
-static void forget(struct particles *p, int64_t i)
+void clear_fluid_sums(struct particles *p)
 {
-    p->p[i] = p->dens[i] = 0;
-    if (p->fx) p->fx[i] = p->fy[i] = 0;
-    if (p->wet_x) p->wet_x[i] = p->wet_y[i] = 0;
-}
-
-/* Clears the fluid sums of structure particles. Evaluations skip those without fluid nearby, so
- * this is done before the cells change. */
-static void forget_touch(struct simulation *sim, enum kind kind)
-{
-    struct particles *const p = &sim->kind[kind];
-    const struct cell_list *const list = &sim->cells.kind[kind];
-    for (int32_t k = 0; k < sim->fluid.n_near_fluid[kind]; k++) {
-        const int32_t cell = sim->fluid.near_fluid[kind][k];
-        for (int32_t j = list->start[cell]; j < list->start[cell] + list->count[cell]; j++) {
-            forget(p, list->order[j]);
-        }
-    }
-}
-
-/* A checkpoint contains the sums of the last evaluation before it. */
-void forget_all_touch(struct particles *p)
-{
-    for (int64_t i = 0; i < p->n; i++) forget(p, i);
+    double *const sums[] = {p->p, p->dens, p->fx, p->fy, p->wet_x, p->wet_y};
+    for (size_t k = 0; k < COUNT_OF(sums); k++) particles_clear(sums[k], p->n);
 }
 
 /* Sets the cells' skin from a new measurement. The next evaluation uses the present state; the
@@ -69,12 +48,11 @@ void find_skin_left(struct simulation *sim)
     sim->skin_left = cells_skin_left(&sim->cells, KERNEL_REACH * sim->fluid.k.h + ahead);
 }
 
-/* Sorts fluid, structure and moving walls into cells; removes fluid outside the domain. */
 enum err sort_particles(struct simulation *sim, struct diag *d)
 {
     struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid = &sim->kind[KIND_SOLID];
-    if (sim->effects & FX_WALL) forget_touch(sim, KIND_WALL);
-    if (sim->effects & FX_COUPLING) forget_touch(sim, KIND_SOLID);
+    if (sim->effects & FX_WALL) clear_fluid_sums(&sim->kind[KIND_WALL]);
+    if (sim->effects & FX_COUPLING) clear_fluid_sums(solid);
     if (sim->effects & FX_OPEN) TRY(open_exchange(&sim->open, &sim->fluid.k, fluid, d));
     const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
     if (lost && sim->state.lost == 0) guards_warn_of_loss(sim, fluid->n - lost, d);
@@ -106,15 +84,14 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     if (sim->cells_overfull)
         return diag_fail(
             d, ERR_GUARD,
-            "t = %.6g s: %d particles have collapsed into one cell of %.3g m, where about twenty "
+            "%s: %d particles have collapsed into one cell of %.3g m, where about twenty "
             "are usual, so the run is unstable; a smaller cfl or another sound_speed may help",
-            sim->state.time, fullest, sim->cells.side[0]);
+            time_text(sim).text, fullest, sim->cells.side[0]);
     return ERR_OK;
 }
 
-/* Subtracts the largest distance that two particles can have moved in the last step from the skin.
- * For the fluid: the larger of its speeds before and after, half a step of its acceleration, and
- * its shift. */
+/* For the fluid: the larger of its speeds before and after, half a step of its acceleration, and its
+ * shift. */
 void use_skin_left(struct simulation *sim, double speed2_before)
 {
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
@@ -123,8 +100,7 @@ void use_skin_left(struct simulation *sim, double speed2_before)
     sim->skin_left -= moved + max2(moved, sim->solid_max_move);
 }
 
-/* Whether the cells may miss a pair at the next evaluations. Where displacements are bounded,
- * cells need not be measured at every step. Rounding errors of the displacements are below the
+/* Where displacements are bounded, cells need not be measured at every step. Rounding errors of the displacements are below the
  * tolerance. */
 bool sorting_due(struct simulation *sim)
 {

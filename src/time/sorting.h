@@ -18,7 +18,8 @@ bool sorting_due(struct simulation *sim);
 /* Measures the skin that is left. */
 void find_skin_left(struct simulation *sim);
 
-/* Clears the fluid sums of all particles of walls or structures. */
-void forget_all_touch(struct particles *p);
+/* Clears what the fluid has given to particles of walls or structures. Evaluations skip those without
+ * fluid nearby, so this is done before the cells change. */
+void clear_fluid_sums(struct particles *p);
 
 #endif

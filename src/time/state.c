@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * Names of the bounds of the time step, and the times of the phases of a step. */
+ * Names of the bounds of the time step, and times: in messages and of the phases of a step. */
 #include "time/state.h"
+
+#include <stdio.h>
 
 const char *const bound_names[BOUND_COUNT] = {
 #define BOUND(name, effect, source) #name,
@@ -12,6 +14,16 @@ const char *const bound_sources[BOUND_COUNT] = {
 #include "time/bounds.def"
 #undef BOUND
 };
+
+struct time_text time_text(const struct simulation *sim)
+{
+    struct time_text time;
+    const bool seeks = sim->state.time < 0;
+    snprintf(time.text, sizeof time.text,
+             seeks ? "while rest is sought, after %.3g s" : "t = %.6g s",
+             seeks ? sim->state.relax_time : sim->state.time);
+    return time;
+}
 
 double phase_add(struct simulation *sim, enum phase phase, double since)
 {

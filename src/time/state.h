@@ -165,6 +165,12 @@ struct simulation {
     bool checked;                         /* the guards have yet to read it */
 };
 
+/* "t = 0.1 s" for a message; while rest is sought (T-78), how long it has been sought. */
+struct time_text {
+    char text[64];
+};
+struct time_text time_text(const struct simulation *sim);
+
 /* Adds the time since `since` to a phase and returns the present time. */
 double phase_add(struct simulation *sim, enum phase phase, double since);
 
