@@ -66,30 +66,6 @@ static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
             f->common.name, f->shifting, cfl);
 }
 
-/* L-10 is for fluid without a free surface that sticks to walls. */
-static enum err check_gradients(struct reader *r)
-{
-    const struct scene *const s = r->scene;
-    for (int k = 0; k < s->n_fluid; k++) {
-        const struct scene_fluid *const f = &s->fluid[k];
-        if (f->gradients == GRADIENTS_CORRECTED && !isnan(f->surface))
-            TRY(case_go_on(r, bad_line(r, f->common.line,
-                                       "[fluid %s] has gradients = corrected, which is for fluid "
-                                       "without a free surface: use gradients = plain, or leave "
-                                       "out `surface`",
-                                       f->common.name)));
-    }
-    if (s->n_fluid == 0 || s->fluid[0].gradients != GRADIENTS_CORRECTED) return ERR_OK;
-    for (int k = 0; k < s->n_wall; k++)
-        if (s->wall[k].slip != SLIP_NONE)
-            TRY(case_go_on(r, bad_line(r, s->wall[k].common.line,
-                                       "[wall %s] has slip = free; gradients = corrected of [fluid "
-                                       "%s] need the velocity behind a wall: use slip = none or "
-                                       "gradients = plain",
-                                       s->wall[k].common.name, s->fluid[0].common.name)));
-    return ERR_OK;
-}
-
 /* All fluid has the same properties. */
 static enum err differ(struct reader *r, const struct scene_fluid *f, const char *key, double mine,
                        double its)
@@ -131,7 +107,6 @@ static enum err check_fluid(struct reader *r, const struct scene_fluid *f, doubl
         {"density_diffusion", f->density_diffusion, first->density_diffusion},
         {"diffusion_form", f->diffusion_form, first->diffusion_form},
         {"diffusion_limiter", f->diffusion_limiter, first->diffusion_limiter},
-        {"gradients", f->gradients, first->gradients},
     };
     for (size_t j = 0; j < COUNT_OF(same); j++)
         if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
@@ -147,7 +122,6 @@ static enum err check_fluids(struct reader *r)
     TRY(sound_speed(r, &s->fluid[0], &s->c0));
     s->rho0 = s->fluid[0].density;
     warn_of_shift(r, &s->fluid[0]);
-    TRY(check_gradients(r));
     for (int k = 1; k < s->n_fluid; k++) {
         const enum err err = sound_speed(r, &s->fluid[k], &c0);
         TRY(case_go_on(r, err ? err : check_fluid(r, &s->fluid[k], c0)));

@@ -34,7 +34,6 @@ static struct fluid_constants constants_of(const struct scene *s)
 /* Packed fields that the effects need for a kind. */
 static int packed_count(enum kind kind, effect_set effects)
 {
-    if (kind == KIND_FLUID && effects & FX_CORRECTED) return PACKED_GRADIENT_FIELDS;
     if (kind == KIND_FLUID && effects & FX_ANTUONO) return PACKED_SLOPE_FIELDS;
     if (kind != KIND_FLUID && effects & FX_REPULSION) return PACKED_REPULSION_FIELDS;
     if (kind != KIND_FLUID && effects & FX_ONE_SIDED) return PACKED_ONE_SIDED_FIELDS;
@@ -121,22 +120,6 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     return ERR_OK;
 }
 
-/* L-12: the fields of a particle at the place to which it is shifted. The pressure of the damper
- * stays. */
-static void carry_along(struct particles *p, int64_t i, double dx, double dy)
-{
-    const double du = p->du_dx[i] * dx + p->du_dy[i] * dy;
-    const double dv = p->dv_dx[i] * dx + p->dv_dy[i] * dy;
-    const double ddens = p->ddens_dx[i] * dx + p->ddens_dy[i] * dy;
-    p->vx[i] += du;
-    p->vy[i] += dv;
-    p->dens[i] += ddens;
-    if (p->dens_slow) p->dens_slow[i] += ddens;
-    if (!p->vx_half) return;
-    p->vx_half[i] += du;
-    p->vy_half[i] += dv;
-}
-
 /* The factor of the shift: Skillen et al. 2013, or the Mach number of 0.1 of Eq. 3 (Sun et al.
  * 2017). At the free surface, where the divergence of the positions falls from 2 to below 1.5, the
  * shift goes to zero as in Dominguez et al. 2022. */
@@ -155,9 +138,7 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
         const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
         p->x[i] += dx;
         p->y[i] += dy;
-        if (f->effects & FX_CORRECTED)
-            carry_along(p, i, dx, dy);
-        else if (f->k.fills_domain) /* L-9 */
+        if (f->k.fills_domain) /* L-9 */
             p->dens[i] += 2 * (1 + p->dens[i]) * (dx * p->grad_c_x[i] + dy * p->grad_c_y[i]);
         longest2 = max2(longest2, dx * dx + dy * dy);
     }
@@ -230,12 +211,6 @@ static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const
     f->walls_placed = !(f->effects & FX_MOTION) && !f->never_skip;
 }
 
-static void pass_gradient(struct fluid *f, struct particles kinds[KIND_COUNT],
-                          const struct cells *c)
-{
-    f->sweeps->gradients(f, kinds, c);
-}
-
 static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
 {
     f->sweeps->rates(f, kinds, c);
@@ -246,8 +221,10 @@ static const struct pass {
     enum phase phase;
     void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 } passes[] = {
-    {PHASE_packed, pass_pack},       {PHASE_slope, pass_slope}, {PHASE_wall, pass_wall},
-    {PHASE_gradient, pass_gradient}, {PHASE_fluid, pass_fluid},
+    {PHASE_packed, pass_pack},
+    {PHASE_slope, pass_slope},
+    {PHASE_wall, pass_wall},
+    {PHASE_fluid, pass_fluid},
 };
 
 void fluid_evaluate(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,

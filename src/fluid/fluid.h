@@ -62,12 +62,6 @@ enum packed_field {
     PACKED_SLOPE_X = PACKED_FIELDS,
     PACKED_SLOPE_Y,
     PACKED_SLOPE_FIELDS,
-    /* Of the fluid, with corrected gradients: those of the velocity, times h. */
-    PACKED_DU_DX = PACKED_SLOPE_FIELDS,
-    PACKED_DU_DY,
-    PACKED_DV_DX,
-    PACKED_DV_DY,
-    PACKED_GRADIENT_FIELDS,
     PACKED_MOST = PACKED_REPULSION_FIELDS
 };
 
@@ -96,19 +90,16 @@ struct fluid_sweeps {
      * The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
-    /* Corrected gradients of the fluid's fields, and the Laplacian of its velocity. */
-    void (*gradients)(const struct fluid *f, struct particles kinds[KIND_COUNT],
-                      const struct cells *c);
     /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
     void (*rates)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
 };
 #define ANY_EFFECTS (~(effect_set)0)
 
 /* Effects that the kernels of pairs are specialised for. */
-#define PAIR_EFFECTS                                                                          \
-    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING |     \
-     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_ONE_SIDED | FX_CORRECTED | \
-     FX_MASSES | FX_LIMITER)
+#define PAIR_EFFECTS                                                                       \
+    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING |  \
+     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_ONE_SIDED | FX_MASSES | \
+     FX_LIMITER)
 
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 

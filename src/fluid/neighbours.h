@@ -87,18 +87,12 @@ SPHFSI_INLINE struct cell_sides cell_sides_of(const struct fluid *f, const struc
     return (struct cell_sides){(real)(c->side[0] / f->k.h), (real)(c->side[1] / f->k.h)};
 }
 
-/* h times the gradient of the velocity. */
-struct velocity_gradient {
-    vreal u_x, u_y, v_x, v_y;
-};
-
 /* Particles a, one in each group of four lanes; with their positions relative to the centres of the
  * three columns and rows of cells around. */
 struct receiver {
     vreal x[3], y[3], u, v, p, dens, volume;
     vreal slope_x, slope_y; /* h times the gradient of dens, if it is used */
-    struct velocity_gradient gradient;
-    vreal viscous; /* -(1 + dens) times the constant `viscosity`, in its unit */
+    vreal viscous;          /* -(1 + dens) times the constant `viscosity`, in its unit */
 };
 
 /* Pairs of each a with the candidates b, one in each lane of a group. */
@@ -110,7 +104,6 @@ struct pair {
     vreal slope;   /* V_b/h^2 t^3; in the sums of the fluid times V_a/h^2 */
     vreal p, dens; /* of b */
     vreal slope_x, slope_y;
-    struct velocity_gradient gradient;
 };
 
 /* Receivers from their packed fields: geometry only. */

@@ -145,25 +145,11 @@ SPHFSI_INLINE void moments_solve(const struct moments *m, double x, double y, do
     out[1] = m->det > 0 ? (m->xx * y - m->xy * x) / m->det : 0;
 }
 
-/* The trace of the inverse times a symmetric matrix, given by xx, xy + yx, yy. */
-SPHFSI_INLINE double moments_trace(const struct moments *m, double xx, double xy, double yy)
-{
-    return m->det > 0 ? (m->yy * xx - m->xy * xy + m->xx * yy) / m->det : 0;
-}
-
 /* V t^3 of the candidates. */
 SPHFSI_INLINE vreal gradient_weight(const struct separation *r, const real *b)
 {
     const vreal t = vmax(vset(0), vfma(vset((real)-0.5), r->length, vset(1)));
     return lane(b, PACKED_VOLUME) * (t * t * t);
-}
-
-SPHFSI_INLINE struct velocity_gradient gradient_at(const real *own)
-{
-    return (struct velocity_gradient){vspread(own + PACKED_DU_DX * CLUSTER),
-                                      vspread(own + PACKED_DU_DY * CLUSTER),
-                                      vspread(own + PACKED_DV_DX * CLUSTER),
-                                      vspread(own + PACKED_DV_DY * CLUSTER)};
 }
 
 /* Antuono et al. 2010, Eq. 4: the gradient of dens, exact for linear fields with any neighbours,

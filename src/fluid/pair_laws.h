@@ -130,16 +130,6 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vec
     return k->laminar * q->slope * (q->r2 * inv);
 }
 
-/* L-11a: the difference of velocities less its linear part, by the mean of both gradients, as in Antuono
- * et al. 2010 for the density. */
-SPHFSI_INLINE void fx_beyond_linear(const struct receiver *a, struct pair *q)
-{
-    const vreal half = vset((real)0.5);
-    const struct velocity_gradient *const of_a = &a->gradient, *const of_b = &q->gradient;
-    q->u = q->u - half * vfma(of_a->u_y + of_b->u_y, q->y, (of_a->u_x + of_b->u_x) * q->x);
-    q->v = q->v - half * vfma(of_a->v_y + of_b->v_y, q->y, (of_a->v_x + of_b->v_x) * q->x);
-}
-
 /* Eq. 28b: the pair's rate of approach or separation. */
 SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }
 

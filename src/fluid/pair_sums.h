@@ -57,12 +57,6 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
     return q;
 }
 
-SPHFSI_INLINE struct velocity_gradient gradient_of_pairs(const real *b)
-{
-    return (struct velocity_gradient){lane(b, PACKED_DU_DX), lane(b, PACKED_DU_DY),
-                                      lane(b, PACKED_DV_DX), lane(b, PACKED_DV_DY)};
-}
-
 /* Contributions of pairs of receivers and candidates; fx is a constant in specialised kernels. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
                                             const struct vector_constants *k, effect_set fx,
@@ -70,8 +64,8 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
 {
     struct exchange e;
     struct pair q = pair_between(a, code, b);
-    e.rate = fx & FX_CORRECTED ? vset(0) : fx_continuity(&q);
-    vreal stress = fx & FX_CORRECTED ? vset(0) : fx_pressure(a, &q), inv;
+    e.rate = fx_continuity(&q);
+    vreal stress = fx_pressure(a, &q), inv;
     if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
         q.dens = lane(b, PACKED_DENS);
         if (fx & FX_ANTUONO) {
@@ -92,10 +86,6 @@ SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t c
     e.ay = radial * q.y;
     if (fx & FX_LAMINAR) {
         const vreal weight = fx_laminar(&q, inv, k);
-        if (fx & FX_CORRECTED) {
-            q.gradient = gradient_of_pairs(b);
-            fx_beyond_linear(a, &q);
-        }
         e.ax = e.ax - weight * q.u;
         e.ay = e.ay - weight * q.v;
     }
@@ -161,11 +151,9 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
 {
     struct exchange e;
     struct pair q = pair_between(a, code, b);
-    e.rate = fx & FX_CORRECTED   ? vset(0)
-             : fx & FX_ONE_SIDED ? fx_one_sided_rate(&q)
-                                 : fx_continuity(&q);
+    e.rate = fx & FX_ONE_SIDED ? fx_one_sided_rate(&q) : fx_continuity(&q);
     const vreal inv = vset(1) / (q.r2 + k->eta2);
-    vreal stress = fx & FX_CORRECTED ? vset(0) : fx_pressure(a, &q);
+    vreal stress = fx_pressure(a, &q);
     if (fx & FX_ONE_SIDED)
         stress = stress + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
                                        lane(b, PACKED_LIFT_Y), k);
@@ -174,7 +162,7 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
     const vreal radial = q.slope * stress;
     e.ax = radial * q.x;
     e.ay = radial * q.y;
-    if (fx & FX_NO_SLIP && !(fx & FX_CORRECTED)) {
+    if (fx & FX_NO_SLIP) {
         const vreal weight = lane(b, PACKED_STICKS) * fx_laminar(&q, inv, k);
         e.ax = e.ax - weight * (a->u - lane(b, PACKED_MIRROR_U));
         e.ay = e.ay - weight * (a->v - lane(b, PACKED_MIRROR_V));

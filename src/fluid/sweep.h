@@ -29,7 +29,6 @@ SPHFSI_INLINE vreal kernel_of(vreal q)
 SPHFSI_INLINE bool has_fluid_near(real weight) { return (double)weight > 1e-12; }
 
 #include "fluid/dummies.h"
-#include "fluid/gradients.h"
 
 /* A range of the fluid that a thread processes at a time. */
 struct chunk {
@@ -69,23 +68,13 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
         factor = factor / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
-    four_double ax =
+    const four_double ax =
         factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
-    four_double ay =
+    const four_double ay =
         factor * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
     if (fx & FX_DIFFUSION)
         rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
-    four_double ddens = -slope * full * rate;
-    if (fx & FX_CORRECTED) {
-        const four_double relative = 1 + FOUR(p->dens, i);
-        ax = ax - FOUR(p->dp_dx, i) / (k->rho0 * relative);
-        ay = ay - FOUR(p->dp_dy, i) / (k->rho0 * relative);
-        if (fx & FX_LAMINAR) {
-            ax = ax + k->nu / relative * FOUR(p->lap_u, i);
-            ay = ay + k->nu / relative * FOUR(p->lap_v, i);
-        }
-        ddens = ddens - relative * (FOUR(p->du_dx, i) + FOUR(p->dv_dy, i));
-    }
+    const four_double ddens = -slope * full * rate;
     store_four(p->ax + i, ax, count);
     store_four(p->ay + i, ay, count);
     store_four(p->ddens + i, ddens, count);
@@ -128,7 +117,6 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.dens = vspread(own + PACKED_DENS * CLUSTER);
     a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
     if (fx & FX_VISCOSITY) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
-    if (fx & FX_CORRECTED) a.gradient = gradient_at(own);
     if (fx & FX_ANTUONO) {
         a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
         a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
@@ -269,7 +257,7 @@ VARIANT(any, ANY_EFFECTS)
 #define SWEEPS_ROW(variant, set)                                                          \
     {                                                                                     \
 #variant " (" SWEEP_LABEL ")", (set), sizeof(real), SWEEP(packed), SWEEP(slopes), \
-            SWEEP(dummies), SWEEP(gradients), SWEEP(rates_##variant)                      \
+            SWEEP(dummies), SWEEP(rates_##variant)                                        \
     }
 
 /* The generic kernel is the last one. */

@@ -456,7 +456,7 @@ static bool is_filled(const struct scene *s)
 
 /* Without a free surface the volume is given, and nothing takes back the pressure that a shift makes.
  * In a channel, periodic in x, it rose by 0.4, 0.75 and 1.1 % of rho c0^2 with `shifting` 0.5, 2 and 8;
- * without walls, where L-9 holds for all particles, it did not. With L-12 a shift makes no pressure. */
+ * without walls, where L-9 holds for all particles, it did not. */
 static void warn_of_drift(struct sampler *g)
 {
     const struct scene *const s = g->scene;
@@ -464,7 +464,7 @@ static void warn_of_drift(struct sampler *g)
     if (!one_way || !is_filled(s)) return;
     for (int k = 0; k < s->n_fluid; k++) {
         const struct scene_fluid *const fluid = &s->fluid[k];
-        if (!(fluid->shifting > 0) || fluid->gradients == GRADIENTS_CORRECTED) continue;
+        if (!(fluid->shifting > 0)) continue;
         char place[LOCATION_TEXT];
         scene_location(s, fluid->common.line, place);
         diag_warn(

@@ -58,8 +58,6 @@ integrators=symplectic short channel 0.05 "dp=0.1 mm" length=1mm
 integrators=symplectic short rolling_tank 0.01
 integrators=symplectic short elastic_valve 0.01 "dp=4 mm"
 integrators=symplectic short vortices 0.04 "dp=L/20"
-integrators="symplectic leapfrog" short verify/manufactured_wall 0.02 ratio=20 \
-    scheme=standard water.gradients=corrected water.shifting=10 water.shifting_speed=largest
 integrators="symplectic leapfrog" short turek_hron/fsi2 0.03 across=10 length=0.8 ramp=10ms
 ls cases/*.cfg | sed 's|.*/||; s|\.cfg$||' | while read -r name; do
     grep -q "^\(integrators=[a-z]* \)*short $name " "$0" || echo "$name"

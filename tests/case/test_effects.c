@@ -66,8 +66,6 @@ static const struct {
      EFFECT_REPULSION, "line 4: [fluid w] wall_repulsion"},
     {TOP FLUID "shifting = 2\n", FX_FLUID | FX_SHIFTING, EFFECT_SHIFTING,
      "line 6: [fluid w] shifting"},
-    {TOP FLUID "shifting = 2\ngradients = corrected\n", FX_FLUID | FX_SHIFTING | FX_CORRECTED,
-     EFFECT_CORRECTED, "line 7: [fluid w] gradients"},
     {TOP "gravity = 0, -9.81\n" FLUID, FX_FLUID | FX_GRAVITY, EFFECT_GRAVITY, "line 3: gravity"},
     {TOP FLUID "[domain]\nlower = 0, 0\nupper = 0.4, 0.4\nperiodic = y\n", FX_FLUID | FX_PERIODIC,
      EFFECT_PERIODIC, "line 9: [domain] periodic"},

@@ -62,7 +62,6 @@ void twin_copy(struct twin *t, const struct simulation *s)
                        .g = {scene->top.gravity[0], scene->top.gravity[1]},
                        .renormalised = f->diffusion_form == DIFFUSION_ANTUONO,
                        .strained = f->diffusion_limiter == LIMITER_STRAIN,
-                       .corrected = f->gradients == GRADIENTS_CORRECTED,
                        .hydrostatic = f->diffusion_form == DIFFUSION_FOURTAKAS};
     for (int axis = 0; axis < 2; axis++)
         if (scene->domain.periodic & 1 << axis)
@@ -153,11 +152,6 @@ static void laminar_pair(const struct twin *t, struct twin_point *a, const struc
 {
     const double image = mirrored && t->one_sided ? 2 : 1; /* b has 2 v_b - v_a */
     const double c = image * b->m * 2 * t->nu * t->rho0 / (a->rho * b->rho) * factor;
-    /* With corrected gradients this is the difference that is left of a linear velocity; else 0 is. */
-    const double dx = apart(t, 0, a->x, b->x), dy = apart(t, 1, a->y, b->y);
-    a->ax -= c * 0.5 * ((a->ux + b->ux) * dx + (a->uy + b->uy) * dy);
-    a->ay -= c * 0.5 * ((a->vx + b->vx) * dx + (a->vy + b->vy) * dy);
-    a->size_a += fabs(c) * 0.5 * (a->size_gradient + b->size_gradient) * hypot(dx, dy);
     a->ax += c * (a->u - (mirrored ? b->mu : b->u));
     a->ay += c * (a->v - (mirrored ? b->mv : b->v));
     a->size_a += fabs(c) * (hypot(a->u, a->v) + hypot(b->u, b->v));
@@ -176,72 +170,6 @@ static double surface_pressure(const struct twin *t, const struct twin_point *f,
     const double approach = fmax(0, -(dx * -du + dy * -dv) / sqrt(dx * dx + dy * dy + eta2));
     return f->p + (t->one_sided ? own : s->p) +
            t->rho0 * t->c0 * (t->repulsion * t->c0 + t->wall_damping * approach) * fmax(closer, 0);
-}
-
-/* Fields whose corrected gradients are wanted. */
-enum field { PRESSURE, ALONG_X, ALONG_Y, U_X, U_Y, V_X, V_Y };
-
-static double value(const struct twin_point *q, enum field field, bool wall)
-{
-    const double of[] = {q->p, wall ? q->mu : q->u, wall ? q->mv : q->v, q->ux, q->uy, q->vx,
-                         q->vy};
-    return of[field];
-}
-
-/* Negi and Ramachandran 2022: the gradient of a field from the differences to a, by the inverse of the
- * matrix of first moments; the size of its largest terms. Walls have mirrored velocities. */
-static double corrected_gradient(const struct twin *t, const struct twin_point *a, enum field field,
-                                 bool walls, double out[2])
-{
-    double L[2][2] = {{0}}, s[2] = {0}, size = 0;
-    for (int kind = KIND_FLUID; kind <= (walls ? KIND_WALL : KIND_FLUID); kind++)
-        for (int64_t k = 0; k < t->n[kind]; k++) {
-            const struct twin_point *const b = &t->point[kind][k];
-            const double d[2] = {apart(t, 0, b->x, a->x), apart(t, 1, b->y, a->y)};
-            const double r = hypot(d[0], d[1]);
-            if (r >= 2 * t->h || r == 0) continue;
-            const double slope = kernel_derivative(r, t->h) / r * b->m / b->rho;
-            const double its = value(b, field, kind == KIND_WALL), own = value(a, field, false);
-            size += fabs(slope) * r *
-                    (field < U_X ? fabs(its) + fabs(own) : a->size_gradient + b->size_gradient);
-            for (int i = 0; i < 2; i++) {
-                s[i] -= (its - own) * slope * d[i];
-                for (int j = 0; j < 2; j++) L[i][j] -= d[i] * slope * d[j];
-            }
-        }
-    const double det = L[0][0] * L[1][1] - L[0][1] * L[1][0], trace = L[0][0] + L[1][1];
-    const bool plane = det >= 1e-3 * trace * trace;
-    out[0] = plane ? (L[1][1] * s[0] - L[0][1] * s[1]) / det : 0;
-    out[1] = plane ? (L[0][0] * s[1] - L[1][0] * s[0]) / det : 0;
-    /* The terms of the right-hand side and those of the matrix times the solution. */
-    return plane ? (size + trace * hypot(out[0], out[1])) * trace / det : 0;
-}
-
-/* The corrected gradients of all fluid; then -grad P/rho, the Laplacian as the divergence of the
- * velocity's gradient over fluid alone, and the rate of density. */
-static void corrected_rates(struct twin *t)
-{
-    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) {
-        struct twin_point *const a = &t->point[KIND_FLUID][i];
-        double p[2], u[2], v[2];
-        a->size_a += corrected_gradient(t, a, PRESSURE, true, p) / a->rho;
-        a->size_gradient =
-            corrected_gradient(t, a, ALONG_X, true, u) + corrected_gradient(t, a, ALONG_Y, true, v);
-        a->size_drho += a->rho * a->size_gradient;
-        a->px = p[0], a->py = p[1], a->ux = u[0], a->uy = u[1], a->vx = v[0], a->vy = v[1];
-    }
-    for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) {
-        struct twin_point *const a = &t->point[KIND_FLUID][i];
-        const double nu = t->nu * t->rho0 / a->rho;
-        double ux[2], uy[2], vx[2], vy[2];
-        a->size_a +=
-            nu *
-            (corrected_gradient(t, a, U_X, false, ux) + corrected_gradient(t, a, U_Y, false, uy) +
-             corrected_gradient(t, a, V_X, false, vx) + corrected_gradient(t, a, V_Y, false, vy));
-        a->ax += nu * (ux[0] + uy[1]) - a->px / a->rho;
-        a->ay += nu * (vx[0] + vy[1]) - a->py / a->rho;
-        a->drho -= a->rho * (a->ux + a->vy);
-    }
 }
 
 /* What a fluid particle a feels of b (Eqs. 4, 6, 7, 21a); b of a wall or solid slips freely. */
@@ -264,11 +192,10 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
         step += 0.5 * ((a->sx + b->sx) * dx + (a->sy + b->sy) * dy);
         psi = 2 * step / (r * r + eta2);
     }
-    double pressure = slip ? surface_pressure(t, a, b) : a->p + b->p;
-    if (t->corrected) pressure -= a->p + b->p;
+    const double pressure = slip ? surface_pressure(t, a, b) : a->p + b->p;
     const double factor = -b->m * (pressure / (a->rho * b->rho) + Pi);
     /* The image in b has 2 v_b - v_a. */
-    const double mirrored = t->corrected ? 0 : slip && t->one_sided ? 2 : 1;
+    const double mirrored = slip && t->one_sided ? 2 : 1;
     const double moved = mirrored * a->rho * V * (du * gx + dv * gy);
     double diffusivity = t->delta * t->h * t->c0;
     /* (C_delta l)^2 times the strain rate along the line of the pair. */
@@ -285,8 +212,7 @@ static void fluid_pair(struct twin *t, struct twin_point *a, const struct twin_p
     }
     a->ax += factor * gx;
     a->ay += factor * gy;
-    if (!slip || (b->sticks && !t->corrected))
-        laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
+    if (!slip || b->sticks) laminar_pair(t, a, b, slip, (dx * gx + dy * gy) / (r * r + eta2));
     a->cx += V * gx;
     a->cy += V * gy;
     a->div_r -= V * (dx * gx + dy * gy);
@@ -330,7 +256,6 @@ void twin_evaluate(struct twin *t)
         renormalised_gradient(t, &t->point[KIND_FLUID][i]);
     for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
         for (int64_t i = 0; i < t->n[kind]; i++) extrapolate(t, &t->point[kind][i]);
-    if (t->corrected) corrected_rates(t);
     for (int64_t i = 0; i < t->n[KIND_FLUID]; i++) {
         struct twin_point *const a = &t->point[KIND_FLUID][i];
         for (int kind = 0; kind < KIND_COUNT; kind++)

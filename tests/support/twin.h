@@ -7,24 +7,21 @@
 #include "time/simulation.h"
 
 struct twin_point {
-    double x, y, u, v;     /* m, m/s; of a solid: the velocity that the fluid sees */
-    double ax, ay;         /* m/s^2: of a fluid particle the result, of the others given */
-    double rho, p;         /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
-    double px, py;         /* Pa/m: corrected gradients, of the pressure */
-    double ux, uy, vx, vy; /* 1/s: and of the velocity */
-    double sx, sy;         /* kg/m^4: renormalised gradient of the density, a result or given */
-    double cx, cy, div_r;  /* 1/m, 1: gradient of the concentration, divergence of the positions */
-    double m;              /* kg/m */
-    double p_state;        /* Pa: of the equation of state alone */
-    double rho_slow;       /* kg/m^3: with the delay of the damper, as given */
-    double drho;           /* kg/(m^3 s) */
-    double mu, mv;         /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
+    double x, y, u, v;    /* m, m/s; of a solid: the velocity that the fluid sees */
+    double ax, ay;        /* m/s^2: of a fluid particle the result, of the others given */
+    double rho, p;        /* kg/m^3, Pa: of walls and solids a result (Eqs. 19-20) */
+    double sx, sy;        /* kg/m^4: renormalised gradient of the density, a result or given */
+    double cx, cy, div_r; /* 1/m, 1: gradient of the concentration, divergence of the positions */
+    double m;             /* kg/m */
+    double p_state;       /* Pa: of the equation of state alone */
+    double rho_slow;      /* kg/m^3: with the delay of the damper, as given */
+    double drho;          /* kg/(m^3 s) */
+    double mu, mv;        /* m/s: mirrored velocity of a wall or solid that fluid sticks to */
     bool sticks;
     double fx, fy; /* N/m: force of the fluid on a solid particle, Eq. 21b */
     /* Sums of the sizes of the terms: what round-off is relative to. */
     double size_a, size_drho, size_p, size_f;
-    double size_gradient; /* 1/s: of the terms of the velocity's corrected gradient */
-    double weight;        /* sum of W over the fluid, relative to W(0): of walls and solids */
+    double weight; /* sum of W over the fluid, relative to W(0): of walls and solids */
 };
 
 struct twin {
@@ -36,7 +33,6 @@ struct twin {
     bool strained;     /* the limit of Meringolo et al. 2019 for Eq. 6 */
     bool renormalised; /* the form of Antuono et al. 2010 for Eq. 6 */
     bool given_slopes; /* its gradients are given */
-    bool corrected;    /* gradients of Negi and Ramachandran 2022 for Eqs. 4 */
     bool hydrostatic;  /* the form of Fourtakas et al. 2019 for Eq. 6 */
     int64_t n[KIND_COUNT];
     struct twin_point *point[KIND_COUNT];
