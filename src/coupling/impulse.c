@@ -57,12 +57,12 @@ void impedance_kick(const struct particles *p, int64_t first, int64_t end, doubl
  * would drive them apart. */
 static void add_pressure(struct particles *p, int64_t i, double pressure)
 {
-    if (!p->interface_later) {
+    if (!p->interface_pressure_next) {
         p->interface_pressure[i] += pressure;
         return;
     }
-    p->interface_pressure[i] += p->interface_later[i] + 0.5 * pressure;
-    p->interface_later[i] = 0.5 * pressure;
+    p->interface_pressure[i] += p->interface_pressure_next[i] + 0.5 * pressure;
+    p->interface_pressure_next[i] = 0.5 * pressure;
 }
 
 /* A pressure of 1 Pa on the body's side of the pairs of T-13 is half of the force on the wetted
@@ -92,7 +92,7 @@ void impulse_return(struct coupling *coupling, double kick)
     const double per_time = 1 / *coupling->exchange_time, left = 1 - kick * per_time;
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
-        const double later = p->interface_later ? 0.5 * p->interface_later[i] : 0;
+        const double later = p->interface_pressure_next ? 0.5 * p->interface_pressure_next[i] : 0;
         const double fx = per_time * p->interface_impulse_x[i] - later * p->wet_x[i];
         const double fy = per_time * p->interface_impulse_y[i] - later * p->wet_y[i];
         p->fx[i] -= fx;
@@ -111,7 +111,7 @@ void impulse_set_time(struct coupling *coupling, double dt)
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->interface_pressure[i] *= ratio;
-        if (p->interface_later) p->interface_later[i] *= ratio;
+        if (p->interface_pressure_next) p->interface_pressure_next[i] *= ratio;
     }
     *coupling->exchange_time = now;
 }
@@ -119,5 +119,5 @@ void impulse_set_time(struct coupling *coupling, double dt)
 void impulse_clear(struct particles *p, int64_t i)
 {
     p->interface_impulse_x[i] = p->interface_impulse_y[i] = p->interface_pressure[i] = 0;
-    if (p->interface_later) p->interface_later[i] = 0;
+    if (p->interface_pressure_next) p->interface_pressure_next[i] = 0;
 }

@@ -464,7 +464,7 @@ static enum err load_particles(const struct image *m, struct particles *p, enum 
         if (!data || info->keep != KEEP_STATE) continue;
         struct block b;
         const unsigned optional =
-            kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_HELD | G_SLOPE | G_FRICTION);
+            kind == KIND_WALL ? MOVING : (unsigned)(G_WETTED | G_MEAN_FORCE | G_SLOPE | G_FRICTION);
         if (fork && (info->group & optional) && !find_block(m, info->name, kind, &b))
             set_missing_field(p, info);
         else

@@ -157,8 +157,11 @@ static enum err step_without_fluid(struct simulation *sim, double t_limit, struc
     return ERR_OK;
 }
 
-static enum err step_with_fluid(struct simulation *sim, double t_limit, struct diag *d)
+enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
 {
+    sim->solid.time = sim->state.time;
+    t_limit = timestep_stop(sim, t_limit);
+    if (!(sim->effects & FX_FLUID)) return step_without_fluid(sim, t_limit, d);
     const double speed2_before = sim->extremes.speed2;
     double clock = wall_clock();
     timestep_watch_contact(sim, sim->state.time, 1);
@@ -183,14 +186,6 @@ static enum err step_with_fluid(struct simulation *sim, double t_limit, struct d
     TRY(guards_penetration(sim, d));
     phase_add(sim, PHASE_update, clock);
     return ERR_OK;
-}
-
-enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
-{
-    sim->solid.time = sim->state.time;
-    t_limit = timestep_stop(sim, t_limit);
-    return sim->effects & FX_FLUID ? step_with_fluid(sim, t_limit, d)
-                                   : step_without_fluid(sim, t_limit, d);
 }
 
 enum err simulation_resume(struct simulation *sim, struct diag *d)

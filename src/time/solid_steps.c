@@ -43,7 +43,7 @@ static void advance_lone(struct simulation *s, double dt, int n)
  * advanced, or 0 if all *n steps were as long as planned. */
 static double advance_near(struct simulation *s, double dt, int *n)
 {
-    double gone = 0;
+    double advanced = 0;
     bool shorter = false;
     for (int k = 0; k < *n; k++) {
         if (k) timestep_watch_contact(s, s->solid.time, SOLID_BATCH);
@@ -55,15 +55,15 @@ static double advance_near(struct simulation *s, double dt, int *n)
         const bool cut = !(s->scene->numerics.fixed_step > 0) && s->dt_solid < dt;
         const double now = cut ? s->dt_solid : dt;
         advance_lone(s, now, 1);
-        gone += now;
+        advanced += now;
         shorter |= cut;
         s->state.dt_min = s->state.steps || k ? min2(s->state.dt_min, now) : now;
     }
-    return shorter ? gone : 0;
+    return shorter ? advanced : 0;
 }
 
-/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). solid_set_positions sets the
- * positions after the step. */
+/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). The positions after
+ * the step follow later. */
 static void external_for_step(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];
@@ -117,15 +117,15 @@ void solid_only_step(struct simulation *s, double t_limit)
     const bool cut = dt < bound * (1 - 1e-9);
     if (cut) s->dt_bound[BOUND_output] = dt;
     if (external) external_for_step(s, dt);
-    double gone = 0;
+    double advanced = 0;
     if (external) book_external(s, 0.5 * dt);
     if (near)
-        gone = advance_near(s, dt, &n);
+        advanced = advance_near(s, dt, &n);
     else
         advance_lone(s, dt, n);
-    if (external) book_external(s, (gone > 0 ? gone : dt) - 0.5 * dt);
+    if (external) book_external(s, (advanced > 0 ? advanced : dt) - 0.5 * dt);
     solid_set_positions(&s->kind[KIND_SOLID]);
     phase_add(s, PHASE_solid, start);
-    st->time = gone > 0 ? st->time + gone : hits ? t_limit : st->time + n * dt;
+    st->time = advanced > 0 ? st->time + advanced : hits ? t_limit : st->time + n * dt;
     book_lone(s, dt, n, cut ? BOUND_output : binding);
 }

@@ -363,13 +363,13 @@ static void test_the_exchange_follows_the_steps(void)
     open("integrator=verlet", NULL);
     rig.sim.state.exchange_time = 1e-3;
     solid->interface_pressure[0] = 5;
-    solid->interface_later[0] = 3;
+    solid->interface_pressure_next[0] = 3;
     for (size_t k = 0; k < COUNT_OF(steps); k++) {
         impulse_set_time(&rig.sim.coupling, steps[k]);
         const double now = rig.sim.state.exchange_time;
         assert_near(2e-9, left[k], now, "time");
         assert_near(1e-15, 5e-3, solid->interface_pressure[0] * now, "waits");
-        assert_near(1e-15, 3e-3, solid->interface_later[0] * now, "waits for later");
+        assert_near(1e-15, 3e-3, solid->interface_pressure_next[0] * now, "waits for later");
     }
     open(NULL, NULL);
 }
