@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Bodies that can be simulated but are probably a mistake: clamped all over, without a clamp, far too
  * soft or light. Each gets a warning with the consequence and the remedy. */
-#include "geometry/near.h"
 #include "geometry/point_index.h"
 #include "base/elementary.h"
 
@@ -179,32 +178,29 @@ static void warn_of_soft_bodies(struct sampler *g)
 enum { RESOLVED_ROWS = 4 };
 
 /* The clamped particles of all bodies, by cell. */
-static enum err find_clamped(struct near_table *t, struct sampler *g)
+static enum err find_clamped(struct point_grid *t, struct sampler *g)
 {
     const struct scene *const s = g->scene;
     const struct scene_points *const p = &s->points[KIND_SOLID];
-    TRY(near_create(t, (RESOLVED_ROWS + 0.5) * s->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
+    TRY(point_grid_create(t, (RESOLVED_ROWS + 0.5) * s->top.dp, p->n, p->x, p->y, &g->temp,
+                          g->diag));
     for (int64_t k = 0; k < p->n; k++)
-        if (p->clamped[k]) near_insert(t, k);
+        if (p->clamped[k]) point_grid_insert(t, k);
     return ERR_OK;
 }
 
 /* Whether a free particle lies within so many rows of a clamped one of its body. */
-static bool near_clamp(const struct near_table *t, const struct scene_points *p, int64_t free,
+static bool near_clamp(const struct point_grid *t, const struct scene_points *p, int64_t free,
                        int rows, double dp)
 {
-    const double x = p->x[free], y = p->y[free], within = square((rows + 0.5) * dp);
-    for (int64_t n = 0; n < 9; n++)
-        for (int32_t at = near_first(t, near_cell(t, x) + n % 3 - 1, near_cell(t, y) + n / 3 - 1);
-             at; at = t->next[at - 1])
-            if (p->body[at - 1] == p->body[free] &&
-                square(p->x[at - 1] - x) + square(p->y[at - 1] - y) < within)
-                return true;
+    struct point_visit v = point_grid_visit(t, p->x[free], p->y[free], (rows + 0.5) * dp);
+    while (point_grid_next(t, &v))
+        if (p->body[v.k] == p->body[free]) return true;
     return false;
 }
 
 /* How many rows of particles beside its clamps a body has free; RESOLVED_ROWS: these or more. */
-static int free_rows(const struct scene *s, const struct near_table *clamped, int body)
+static int free_rows(const struct scene *s, const struct point_grid *clamped, int body)
 {
     const struct scene_points *const p = &s->points[KIND_SOLID];
     const double dp = scene_solid_dp(s, body);
@@ -239,7 +235,7 @@ static enum err warn_of_full_clamps(struct sampler *g)
 {
     const struct scene *const s = g->scene;
     const struct scene_points *const p = &s->points[KIND_SOLID];
-    struct near_table table;
+    struct point_grid table;
     TRY(find_clamped(&table, g));
     for (int body = 0; body < s->n_solid; body++) {
         int64_t all = 0, clamped = 0;

@@ -4,7 +4,7 @@
 
 #include "base/elementary.h"
 #include "case/case.h"
-#include "geometry/near.h"
+#include "base/point_grid.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -110,7 +110,7 @@ static void warn_of_cuts(struct sampler *g, const struct region *region)
 
 /* Particles of walls and solids in one list. */
 struct faces {
-    struct near_table near;
+    struct point_grid grid;
     int64_t n, n_wall;
     double *x, *y;
     int *part; /* the shape of each, counted over all regions; -1: unknown */
@@ -178,20 +178,15 @@ static enum err list_faces(struct faces *f, struct sampler *g)
         f->x[k] = k < w->n ? w->x[k] : p->x[k - w->n];
         f->y[k] = k < w->n ? w->y[k] : p->y[k - w->n];
     }
-    TRY(near_create(&f->near, 2.1 * g->scene->top.dp, f->n, f->x, f->y, &g->temp, g->diag));
-    for (int64_t k = 0; k < f->n; k++) near_insert(&f->near, k);
+    TRY(point_grid_create(&f->grid, 2.1 * g->scene->top.dp, f->n, f->x, f->y, &g->temp, g->diag));
+    for (int64_t k = 0; k < f->n; k++) point_grid_insert(&f->grid, k);
     return number_parts(f, g);
 }
 
 /* Whether a particle lies nearer to the point than `reach`, at most a cell's side. */
 static bool is_covered(const struct faces *f, double x, double y, double reach)
 {
-    const int64_t ci = near_cell(&f->near, x), cj = near_cell(&f->near, y);
-    for (int64_t j = cj - 1; j <= cj + 1; j++)
-        for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1])
-                if (square(f->x[n - 1] - x) + square(f->y[n - 1] - y) < square(reach)) return true;
-    return false;
+    return point_grid_any(&f->grid, x, y, reach);
 }
 
 /* Whether a particle is one of a box that is not cut. */
@@ -219,14 +214,9 @@ typedef void pair_function(struct pair_visitor *v, int64_t k, int64_t m);
 static void visit_pairs(struct pair_visitor *v, int64_t k, double reach, pair_function *visit)
 {
     const struct faces *const f = v->f;
-    const int64_t ci = near_cell(&f->near, f->x[k]), cj = near_cell(&f->near, f->y[k]);
-    for (int64_t j = cj - 1; j <= cj + 1; j++)
-        for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = near_first(&f->near, i, j); n; n = f->near.next[n - 1]) {
-                const int64_t m = n - 1;
-                const double r = square(f->x[m] - f->x[k]) + square(f->y[m] - f->y[k]);
-                if (m > k && r <= square(reach)) visit(v, k, m);
-            }
+    struct point_visit at = point_grid_visit(&f->grid, f->x[k], f->y[k], reach);
+    while (point_grid_next(&f->grid, &at))
+        if (at.k > k) visit(v, k, at.k);
 }
 
 /* Whether fluid could pass between two faces in both directions along the unit vector: the gap ends where
@@ -426,7 +416,7 @@ static enum err warn_of_gaps(struct sampler *g)
     closed.settled = arena_alloc(&g->temp, parts * parts, sizeof *closed.settled, "gaps", g->diag);
     if (!narrow.settled || !closed.settled) return ERR_MEMORY;
     for (int64_t k = 0; k < f.n; k++) visit_pairs(&narrow, k, (1 + one_wide) * dp, warn_of_gap);
-    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, 1.5 * dp, warn_of_closed);
+    for (int64_t k = 0; k < f.n; k++) visit_pairs(&closed, k, (1.5 + 1e-9) * dp, warn_of_closed);
     return ERR_OK;
 }
 

@@ -1,22 +1,19 @@
 /* SPDX-License-Identifier: MIT
  * Bodies that are bonded touch: particles of both lie within the kernel's reach. */
-#include "geometry/near.h"
+#include "base/point_grid.h"
 #include "geometry/sampling.h"
 
 #include "case/case.h"
 
-static bool touches(const struct scene *s, const struct near_table *t, int body, int other,
+static bool touches(const struct scene *s, const struct point_grid *t, int body, int other,
                     double reach)
 {
     const struct scene_points *const p = &s->points[KIND_SOLID];
     for (int64_t k = 0; k < p->n; k++) {
         if (p->body[k] != body) continue;
-        const int64_t i = near_cell(t, p->x[k]), j = near_cell(t, p->y[k]);
-        for (int64_t n = 0; n < 9; n++)
-            for (int32_t at = near_first(t, i + n % 3 - 1, j + n / 3 - 1); at; at = t->next[at - 1])
-                if (p->body[at - 1] == other &&
-                    square(p->x[at - 1] - p->x[k]) + square(p->y[at - 1] - p->y[k]) < square(reach))
-                    return true;
+        struct point_visit v = point_grid_visit(t, p->x[k], p->y[k], reach);
+        while (point_grid_next(t, &v))
+            if (p->body[v.k] == other) return true;
     }
     return false;
 }
@@ -28,10 +25,10 @@ enum err geometry_check_joined(struct sampler *g)
     for (int k = 0; k < s->n_solid; k++) {
         const int other = scene_find_solid(s, s->solid[k].joined);
         if (other < 0) continue;
-        struct near_table table;
+        struct point_grid table;
         const double reach = 2 * max2(scene_solid_h(s, k), scene_solid_h(s, other));
-        TRY(near_create(&table, reach, p->n, p->x, p->y, &g->temp, g->diag));
-        for (int64_t n = 0; n < p->n; n++) near_insert(&table, n);
+        TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &g->temp, g->diag));
+        for (int64_t n = 0; n < p->n; n++) point_grid_insert(&table, n);
         if (touches(s, &table, k, other, reach)) continue;
         char place[LOCATION_TEXT];
         scene_location(s, scene_line(s, SECTION_solid, k, "joined"), place);

@@ -184,7 +184,8 @@ static enum err add_faces(struct layers *l, struct face_set *set, const struct l
         for (int j = 0; j < e.parts; j++) {
             double at[2];
             part_of(&e, j, 0, at);
-            if (exposed(l, &e, j)) TRY(grid_add(&set->grid, l->g, at[0], at[1]));
+            if (exposed(l, &e, j))
+                TRY(point_grid_add(&set->grid, at[0], at[1], &l->g->temp, l->g->diag));
         }
     }
     return ERR_OK;
@@ -202,7 +203,7 @@ struct trace {
 
 static enum err trace_add(struct layers *l, struct trace *t, const double at[2])
 {
-    if (grid_any_within(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
+    if (point_grid_any(&t->set->grid, at[0], at[1], t->depth - 0.01 * l->dp) ||
         !in_wall(l, at[0], at[1]) || on_the_lattice(l, at[0], at[1]))
         return ERR_OK;
     if (t->n == t->capacity) {
@@ -264,8 +265,8 @@ static double gap(const struct trace *t, int64_t a, int64_t b)
 /* Adds a point unless there is already one at its place. */
 static enum err offer(struct layers *l, double x, double y)
 {
-    if (grid_any_within(&l->points, x, y, too_near * l->dp)) return ERR_OK;
-    return grid_add(&l->points, l->g, x, y);
+    if (point_grid_any(&l->points, x, y, too_near * l->dp)) return ERR_OK;
+    return point_grid_add(&l->points, x, y, &l->g->temp, l->g->diag);
 }
 
 /* Points at equal distances along the trace from `first` to `last`. */
@@ -365,7 +366,7 @@ enum err layers_create(struct layers *l, struct sampler *g, const struct region 
 
 enum err layers_take(struct layers *l, double x, double y)
 {
-    TRY(grid_add(&l->points, l->g, x, y));
+    TRY(point_grid_add(&l->points, x, y, &l->g->temp, l->g->diag));
     l->first = l->points.n;
     return ERR_OK;
 }
@@ -389,6 +390,6 @@ enum err layers_trace(struct layers *l)
 enum err layers_fill(struct layers *l, double x, double y)
 {
     for (int k = 0; k < l->n_sets; k++)
-        if (grid_any_within(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
+        if (point_grid_any(&l->set[k].grid, x, y, l->set[k].depth)) return ERR_OK;
     return offer(l, x, y);
 }

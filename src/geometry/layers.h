@@ -3,7 +3,8 @@
 #ifndef SPHFSI_GEOMETRY_LAYERS_H
 #define SPHFSI_GEOMETRY_LAYERS_H
 
-#include "geometry/grid.h"
+#include "base/point_grid.h"
+#include "geometry/sampling.h"
 
 /* Faces from which layers are measured. A polyline has its own, on the drawn side, and layers
  * through all of its thickness. All other shapes have one common set, and layers as deep as the

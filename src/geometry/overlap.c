@@ -2,7 +2,7 @@
  * Which particles remain where regions overlap. Solids have priority: a clamped part replaces the
  * wall that holds it. Walls form a union. Any other overlap is an error of the case. */
 #include "geometry/sampling.h"
-#include "geometry/near.h"
+#include "base/point_grid.h"
 
 #include "case/case.h"
 
@@ -21,18 +21,15 @@ static double spacing(const struct region *regions, const struct samples *p, int
 }
 
 /* The first point in the table, of another region, that coincides with point k; -1: none. */
-static int64_t table_find(const struct near_table *t, const struct region *regions,
+static int64_t coinciding(const struct point_grid *t, const struct region *regions,
                           const struct samples *p, int64_t k)
 {
-    const double x = t->x[k], y = t->y[k];
-    const int64_t ci = near_cell(t, x), cj = near_cell(t, y);
-    for (int64_t j = cj - 1; j <= cj + 1; j++)
-        for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = near_first(t, i, j); n; n = t->next[n - 1])
-                if (p->region[n - 1] != p->region[k] &&
-                    square(t->x[n - 1] - x) + square(t->y[n - 1] - y) <
-                        square(same_place * spacing(regions, p, k, n - 1)))
-                    return n - 1;
+    struct point_visit v = point_grid_visit(t, p->x[k], p->y[k], t->side);
+    while (point_grid_next(t, &v))
+        if (p->region[v.k] != p->region[k] &&
+            square(p->x[v.k] - p->x[k]) + square(p->y[v.k] - p->y[k]) <
+                square(same_place * spacing(regions, p, k, v.k)))
+            return v.k;
     return -1;
 }
 
@@ -102,16 +99,16 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
 }
 
 /* Sets `kept`; fails if a region overlaps another one and must not. */
-static enum err find_overlaps(struct sampler *g, const struct samples *p, struct near_table *t,
+static enum err find_overlaps(struct sampler *g, const struct samples *p, struct point_grid *t,
                               uint8_t *kept)
 {
     int64_t k = 0;
     for (int region = 0; region < g->n_regions; region++) {
         int64_t wrong = 0, first = -1, first_other = -1;
         for (; k < p->n && p->region[k] == region; k++) {
-            const int64_t other = table_find(t, g->regions, p, k);
+            const int64_t other = coinciding(t, g->regions, p, k);
             kept[k] = other < 0;
-            if (kept[k]) near_insert(t, k);
+            if (kept[k]) point_grid_insert(t, k);
             if (kept[k] || yields_to(g, p, k, other)) continue;
             if (!wrong++) {
                 first = k;
@@ -155,10 +152,10 @@ static enum err store(struct sampler *g, const struct samples *p, const uint8_t 
 
 enum err geometry_merge(struct sampler *g, const struct samples *p)
 {
-    struct near_table t;
+    struct point_grid t;
     uint8_t *kept = arena_alloc(&g->temp, (size_t)p->n, 1, "overlaps", g->diag);
     if (!kept) return ERR_MEMORY;
-    TRY(near_create(&t, g->scene->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
+    TRY(point_grid_create(&t, g->scene->top.dp, p->n, p->x, p->y, &g->temp, g->diag));
     TRY(find_overlaps(g, p, &t, kept));
     for (int kind = 0; kind < KIND_COUNT; kind++) TRY(store(g, p, kept, (enum kind)kind));
     return ERR_OK;

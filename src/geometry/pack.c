@@ -3,15 +3,14 @@
  * too near to a wall cover less than its area, and the level falls. So as many of the cells that such
  * edges cut are filled as their parts inside the shape add up to. Then the particles there are moved until
  * a uniform pressure pushes none of them (T-80; particle packing, Colagrossi et al. 2012). */
-#include "geometry/grid.h"
-#include "geometry/near.h"
+#include "geometry/sampling.h"
 
 #include "base/elementary.h"
+#include "base/point_grid.h"
 #include "case/case.h"
 #include "particles/kernel.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Parts per spacing that edges are divided into; lines through a cell, for its area in the shape. */
 enum { PARTS = 8, LINES = 16 };
@@ -59,7 +58,8 @@ static enum err visit(struct cut_cells *c, struct sampler *g, const double at[2]
     double cell[2];
     cells_of(c->region, at[0], at[1], cell);
     const double i = floor(cell[0]) + 0.5, j = floor(cell[1]) + 0.5;
-    return grid_any_within(&c->grid, i, j, 0.5) ? ERR_OK : grid_add(&c->grid, g, i, j);
+    return point_grid_any(&c->grid, i, j, 0.5) ? ERR_OK
+                                               : point_grid_add(&c->grid, i, j, &g->temp, g->diag);
 }
 
 static enum err visit_edge(struct cut_cells *c, struct sampler *g, const double a[2],
@@ -135,7 +135,8 @@ static enum err find_cells(struct cut_cells *c, struct sampler *g, const struct 
     c->middle = arena_alloc(&g->temp, n, sizeof *c->middle, "packing", g->diag);
     if (!line || !c->share || !c->middle) return ERR_MEMORY;
     for (int64_t k = 0; k < c->grid.n; k++)
-        c->share[k] = share_of(region, c->grid.pt[k], c->middle[k], line, line + ends);
+        c->share[k] = share_of(region, (const double[]){c->grid.x[k], c->grid.y[k]}, c->middle[k],
+                               line, line + ends);
     return ERR_OK;
 }
 
@@ -161,15 +162,14 @@ static enum err refill(struct packing *p, const struct cut_cells *c, struct scen
         if (from->body[k] != c->region->body) continue;
         lattice_place(l, from->x[k], from->y[k], at);
         cells_of(c->region, at[0], at[1], cell);
-        if (grid_any_within(&c->grid, cell[0], cell[1], 0.1)) continue;
+        if (point_grid_any(&c->grid, cell[0], cell[1], 0.1)) continue;
         to->x[to->n] = from->x[k];
         to->y[to->n] = from->y[k];
         to->body[to->n++] = from->body[k];
     }
     double excess = 0; /* sum of the shares less the filled cells */
     for (int64_t k = 0; k < c->grid.n; k++) {
-        const double *const centre = c->grid.pt[k];
-        TRY(grid_add(&p->cells, p->g, centre[0], centre[1]));
+        TRY(point_grid_add(&p->cells, c->grid.x[k], c->grid.y[k], &p->g->temp, p->g->diag));
         excess += c->share[k];
         if (excess < 0.5) continue;
         excess--;
@@ -190,7 +190,7 @@ static bool beside(const struct packing *p, double x, double y, double reach)
     double at[2];
     lattice_place(&s->lattice, x, y, at);
     for (int c = 0; c < 2; c++) at[c] = (at[c] - s->lattice.origin[c]) / s->lattice.spacing[c];
-    return grid_any_within(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
+    return point_grid_any(&p->cells, at[0], at[1], reach * s->h / s->top.dp);
 }
 
 /* What covers a place in the lattice: a shape of fluid, any other, or none. */
@@ -235,10 +235,9 @@ static enum err add_air(struct packing *p)
     for (int64_t k = 0; k < p->cells.n; k++)
         for (int64_t j = -around; j <= around; j++)
             for (int64_t i = -around; i <= around; i++) {
-                const double cell[2] = {p->cells.pt[k][0] + (double)i,
-                                        p->cells.pt[k][1] + (double)j};
-                if (!grid_any_within(&p->air, cell[0], cell[1], 0.1))
-                    TRY(grid_add(&p->air, p->g, cell[0], cell[1]));
+                const double cell[2] = {p->cells.x[k] + (double)i, p->cells.y[k] + (double)j};
+                if (!point_grid_any(&p->air, cell[0], cell[1], 0.1))
+                    TRY(point_grid_add(&p->air, cell[0], cell[1], &p->g->temp, g->diag));
             }
     return ERR_OK;
 }
@@ -280,30 +279,24 @@ static enum err gather(struct packing *p)
     }
     for (int64_t k = 0; k < p->air.n; k++) {
         double at[2];
-        const double share = air_share(g, p->air.pt[k], at);
+        const double share = air_share(g, (const double[]){p->air.x[k], p->air.y[k]}, at);
         if (share > 0) add_point(p, at[0], at[1], share * square(s->top.dp));
     }
     return ERR_OK;
 }
 
 /* Minus the gradient of C, 1/m (T-80). */
-static void push(const struct packing *p, const struct near_table *t, int64_t k, double sum[2])
+static void push(const struct packing *p, const struct point_grid *t, int64_t k, double sum[2])
 {
     const double h = p->g->scene->h, x = p->x[k], y = p->y[k];
-    const int64_t ci = near_cell(t, x), cj = near_cell(t, y);
     sum[0] = sum[1] = 0;
-    for (int64_t j = cj - 1; j <= cj + 1; j++)
-        for (int64_t i = ci - 1; i <= ci + 1; i++)
-            for (int32_t n = near_first(t, i, j); n; n = t->next[n - 1]) {
-                const double dx = x - p->x[n - 1], dy = y - p->y[n - 1],
-                             r = sqrt(dx * dx + dy * dy);
-                if (r >= KERNEL_REACH * h || near_cell(t, p->x[n - 1]) != i ||
-                    near_cell(t, p->y[n - 1]) != j)
-                    continue;
-                const double factor = -p->volume[n - 1] * kernel_slope(r, h);
-                sum[0] += factor * dx;
-                sum[1] += factor * dy;
-            }
+    struct point_visit v = point_grid_visit(t, x, y, KERNEL_REACH * h);
+    while (point_grid_next(t, &v)) {
+        const double dx = x - p->x[v.k], dy = y - p->y[v.k], r = sqrt(dx * dx + dy * dy);
+        const double factor = -p->volume[v.k] * kernel_slope(r, h);
+        sum[0] += factor * dx;
+        sum[1] += factor * dy;
+    }
 }
 
 /* The shifts of T-80. */
@@ -311,16 +304,16 @@ static enum err settle(struct packing *p)
 {
     const struct sampler *const g = p->g;
     const double h = g->scene->h, dp = g->scene->top.dp;
-    struct near_table t;
-    TRY(near_create(&t, KERNEL_REACH * h, p->n, p->x, p->y, &p->g->temp, g->diag));
+    struct point_grid t;
+    TRY(point_grid_create(&t, KERNEL_REACH * h, p->n, p->x, p->y, &p->g->temp, g->diag));
     double(*move)[2] =
         arena_alloc(&p->g->temp, (size_t)p->n_free + 1, sizeof *move, "packing", g->diag);
     if (!move) return ERR_MEMORY;
     double largest = HUGE_VAL;
     for (int step = 0; step < most_shifts && largest > still * dp; step++) {
         largest = 0;
-        memset(t.head, 0, ((size_t)t.mask + 1) * sizeof *t.head);
-        for (int64_t k = 0; k < p->n; k++) near_insert(&t, k);
+        point_grid_clear(&t);
+        for (int64_t k = 0; k < p->n; k++) point_grid_insert(&t, k);
         for (int64_t k = 0; k < p->n_free; k++) push(p, &t, k, move[k]);
         for (int64_t k = 0; k < p->n_free; k++) {
             for (int c = 0; c < 2; c++) move[k][c] *= shift_factor * square(h);

@@ -18,7 +18,7 @@ enum err point_index_create(struct point_index *to, struct sampler *g)
     ALLOCATE(section);
     ALLOCATE(kind);
     ALLOCATE(bit);
-    TRY(near_create(&to->table, s->top.dp, n, to->x, to->y, &g->temp, g->diag));
+    TRY(point_grid_create(&to->table, s->top.dp, n, to->x, to->y, &g->temp, g->diag));
     for (int kind = 0; kind < KIND_COUNT; kind++)
         for (int64_t k = 0; k < s->points[kind].n; k++) {
             const struct scene_points *const p = &s->points[kind];
@@ -29,7 +29,7 @@ enum err point_index_create(struct point_index *to, struct sampler *g)
             to->bit[to->n] = kind != KIND_FLUID          ? POINT_BODY
                              : p->open && p->open[k] > 0 ? POINT_BUFFER
                                                          : POINT_FLUID;
-            near_insert(&to->table, to->n++);
+            point_grid_insert(&to->table, to->n++);
         }
     return ERR_OK;
 }
@@ -37,13 +37,9 @@ enum err point_index_create(struct point_index *to, struct sampler *g)
 /* In one image of a periodic domain. */
 static int64_t point_at(const struct point_index *of, double x, double y, double within, int kinds)
 {
-    const int64_t i = near_cell(&of->table, x), j = near_cell(&of->table, y);
-    for (int64_t n = 0; n < 9; n++)
-        for (int32_t at = near_first(&of->table, i + n % 3 - 1, j + n / 3 - 1); at;
-             at = of->table.next[at - 1])
-            if (square(of->x[at - 1] - x) + square(of->y[at - 1] - y) < square(within) &&
-                of->bit[at - 1] & kinds)
-                return at - 1;
+    struct point_visit v = point_grid_visit(&of->table, x, y, within);
+    while (point_grid_next(&of->table, &v))
+        if (of->bit[v.k] & kinds) return v.k;
     return -1;
 }
 

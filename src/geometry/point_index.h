@@ -3,7 +3,7 @@
 #ifndef SPHFSI_GEOMETRY_POINT_INDEX_H
 #define SPHFSI_GEOMETRY_POINT_INDEX_H
 
-#include "geometry/near.h"
+#include "base/point_grid.h"
 #include "geometry/sampling.h"
 
 /* Kinds of points, one bit each. */
@@ -11,7 +11,7 @@ enum { POINT_FLUID = 1, POINT_BODY = 2, POINT_BUFFER = 4, POINT_ANY = 7 };
 
 struct point_index {
     const struct scene *scene;
-    struct near_table table;
+    struct point_grid table;
     int64_t n;
     double *x, *y;
     int32_t *section; /* of fluid, walls and solids, each from 0 */

@@ -217,7 +217,10 @@ static enum err lay_layers(struct sampler *g, struct region *region)
     }
     region->n = l.points.n;
     region->n_layered = l.points.n - l.first;
-    if (region->n_layered > 0) region->layer_point = l.points.pt + l.first;
+    if (region->n_layered > 0) {
+        region->layer_x = l.points.x + l.first;
+        region->layer_y = l.points.y + l.first;
+    }
     return ERR_OK;
 }
 
@@ -290,7 +293,7 @@ static enum err append_points(struct sampler *g, const struct region *region, bo
     }
     p->n += filled;
     for (int64_t k = 0; k < region->n_layered; k++)
-        put_point(g, region, p, p->n++, region->layer_point[k][0], region->layer_point[k][1]);
+        put_point(g, region, p, p->n++, region->layer_x[k], region->layer_y[k]);
     return ERR_OK;
 }
 

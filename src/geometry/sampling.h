@@ -30,7 +30,7 @@ struct region {
     bool *layered,
         has_layers; /* [add.n] whether a piece is sampled in layers (geometry/layers.h) */
     int64_t n_layered;
-    double (*layer_point)[2]; /* those of the layers, after the lattice's */
+    double *layer_x, *layer_y; /* those of the layers, after the lattice's */
 };
 
 struct sampler {
