@@ -6,12 +6,10 @@
 
 #include "solid/contact.h"
 #include "solid/loads.h"
-#include "base/barrier.h"
 #include "case/effects.h"
 #include "case/params.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
-#include "solid/parts.h"
 #include "solid/stencil.h"
 
 static struct solid_body body_of(const struct scene *scene, int k)
@@ -58,15 +56,6 @@ static void join_bodies(struct solid *s, const struct scene *scene)
             s->body[k].mixed |=
                 s->body[j].bond == s->body[k].bond && s->body[j].density * s->body[j].viscosity !=
                                                           s->body[k].density * s->body[k].viscosity;
-}
-
-/* All threads if each has enough of n particles between two barriers, otherwise one. A smaller
- * team costs more than it saves: libgomp ends the other threads and starts new ones for the next
- * region. */
-static int useful_threads(int64_t n)
-{
-    enum { PARTICLES_PER_THREAD = 192 };
-    return n >= (int64_t)PARTICLES_PER_THREAD * thread_count() ? thread_count() : 1;
 }
 
 /* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
@@ -171,26 +160,23 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
         s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
         if (!s->scratch[k]) return ERR_MEMORY;
     }
-    s->barrier = arena_alloc(a, 1, sizeof *s->barrier, "barrier of the threads", d);
     s->work_on = arena_alloc(a, (size_t)s->n_bodies, sizeof *s->work_on, "work on bodies", d);
-    if (!s->barrier || !s->work_on) return ERR_MEMORY;
-    s->threads = useful_threads(p->n);
-    return solid_parts_create(s, a, p, d);
+    s->threads = p->n < SOLID_PARALLEL ? 1 : thread_count();
+    return s->work_on ? ERR_OK : ERR_MEMORY;
 }
 
-/* The work of a thread in a parallel region: its part of all packs, or a part with arrays of its
- * own. */
+/* The packs of a thread in a parallel region. Each particle is written by one thread and sums over
+ * its neighbours in the order of its slots, so the bits do not depend on the threads. */
 struct chunk {
     const struct solid *s;
     struct particles *p;
-    int64_t first, last;     /* its packs */
-    struct solid_part *part; /* NULL: threads use the same arrays */
+    int64_t first, last;
 };
 
 static struct chunk chunk_of(const struct solid *s, struct particles *p)
 {
     const int64_t threads = thread_team(), me = thread_index();
-    return (struct chunk){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads, NULL};
+    return (struct chunk){s, p, s->n_packs * me / threads, s->n_packs * (me + 1) / threads};
 }
 
 static void sweep(const struct chunk *own, solid_sweep *f)
@@ -198,64 +184,66 @@ static void sweep(const struct chunk *own, solid_sweep *f)
     f(own->s, own->p, own->first, own->last);
 }
 
-/* All threads together: afterwards each can read the results of the others. */
-static void together(const struct chunk *own, unsigned found)
-{
-    if (own->part)
-        halo_exchange(own->part, found);
-    else
-        barrier_wait(own->s->barrier);
-}
-
 static void stress_sweeps(const struct chunk *own)
 {
     const struct solid *const s = own->s;
     sweep(own, s->sweeps->stress);
     if (s->variational) {
-        together(own, HALO_GRADIENT);
+#pragma omp barrier
         sweep(own, s->sweeps->pairs);
     }
     if (s->kelvin_voigt) sweep(own, s->sweeps->damping);
-    together(own, s->variational ? HALO_STRESS : HALO_GRADIENT | HALO_STRESS);
+#pragma omp barrier
 }
 
-/* T-77: acceleration by mass-proportional damping. */
-SPHFSI_INLINE double mass_damping(double beta, double v) { return -beta * v; }
+/* The particles of the next packs that are of one body. */
+struct run {
+    const struct solid_body *body;
+    int64_t first, end;
+};
+
+static struct run next_run(const struct solid *s, int64_t *pack, int64_t last)
+{
+    const struct solid_pack *const from = &s->pack[*pack], *to = from;
+    while (++*pack < last && s->pack[*pack].body == from->body) to = &s->pack[*pack];
+    return (struct run){&s->body[from->body], from->i, to->i + to->lanes};
+}
 
 /* Forces other than those of neighbours; clamped particles do not move. */
 static void add_own_forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
-    for (int64_t k = first; k < last; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
-        const struct solid_body *const body = &s->body[pack->body];
-        const double per_mass = 1 / body->mass;
+    double *const sx = p->sx, *const sy = p->sy, *const free = p->free;
+    const double *const *const external = s->external;
+    for (int64_t k = first; k < last;) {
+        const struct run run = next_run(s, &k, last);
+        const double per_mass = 1 / run.body->mass;
+        const double gx = run.body->gravity[0], gy = run.body->gravity[1];
+        for (int64_t i = run.first; i < run.end && s->coupled; i++) {
+            sx[i] += p->fx[i] * per_mass;
+            sy[i] += p->fy[i] * per_mass;
+        }
+        for (int64_t i = run.first; i < run.end && external[0]; i++) {
+            sx[i] += external[0][i];
+            sy[i] += external[1][i];
+        }
 #pragma omp simd
-        for (int64_t i = pack->i; i < pack->i + pack->lanes; i++) {
-            double ax = p->sx[i], ay = p->sy[i];
-            if (s->coupled) {
-                ax += p->fx[i] * per_mass;
-                ay += p->fy[i] * per_mass;
-            }
-            if (s->external[0]) {
-                ax += s->external[0][i];
-                ay += s->external[1][i];
-            }
-            p->sx[i] = (ax + body->gravity[0]) * p->free[i];
-            p->sy[i] = (ay + body->gravity[1]) * p->free[i];
+        for (int64_t i = run.first; i < run.end; i++) {
+            sx[i] = (sx[i] + gx) * free[i];
+            sy[i] = (sy[i] + gy) * free[i];
         }
     }
 }
 
-/* A pass of its own: nothing where no body has it. */
+/* T-77: acceleration by mass-proportional damping. */
 static void add_mass_damping(const struct solid *s, struct particles *p, int64_t first,
                              int64_t last)
 {
-    for (int64_t k = first; k < last; k++) {
-        const struct solid_pack *const pack = &s->pack[k];
-        const double beta = s->body[pack->body].mass_damping;
-        for (int64_t i = pack->i; i < pack->i + pack->lanes; i++) {
-            p->sx[i] += p->free[i] * mass_damping(beta, p->vx[i]);
-            p->sy[i] += p->free[i] * mass_damping(beta, p->vy[i]);
+    for (int64_t k = first; k < last;) {
+        const struct run run = next_run(s, &k, last);
+        const double beta = run.body->mass_damping;
+        for (int64_t i = run.first; i < run.end; i++) {
+            p->sx[i] += p->free[i] * (-beta * p->vx[i]);
+            p->sy[i] += p->free[i] * (-beta * p->vy[i]);
         }
     }
 }
@@ -265,7 +253,7 @@ static void force_sweeps(const struct chunk *own)
     sweep(own, own->s->sweeps->forces);
     sweep(own, add_own_forces);
     if (FX_MASS_DAMPING != 0 && own->s->mass_damped) sweep(own, add_mass_damping);
-    if (!own->part) barrier_wait(own->s->barrier);
+#pragma omp barrier
 }
 
 /* By all threads together. */
@@ -309,7 +297,7 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
 static void pack_motion(const struct chunk *own)
 {
     sweep(own, own->s->sweeps->pack_motion);
-    together(own, HALO_POSITION);
+#pragma omp barrier
 }
 
 void solid_free_kick(const struct particles *p, int64_t first, int64_t end, double kick,
@@ -336,12 +324,10 @@ static void kick_and_drift(const struct chunk *own, solid_kick *f, double kick, 
 
 void solid_stress(struct solid *s, struct particles *p)
 {
-    s->in_parts = false;
 #pragma omp parallel num_threads(s->threads)
     {
         const struct chunk own = chunk_of(s, p);
-        sweep(&own, s->sweeps->pack_motion);
-        together(&own, HALO_POSITION);
+        pack_motion(&own);
         stress_sweeps(&own);
         sweep(&own, s->sweeps->write_stress);
     }
@@ -384,10 +370,10 @@ static void place_clamps(const struct chunk *own, double time)
     pack_motion(own);
 }
 
-/* The sub-steps of solid_advance by one of its threads; s is the whole. */
-static void substeps(struct solid *s, const struct chunk *own, double dt, int n, bool centred)
+/* The sub-steps of solid_advance by one of its threads. */
+static void substeps(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
-    struct particles *const p = own->p;
+    const struct chunk chunk = chunk_of(s, p), *const own = &chunk;
     const double first = centred ? 0.5 * dt : 0;
     kick_and_drift(own, solid_free_kick, 0, first);
     if (centred) place_clamps(own, s->time + first);
@@ -405,34 +391,10 @@ static void substeps(struct solid *s, const struct chunk *own, double dt, int n,
     }
 }
 
-/* Whether each thread of a region can step a part by itself. Conditions: one part for each thread,
- * nothing from outside reads the whole in between, and enough sub-steps to outweigh the copies. */
-static bool steps_parts(const struct solid *s, int n)
-{
-    enum { WORTH_COPYING = 4 };
-    return s->part && n >= WORTH_COPYING && !s->contact && !s->loads && !s->gravity &&
-           !s->external[0] && thread_team() == s->threads;
-}
-
 void solid_advance(struct solid *s, struct particles *p, double dt, int n, bool centred)
 {
-    bool in_parts = false;
 #pragma omp parallel num_threads(s->threads) if (!calls_program(s))
-    {
-        if (steps_parts(s, n)) {
-            struct solid_part *const part = &s->part[thread_index()];
-            const struct chunk own = {&part->solid, &part->p, 0, part->solid.n_packs, part};
-            solid_part_load(part, p);
-            substeps(s, &own, dt, n, centred);
-            solid_part_store(part, p);
-#pragma omp master
-            in_parts = true;
-        } else {
-            const struct chunk own = chunk_of(s, p);
-            substeps(s, &own, dt, n, centred);
-        }
-    }
-    s->in_parts = in_parts;
+    substeps(s, p, dt, n, centred);
     s->time += n * dt;
 }
 
@@ -454,8 +416,6 @@ void solid_show(const struct solid *s, struct particles *p)
 #pragma omp parallel num_threads(s->threads)
     {
         const struct chunk own = chunk_of(s, p);
-        if (!s->in_parts) sweep(&own, s->sweeps->write_stress);
-#pragma omp for schedule(static)
-        for (int k = 0; k < (s->in_parts ? s->threads : 0); k++) solid_part_results(&s->part[k], p);
+        sweep(&own, s->sweeps->write_stress);
     }
 }

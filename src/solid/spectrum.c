@@ -112,8 +112,6 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     /* Without the fluid's force and gravity, which do not depend on the field, and without contact,
      * which has its own bounds. */
     double *const rates[2] = {s->scratch[4], s->scratch[5]};
-    if (s->in_parts) solid_show(s, p);
-    s->in_parts = false; /* the fields of p will be those of the last trial */
     keep(rates, p->sx, p->sy, p->n);
     struct solid bare = *s;
     struct solid_body body[s->n_bodies];

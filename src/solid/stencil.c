@@ -216,59 +216,19 @@ static int compare_slot(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Source of a pack's slots: the reference positions, or a solid that this one is a part of. */
-struct slot_source {
-    /* Creates the slots of a pack, in any order; returns their number. */
-    int (*fill)(const struct slot_source *from, const struct solid *s,
-                const struct solid_pack *pack, struct draft *slots);
-    const struct particles *p;
-    const struct bucket_grid *grid;
-    const struct gradient_moments *moments;
-    const struct solid *whole;
-    const int32_t *global, *local, *pack_of; /* pack_of: the pack of each particle of the whole */
-};
-
-static int slots_from_positions(const struct slot_source *from, const struct solid *s,
-                                const struct solid_pack *pack, struct draft *slots)
+/* The slots of one pack, in ascending order of neighbours; returns their number. */
+static int pack_slots(const struct solid *s, const struct particles *p,
+                      const struct bucket_grid *grid, const struct gradient_moments *moments,
+                      const struct solid_pack *pack, struct draft *slots)
 {
     int32_t found[MAX_NEIGHBOURS];
     int n = 0;
     for (int l = 0; l < pack->lanes; l++) {
         const int64_t i = pack->i + l;
-        const int count = neighbours_of(s, from->grid, from->p, i, found);
+        const int count = neighbours_of(s, grid, p, i, found);
         for (int k = 0; k < count; k++)
-            slot_set(slot_for(slots, &n, found[k] - i), l, s, from->p, from->moments, i, found[k]);
+            slot_set(slot_for(slots, &n, found[k] - i), l, s, p, moments, i, found[k]);
     }
-    return n;
-}
-
-static int slots_from_whole(const struct slot_source *from, const struct solid *s,
-                            const struct solid_pack *pack, struct draft *slots)
-{
-    const struct solid *const whole = from->whole;
-    const int lanes = s->sweeps->lanes;
-    int n = 0;
-    for (int l = 0; l < pack->lanes; l++) {
-        const int32_t i = pack->i + l, g = from->global[i];
-        const struct solid_pack *const theirs = &whole->pack[from->pack_of[g]];
-        for (int64_t m = theirs->first_slot; m < theirs->first_slot + theirs->n_slots; m++) {
-            const int64_t weights = m * SOLID_WEIGHTS * lanes + g - theirs->i;
-            if (solid_get(whole, whole->weight, weights + W_X * lanes) == NOBODY) continue;
-            const int32_t j = from->local[g + whole->offset[m]];
-            if (j < 0) continue;
-            struct draft *const slot = slot_for(slots, &n, j - i);
-            for (int w = 0; w < SOLID_WEIGHTS; w++)
-                slot->weight[w][l] = solid_get(whole, whole->weight, weights + w * lanes);
-        }
-    }
-    return n;
-}
-
-/* The slots of one pack, in ascending order of neighbours. */
-static int pack_slots(const struct slot_source *from, const struct solid *s,
-                      const struct solid_pack *pack, struct draft *slots)
-{
-    const int n = from->fill(from, s, pack, slots);
     qsort(slots, (size_t)n, sizeof *slots, compare_slot);
     return n;
 }
@@ -368,7 +328,8 @@ static void cut_packs(struct solid *s, const struct particles *p)
 
 /* Two rounds: the first counts the slots without common sets, the second stores them. */
 static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
-                            const struct slot_source *from, struct diag *d)
+                            const struct particles *p, const struct bucket_grid *grid,
+                            const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
     struct slots own, kept;
@@ -378,12 +339,13 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
         arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
     if (!sets.pack || !work) return ERR_MEMORY;
     int64_t total = 0;
-    for (int64_t k = 0; k < s->n_packs; k++) total += pack_slots(from, s, &s->pack[k], work);
+    for (int64_t k = 0; k < s->n_packs; k++)
+        total += pack_slots(s, p, grid, moments, &s->pack[k], work);
     TRY(create_slots(&own, s, scratch, MAX_SLOTS, d));
     TRY(create_slots(&sets.all, s, scratch, total, d));
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
     for (int64_t k = 0; k < s->n_packs; k++) {
-        const int n = pack_slots(from, s, &s->pack[k], work);
+        const int n = pack_slots(s, p, grid, moments, &s->pack[k], work);
         take_drafts(&own, s, work, n);
         reuse_slots(s, &sets, (int32_t)k, &own, n);
     }
@@ -438,56 +400,22 @@ static void sum_weights(const struct solid *s)
     }
 }
 
-static enum err create_packs(struct solid *s, struct arena *a, const struct particles *p,
-                             struct diag *d)
-{
-    s->n_packs = s->n_slots = 0;
-    s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
-    if (!s->pack) return ERR_MEMORY;
-    cut_packs(s, p);
-    return ERR_OK;
-}
-
 enum err solid_stencil_create(struct solid *s, struct arena *a, const struct particles *p,
                               struct diag *d)
 {
-    TRY(create_packs(s, a, p, d));
+    s->pack = arena_alloc(a, (size_t)p->n, sizeof *s->pack, "packs of the solid", d);
+    if (!s->pack) return ERR_MEMORY;
+    cut_packs(s, p);
     struct arena scratch = {.limit = a->limit};
     struct bucket_grid grid;
     double reach = 0;
     for (int k = 0; k < s->n_bodies; k++) reach = max2(reach, KERNEL_REACH * s->body[k].h);
     struct gradient_moments *const moments =
         arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
-    const struct slot_source from = {.fill = slots_from_positions,
-                                     .p = p,
-                                     .grid = &grid,
-                                     .moments = moments};
     enum err e = moments ? buckets_create(&grid, &scratch, p, reach, d) : ERR_MEMORY;
     if (!e) e = all_moments(s, &grid, p, moments, d);
-    if (!e) e = store_slots(s, a, &scratch, &from, d);
+    if (!e) e = store_slots(s, a, &scratch, p, &grid, moments, d);
     arena_free(&scratch);
     if (!e) sum_weights(s);
-    return e;
-}
-
-enum err solid_stencil_of_part(struct solid *part, struct arena *a, const struct particles *p,
-                               const struct solid *whole, const int32_t *global,
-                               const int32_t *local, struct diag *d)
-{
-    TRY(create_packs(part, a, p, d));
-    struct arena scratch = {.limit = a->limit};
-    const struct solid_pack *const last = &whole->pack[whole->n_packs - 1];
-    int32_t *const pack_of = arena_alloc(&scratch, (size_t)last->i + (size_t)last->lanes,
-                                         sizeof *pack_of, "packs of the solid", d);
-    for (int32_t k = 0; pack_of && k < whole->n_packs; k++)
-        for (int l = 0; l < whole->pack[k].lanes; l++) pack_of[whole->pack[k].i + l] = k;
-    const struct slot_source from = {.fill = slots_from_whole,
-                                     .whole = whole,
-                                     .global = global,
-                                     .local = local,
-                                     .pack_of = pack_of};
-    const enum err e = pack_of ? store_slots(part, a, &scratch, &from, d) : ERR_MEMORY;
-    arena_free(&scratch);
-    if (!e) sum_weights(part);
     return e;
 }

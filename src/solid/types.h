@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The data of a solid: bodies, packs and slots, contact, loads and the parts that threads step. What acts on
+ * The data of a solid: bodies, packs and slots, contact and loads. What acts on
  * them is declared in the header of its name. */
 #ifndef SPHFSI_SOLID_TYPES_H
 #define SPHFSI_SOLID_TYPES_H
@@ -100,6 +100,10 @@ struct solid_sweeps {
 };
 extern const struct solid_sweeps solid_sweeps_mixed, solid_sweeps_double;
 
+/* Smaller solids are stepped by one thread: the loops of several would be shorter than the barriers
+ * between them. */
+enum { SOLID_PARALLEL = 2048 };
+
 struct solid {
     int n_bodies;
     struct solid_body *body;
@@ -109,21 +113,18 @@ struct solid {
     const struct solid_sweeps *sweeps;
     void *lane[SOLID_PACKED_FIELDS]; /* each [n] */
     struct solid_pack *pack;
-    void *weight;                 /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
-    int64_t *offset;              /* [n_slots] */
-    bool coupled;                 /* meets fluid */
-    bool variational;             /* some body has its hourglass force from an energy */
-    bool kelvin_voigt;            /* some body has a damping_time */
-    bool mass_damped;             /* some body has a mass_damping */
-    double omega_max;             /* largest frequency of the linearised operator, 1/s */
-    double damping_max;           /* largest rate of its viscous part, 1/s */
-    double stable_step;           /* the largest stable step that follows from both, s */
-    double paper_step;            /* Eq. 29, s */
-    struct spin_barrier *barrier; /* of the threads between two loops */
-    struct solid_part *part;      /* [threads], each stepped by a thread; NULL: not cut */
-    bool in_parts;                /* the last evaluation was done by the parts */
-    double *scratch[6];           /* memory for the search of the step */
-    double time; /* of the displacements, s: contact uses walls at their positions then */
+    void *weight;       /* [n_slots][SOLID_WEIGHTS][sweeps->lanes] */
+    int64_t *offset;    /* [n_slots] */
+    bool coupled;       /* meets fluid */
+    bool variational;   /* some body has its hourglass force from an energy */
+    bool kelvin_voigt;  /* some body has a damping_time */
+    bool mass_damped;   /* some body has a mass_damping */
+    double omega_max;   /* largest frequency of the linearised operator, 1/s */
+    double damping_max; /* largest rate of its viscous part, 1/s */
+    double stable_step; /* the largest stable step that follows from both, s */
+    double paper_step;  /* Eq. 29, s */
+    double *scratch[6]; /* memory for the search of the step */
+    double time;        /* of the displacements, s: contact uses walls at their positions then */
     /* Actions from outside, each NULL if there is none; contact: if none is near. */
     struct contact *contact;
     struct loads *loads;
@@ -131,7 +132,7 @@ struct solid {
     const struct scene *gravity; /* varies in time: its change since t = 0 */
     const double *external[2];   /* accelerations, x and y, m/s^2 */
     solid_kick *kick;            /* of sub-steps: free, or against the impedance of a fluid */
-    double work;   /* of walls, clamps and loads on the solid since the last query, J/m */
+    double work;     /* of walls, clamps and loads on the solid since the last query, J/m */
     double *work_on; /* [n_bodies] the same for each body; contact counts for the first */
 };
 
@@ -258,25 +259,6 @@ struct loads {
     double *held_rise;           /* and the rate at which its acceleration changes that, W/(m s) */
     struct motion_state *motion; /* [n_solid] now */
     bool released; /* loads_forces leaves the particles of moving clamps the forces on them */
-};
-
-/* --- parts --- */
-
-/* Particles that are consecutive in the whole and in a part. */
-struct part_run {
-    int32_t here, there, n; /* first in the part, first in the whole, how many */
-    bool own;               /* stepped by the part; the others are copies */
-};
-
-struct part_message;
-
-struct solid_part {
-    _Alignas(64) uint32_t sequence; /* messages to each so far */
-    int n_runs, n_others;           /* other parts that are within reach */
-    struct solid solid;
-    struct particles p;
-    struct part_run *run;
-    struct part_message **out, **in;
 };
 
 #endif

@@ -95,8 +95,5 @@ void simulation_refresh(struct simulation *sim)
                          !sim->scene->motion_hook;
         if (!sim->evaluated) memcpy(sim->phase_seconds, seconds, sizeof seconds);
     }
-    if (!(sim->effects & FX_SOLID)) return;
-    /* After an evaluation of the whole, accelerations of parts would not be available. */
-    if (sim->solid.in_parts) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
-    solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
+    if (sim->effects & FX_SOLID) solid_stress(&sim->solid, &sim->kind[KIND_SOLID]);
 }

@@ -227,30 +227,6 @@ static enum sphfsi_status library(void)
     return status ? status : freed;
 }
 
-/* A solid in parts, one for each of two threads. */
-static enum sphfsi_status in_parts(void)
-{
-    static const char text[] = "dp = 1 cm\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 1.5, 0.04\n"
-                               "clamp = box 0, 0, 0.02, 0.04\ndensity = 1000\nyoung = 1 MPa\n"
-                               "poisson = 0.3\n";
-    static struct scene scene;
-    static struct simulation simulation;
-    static struct diag d;
-    const int before = thread_count();
-    d = (struct diag){.code = ERR_OK};
-    thread_use(2);
-    enum err e = scene_load_text(&scene, text, "parts", 0, NULL, &d);
-    if (!e) {
-        e = simulation_create(&simulation, &scene, &d);
-        TEST_ASSERT_TRUE(e || simulation.solid.part);
-        simulation_free(&simulation);
-        scene_free(&scene);
-    }
-    thread_use(before);
-    TEST_ASSERT_TRUE_MESSAGE(!e || strstr(d.text, "memory"), d.text);
-    return (enum sphfsi_status)e;
-}
-
 static void begin(void)
 {
     snprintf(begun, sizeof begun, "%s", tiny_path("begun"));
@@ -355,8 +331,6 @@ static void of_refine(void) { every_one(refine, "refine", 100); }
 
 static void of_a_library(void) { every_one(library, "library", 50); }
 
-static void of_parts(void) { every_one(in_parts, "parts", 50); }
-
 int main(void)
 {
     if (!getenv("TMPDIR") && access("/dev/shm", W_OK) == 0) setenv("TMPDIR", "/dev/shm", 0);
@@ -372,7 +346,6 @@ int main(void)
     RUN_TEST(of_preview);
     RUN_TEST(of_refine);
     RUN_TEST(of_a_library);
-    RUN_TEST(of_parts);
     printf("found: %ld failing allocations\n", failures);
     return UNITY_END();
 }
