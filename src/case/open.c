@@ -7,32 +7,38 @@
 
 int scene_open_count(const struct scene *s) { return s->n_inflow + s->n_outflow; }
 
-#define OPEN_OF(section)                                                                           \
-    (struct scene_open)                                                                            \
-    {                                                                                              \
-        .common = &(section)->common, .from = {(section)->from[0], (section)->from[1]},            \
-        .along = {(section)->to[0] - (section)->from[0], (section)->to[1] - (section)->from[1]},   \
-        .level = (section)->level, .absorb = (section)->absorb, .sense = (section)->side ? -1 : 1, \
-        .speed = (section)->speed.e[0],                                                            \
-        .velocity = {(section)->velocity.e[0], (section)->velocity.e[1]},                          \
-        .pressure = (section)->pressure.e[0]                                                       \
-    }
-
 struct scene_open scene_open_at(const struct scene *s, int k)
 {
     const bool inflow = k < s->n_inflow;
-    struct scene_open o = inflow ? OPEN_OF(&s->inflow[k]) : OPEN_OF(&s->outflow[k - s->n_inflow]);
+    const enum section_id id = inflow ? SECTION_inflow : SECTION_outflow;
+    const int index = inflow ? k : k - s->n_inflow;
+    _Static_assert(sizeof(struct scene_outflow) == sizeof(struct scene_inflow), "the same keys");
+    const struct scene_inflow *const from = section_at(s, id, index);
+    const double sense = from->side ? -1 : 1; /* of the fluid, to the left of the line */
+    struct scene_open o = {
+        .kind = from->speed.e[0] || from->velocity.e[0] ? OPEN_VELOCITY : OPEN_PRESSURE,
+        .word = section_table[id].word,
+        .common = &from->common,
+        .section = id,
+        .index = index,
+        .inflow = inflow,
+        .from = {from->from[0], from->from[1]},
+        .along = {from->to[0] - from->from[0], from->to[1] - from->from[1]},
+        .level = from->level,
+        .absorb = from->absorb,
+        .speed = from->speed.e[0],
+        .velocity = {from->velocity.e[0], from->velocity.e[1]},
+        .pressure = from->pressure.e[0],
+        .sense = inflow ? 1 : -1,
+    };
     o.length = elementary_hypot(o.along[0], o.along[1]);
     /* Whole spacings for the kernel's reach, a particle that has left and is not yet part of the
      * buffer, and one of the buffer that has entered and is not yet relabelled. */
     o.depth = ceil((2 * s->numerics.h_over_dp + 1) * (1 - 1e-9)) * s->top.dp;
     o.along[0] /= o.length;
     o.along[1] /= o.length;
-    o.inward[0] = -o.sense * o.along[1];
-    o.inward[1] = o.sense * o.along[0];
-    o.inflow = inflow;
-    o.sense = inflow ? 1 : -1;
-    o.kind = o.speed || o.velocity[0] ? OPEN_VELOCITY : OPEN_PRESSURE;
+    o.inward[0] = -sense * o.along[1];
+    o.inward[1] = sense * o.along[0];
     return o;
 }
 
@@ -67,20 +73,16 @@ double scene_open_flow(const struct scene_open *o, double time)
 
 /* --- checks --- */
 
-static const char *word_of(const struct scene_open *o) { return o->inflow ? "inflow" : "outflow"; }
-
-/* `index`: its number among those of its kind. */
-static enum err check_given(struct reader *r, const struct scene_open *o, int index)
+static enum err check_given(struct reader *r, const struct scene_open *o)
 {
     const int given = (o->speed != NULL) + (o->velocity[0] != NULL) + (o->pressure != NULL);
-    const char *const word = word_of(o), *const name = o->common->name;
+    const char *const word = o->word, *const name = o->common->name;
     const int line = o->common->line;
     const double *const g = r->scene->top.gravity;
     static const char *const ends[] = {"from", "to"};
     bool both = o->length > 0;
     for (int k = 0; k < 2; k++)
-        both &= scene_given(r->scene, o->inflow ? SECTION_inflow : SECTION_outflow, index,
-                            ends[k]) != NULL;
+        both &= scene_given(r->scene, o->section, o->index, ends[k]) != NULL;
     if (!both)
         return bad_line(r, line,
                         "[%s %s] needs `from` and `to`, the two ends of the line through which the "
@@ -112,24 +114,24 @@ static enum err check_given(struct reader *r, const struct scene_open *o, int in
 }
 
 /* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
-static void warn_of_absorb(struct reader *r, const struct scene_open *o, int index)
+static void warn_of_absorb(struct reader *r, const struct scene_open *o)
 {
     const struct scene *const s = r->scene;
     const double wave = s->c0 * o->absorb / 4, reach = 2 * s->numerics.h_over_dp * s->top.dp;
-    const int line = scene_line(s, o->inflow ? SECTION_inflow : SECTION_outflow, index, "absorb");
+    const int line = scene_line(s, o->section, o->index, "absorb");
     if (!(o->absorb > 0) || o->kind != OPEN_PRESSURE || !(s->c0 > 0)) return;
     if (wave < reach)
         case_warn(r, line,
                   "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The "
                   "fluid resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out "
                   "waves of up to the length L",
-                  word_of(o), o->common->name, o->absorb, wave, reach);
+                  o->word, o->common->name, o->absorb, wave, reach);
     if (o->absorb > s->top.end_time)
         case_warn(r, line,
                   "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
                   "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a "
                   "shorter time",
-                  word_of(o), o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
+                  o->word, o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
 }
 
 /* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs. `largest`:
@@ -143,19 +145,19 @@ static void warn_of_sound(struct reader *r, const struct scene_open *o, double l
                   "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "
                   "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
                   "= %.3g or more",
-                  word_of(o), o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
+                  o->word, o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
     if (o->kind == OPEN_PRESSURE && stiffness > 0 && largest > DENS_WARNING * stiffness)
         case_warn(r, o->common->line,
                   "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
                   "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
-                  word_of(o), o->common->name, largest, 100 * largest / stiffness,
+                  o->word, o->common->name, largest, 100 * largest / stiffness,
                   sqrt(largest / (0.01 * r->scene->rho0)));
 }
 
 /* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow at some time. */
 static enum err check_profile(struct reader *r, const struct scene_open *o)
 {
-    const char *const word = word_of(o), *const name = o->common->name;
+    const char *const word = o->word, *const name = o->common->name;
     double most = -HUGE_VAL, least = HUGE_VAL, largest = 0;
     for (int n = 0; n < LINE_TIMES; n++) {
         const double time = r->scene->top.end_time * n / (LINE_TIMES - 1);
@@ -209,13 +211,12 @@ enum err case_check_open(struct reader *r)
         diag_warn(r->diag,
                   "%s: [%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
                   "this boundary; use density_diffusion = 0.1",
-                  place, word_of(&o), o.common->name);
+                  place, o.word, o.common->name);
     }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
         const struct scene_open o = scene_open_at(s, k);
-        const int index = o.inflow ? k : k - s->n_inflow;
-        TRY(check_given(r, &o, index));
-        warn_of_absorb(r, &o, index);
+        TRY(check_given(r, &o));
+        warn_of_absorb(r, &o);
         TRY(check_profile(r, &o));
     }
     return ERR_OK;

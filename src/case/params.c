@@ -12,6 +12,7 @@
 const struct section_info section_table[SECTION_COUNT] = {
 #define SECTION(section, named) \
     {#section, named, WHERE_##named(section), sizeof(struct scene_##section)},
+#define END
 #include "case/params.def"
 };
 
@@ -20,31 +21,15 @@ const struct section_info section_table[SECTION_COUNT] = {
 #define ABSENT (double)NAN
 #define OVER(v) v, true
 #define UNDER(v) v, true
-#define ROW(section_, type_, key_, meaning_)                                                 \
-    .section = SECTION_##section_, .type = PARAM_##type_, .key = #key_, .meaning = meaning_, \
-    .offset = offsetof(struct scene_##section_, key_)
+#define PARAM(section_, key_, type_, text, ...)         \
+    {.section = SECTION_##section_,                     \
+     .type = PARAM_##type_,                             \
+     .key = #key_,                                      \
+     .meaning = text,                                   \
+     .offset = offsetof(struct scene_##section_, key_), \
+     __VA_ARGS__},
 
 const struct param param_table[PARAM_COUNT] = {
-#define REAL(section, key, def, lo, hi, unit_, meaning) \
-    {ROW(section, REAL, key, meaning), .unit = unit_, .number = {def}, .low = {lo}, .high = {hi}},
-#define INTEGER(section, key, def, lo, hi, meaning) \
-    {ROW(section, INTEGER, key, meaning), .number = {def}, .low = {lo}, .high = {hi}},
-#define CHOICE(section, key, def, names, meaning) \
-    {ROW(section, CHOICE, key, meaning), .choices = names, .number = {def}},
-#define TEXT(section, key, def, meaning) {ROW(section, TEXT, key, meaning), .text_default = def},
-#define VECTOR(section, key, dx, dy, unit_, meaning) \
-    {ROW(section, VECTOR, key, meaning), .unit = unit_, .vector_default = {dx, dy}},
-#define TIME_VECTOR(section_, key_, dx, dy, unit_, meaning)                                \
-    {ROW(section_, TIME_VECTOR, key_, meaning), .unit = unit_, .vector_default = {dx, dy}, \
-     .count = 2, .expr_offset = offsetof(struct scene_##section_, key_##_in_time)},
-#define FIELD_EXPR(section, key, count_, unit_, meaning) \
-    {ROW(section, FIELD_EXPR, key, meaning), .unit = unit_, .count = count_},
-#define TIME_EXPR(section, key, unit_, meaning) \
-    {ROW(section, TIME_EXPR, key, meaning), .unit = unit_, .count = 1},
-#define FLOW_EXPR(section, key, count_, unit_, meaning) \
-    {ROW(section, FLOW_EXPR, key, meaning), .unit = unit_, .count = count_},
-#define SHAPES(section, key, meaning) {ROW(section, SHAPES, key, meaning), .unit = "m"},
-#define NUMBERS(section, key, unit_, meaning) {ROW(section, NUMBERS, key, meaning), .unit = unit_},
 #include "case/params.def"
 };
 

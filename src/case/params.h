@@ -8,6 +8,7 @@
 
 enum section_id {
 #define SECTION(section, named) SECTION_##section,
+#define END
 #include "case/params.def"
     SECTION_COUNT
 };
@@ -67,20 +68,8 @@ struct param {
 };
 /* The number of all keys. */
 enum {
-#define ONE(section, key) PARAM_NUMBER_##section##_##key,
-#define REAL(section, key, def, lo, hi, unit, meaning) ONE(section, key)
-#define INTEGER(section, key, def, lo, hi, meaning) ONE(section, key)
-#define CHOICE(section, key, def, names, meaning) ONE(section, key)
-#define TEXT(section, key, def, meaning) ONE(section, key)
-#define VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
-#define TIME_VECTOR(section, key, dx, dy, unit, meaning) ONE(section, key)
-#define FIELD_EXPR(section, key, count, unit, meaning) ONE(section, key)
-#define TIME_EXPR(section, key, unit, meaning) ONE(section, key)
-#define FLOW_EXPR(section, key, count, unit, meaning) ONE(section, key)
-#define SHAPES(section, key, meaning) ONE(section, key)
-#define NUMBERS(section, key, unit, meaning) ONE(section, key)
+#define PARAM(section, key, ...) PARAM_##section##_##key,
 #include "case/params.def"
-#undef ONE
     PARAM_COUNT
 };
 extern const struct param param_table[PARAM_COUNT];

@@ -47,141 +47,25 @@ struct scene_section_common {
 };
 
 /* One struct for each section of case/params.def, with a member for each of its keys. */
-#define REAL(section, key, def, lo, hi, unit, meaning) double key;
-#define INTEGER(section, key, def, lo, hi, meaning) int key;
-#define CHOICE(section, key, def, names, meaning) int key;
-#define TEXT(section, key, def, meaning) char key[SCENE_TEXT];
-#define VECTOR(section, key, dx, dy, unit, meaning) double key[2];
-#define TIME_VECTOR(section, key, dx, dy, unit, meaning) \
-    double key[2];                                       \
+#define MEMBER_REAL(key) double key;
+#define MEMBER_INTEGER(key) int key;
+#define MEMBER_CHOICE(key) int key;
+#define MEMBER_TEXT(key) char key[SCENE_TEXT];
+#define MEMBER_VECTOR(key) double key[2];
+#define MEMBER_TIME_VECTOR(key) \
+    double key[2];              \
     struct scene_expr key##_in_time;
-#define FIELD_EXPR(section, key, count, unit, meaning) struct scene_expr key;
-#define TIME_EXPR(section, key, unit, meaning) struct scene_expr key;
-#define FLOW_EXPR(section, key, count, unit, meaning) struct scene_expr key;
-#define SHAPES(section, key, meaning) struct shape_list key;
-#define NUMBERS(section, key, unit, meaning) struct number_list key;
-#define PARAMS_OF(section) ONLY_##section /* 0 if it is not defined */
-#define PARAMS_KEEP
-
-#define ONLY_top 1
-struct scene_top {
-    struct scene_section_common common;
+#define MEMBER_FIELD_EXPR(key) struct scene_expr key;
+#define MEMBER_TIME_EXPR(key) struct scene_expr key;
+#define MEMBER_FLOW_EXPR(key) struct scene_expr key;
+#define MEMBER_SHAPES(key) struct shape_list key;
+#define MEMBER_NUMBERS(key) struct number_list key;
+#define PARAM(section, key, type, ...) MEMBER_##type(key)
+/* clang-format off */
+#define SECTION(section, named) struct scene_##section { struct scene_section_common common;
+#define END };
+/* clang-format on */
 #include "case/params.def"
-};
-#undef ONLY_top
-
-#define ONLY_numerics 1
-struct scene_numerics {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_numerics
-
-#define ONLY_domain 1
-struct scene_domain {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_domain
-
-#define ONLY_output 1
-struct scene_output {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_output
-
-#define ONLY_relax 1
-struct scene_relax {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_relax
-
-#define ONLY_fluid 1
-struct scene_fluid {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_fluid
-
-#define ONLY_wall 1
-struct scene_wall {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_wall
-
-#define ONLY_solid 1
-struct scene_solid {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_solid
-
-#define ONLY_contact 1
-struct scene_contact {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_contact
-
-#define ONLY_load 1
-struct scene_load {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_load
-
-#define ONLY_motion 1
-struct scene_motion {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_motion
-
-#define ONLY_inflow 1
-struct scene_inflow {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_inflow
-
-#define ONLY_outflow 1
-struct scene_outflow {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_outflow
-
-#define ONLY_probe 1
-struct scene_probe {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_probe
-
-#define ONLY_reference 1
-struct scene_reference {
-    struct scene_section_common common;
-#include "case/params.def"
-};
-#undef ONLY_reference
-
-#undef PARAMS_OF
-#undef PARAMS_KEEP
-#undef SECTION
-#undef REAL
-#undef INTEGER
-#undef CHOICE
-#undef TEXT
-#undef VECTOR
-#undef TIME_VECTOR
-#undef FIELD_EXPR
-#undef TIME_EXPR
-#undef FLOW_EXPR
-#undef SHAPES
-#undef NUMBERS
 
 /* Values of the CHOICE keys, in the order of their names in case/params.def. */
 enum integrator_choice { INTEGRATOR_SYMPLECTIC, INTEGRATOR_VERLET, INTEGRATOR_LEAPFROG };
@@ -314,6 +198,7 @@ struct scene {
     struct scene_##section *section; \
     int n_##section;
 #define SECTION(section, named) SCENE_MEMBER_##named(section)
+#define END
 #include "case/params.def"
     struct scene_contact contact_default; /* for bodies without a section of their own */
     int n_constants;
@@ -356,7 +241,9 @@ SPHFSI_INLINE bool scene_periodic(const struct scene *s, int axis)
 /* An [inflow] or [outflow]: the buffer lies behind the line, its rows a spacing apart. */
 struct scene_open {
     enum { OPEN_VELOCITY, OPEN_PRESSURE } kind;
+    const char *word; /* inflow or outflow */
     const struct scene_section_common *common;
+    int section, index; /* enum section_id of case/params.h; its number among those of its kind */
     bool inflow;
     double from[2], along[2]; /* one end; unit vector to the other end */
     double inward[2];         /* unit vector into the fluid */

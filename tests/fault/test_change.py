@@ -27,8 +27,10 @@ def run(*arguments):
 def choices():
     """The words that a key of a choice may have."""
     table = Path("src/case/params.def").read_text()
-    return {(section, key): names.split("|") for section, key, names in
-            re.findall(r'^CHOICE\((\w+), *(\w+), *\w+, *"([^"]*)"', table, re.M)}
+    rows = re.findall(r'^CHOICE\((\w+), *(\w+), *\w+, *"([^"]*)"', table, re.M)
+    words = {(section, key): names.split("|") for section, key, names in rows}
+    words |= {(section, "side"): words["section", "side"] for section in ("inflow", "outflow")}
+    return words
 
 
 def changed(section, key, value, words):
