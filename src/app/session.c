@@ -237,8 +237,7 @@ static void name_case(const struct scene *s, struct diag *d)
 {
     char place[LOCATION_TEXT], text[sizeof d->text];
     if (!d || d->code != ERR_INPUT) return;
-    scene_location(s, 1, place);
-    *strrchr(place, ':') = '\0';
+    scene_location(s, LINE_NONE, place);
     if (strncmp(d->text, place, strlen(place)) == 0 || strncmp(d->text, "--set", 5) == 0) return;
     memcpy(text, d->text, sizeof text);
     snprintf(d->text, sizeof d->text, "%s: %.*s", place, (int)(sizeof text - sizeof place - 8),

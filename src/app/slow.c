@@ -10,15 +10,11 @@
 
 enum { PLACE_TEXT = LOCATION_TEXT + 16 };
 
-/* "FILE:LINE: " of a key, or of its section; where neither is given, "FILE: ". */
 static void place_of(const struct scene *s, enum section_id section, int index, const char *key,
                      char place[PLACE_TEXT])
 {
     char at[LOCATION_TEXT];
-    const int line = scene_line(s, section, index, key);
-    const bool none = line == 0 && !scene_given(s, section, index, key);
-    scene_location(s, none ? 1 : line, at);
-    if (none) *strrchr(at, ':') = '\0';
+    scene_location(s, scene_line(s, section, index, key), at);
     snprintf(place, PLACE_TEXT, "%s: ", at);
 }
 

@@ -54,7 +54,8 @@ int scene_line(const struct scene *s, enum section_id section, int index, const 
 {
     const struct scene_given *const given = scene_given(s, section, index, key);
     const struct scene_section_common *const common = section_at(s, section, index);
-    return given ? given->line : common->line;
+    if (given) return given->line;
+    return common->line > 0 ? common->line : LINE_NONE;
 }
 
 void *section_at(const struct scene *s, enum section_id id, int index)

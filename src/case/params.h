@@ -25,7 +25,7 @@ extern const struct section_info section_table[SECTION_COUNT];
 /* Line of a key given in a section, or NULL. */
 const struct scene_given *scene_given(const struct scene *s, enum section_id section, int index,
                                       const char *key);
-/* The line of a key; without it, that of its section. 0: by --set. */
+/* The line of a key; without it, that of its section; LINE_NONE: neither is given. 0: by --set. */
 int scene_line(const struct scene *s, enum section_id section, int index, const char *key);
 
 enum param_type {

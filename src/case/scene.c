@@ -3,6 +3,7 @@
 #include "case/scene.h"
 #include "case/params.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -153,8 +154,31 @@ void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT])
     }
     const size_t length = strlen(s->path), most = 270;
     const bool cut = length > most;
-    snprintf(place, LOCATION_TEXT, "%s%.270s:%d", cut ? "..." : "",
-             s->path + (cut ? length - most : 0), line);
+    const int n = snprintf(place, LOCATION_TEXT, "%s%.270s", cut ? "..." : "",
+                           s->path + (cut ? length - most : 0));
+    if (line != LINE_NONE) snprintf(place + n, LOCATION_TEXT - (size_t)n, ":%d", line);
+}
+
+void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
+{
+    char text[sizeof d->text], place[LOCATION_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    scene_location(scene, line, place);
+    diag_warn(d, "%s: %s", place, text);
+}
+
+enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
+{
+    char text[sizeof d->text], place[LOCATION_TEXT];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    scene_location(scene, line, place);
+    return diag_add(d, ERR_INPUT, "%s: %s", place, text);
 }
 
 bool scene_file(const struct scene *s, const char *name, char *path, size_t size)

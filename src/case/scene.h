@@ -341,9 +341,15 @@ bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 /* The two names of `a, b`; false: the text has another form. */
 bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 
-/* FILE:LINE, with a very long path shortened; line 0: --set. */
-enum { LOCATION_TEXT = 300 };
+/* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. */
+enum { LOCATION_TEXT = 300, LINE_NONE = -1 };
 void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
+/* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. For that of a key see
+ * scene_line in case/params.h. */
+void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
+    SPHFSI_PRINTF(4, 5);
+enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
+    SPHFSI_PRINTF(4, 5);
 /* A file name of the case file, relative to the working directory; false: too long. */
 bool scene_file(const struct scene *s, const char *name, char *path, size_t size);
 

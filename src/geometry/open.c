@@ -11,8 +11,8 @@
 /* Largest distance of a fluid particle from its expected position, in spacings. */
 #define NEXT_TO 1.5
 
-static enum err fail_at(const struct sampler *g, const struct scene_open *o, const char *what,
-                        const double x[2], const char *mend)
+static enum err refuse(const struct sampler *g, const struct scene_open *o, const char *what,
+                       const double x[2], const char *mend)
 {
     char place[LOCATION_TEXT];
     scene_location(g->scene, o->common->line, place);
@@ -94,8 +94,8 @@ static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
         scene_open_place(o, x, &in, &along);
         if (fluid->points->open[i] == 0 && in < -1e-6 * dp && in > -o->depth && along > 0 &&
             along < o->length)
-            return fail_at(g, o, "has fluid behind its line", x,
-                           "end the fluid's shape at the line, or change `side`");
+            return refuse(g, o, "has fluid behind its line", x,
+                          "end the fluid's shape at the line, or change `side`");
     }
     int wet = 0, places = 0;
     double x[2] = {o->from[0], o->from[1]};
@@ -105,9 +105,9 @@ static enum err check_fluid(const struct sampler *g, const struct scene_open *o,
         wet += nearest(fluid, x, NEXT_TO * dp) >= 0;
     }
     if (places > 0 && 2 * wet >= places) return ERR_OK;
-    return fail_at(g, o, "has no fluid along its line", x,
-                   "the shape of the fluid must begin at the line; change `side` if the fluid lies "
-                   "on the other side");
+    return refuse(g, o, "has no fluid along its line", x,
+                  "the shape of the fluid must begin at the line; change `side` if the fluid lies "
+                  "on the other side");
 }
 
 /* The particle at the position of a buffer particle, if any. */
@@ -117,12 +117,12 @@ static enum err check_place(const struct sampler *g, const struct scene_open *o,
     const double near = SAME_PLACE * g->scene->top.dp;
     const int64_t fluid = nearest(&kinds[KIND_FLUID], x, near);
     if (nearest(&kinds[KIND_WALL], x, near) >= 0)
-        return fail_at(g, o, "lies in a wall", x,
-                       "shorten the line, or cut an opening in the wall with `minus`");
+        return refuse(g, o, "lies in a wall", x,
+                      "shorten the line, or cut an opening in the wall with `minus`");
     if (nearest(&kinds[KIND_SOLID], x, near) >= 0)
-        return fail_at(g, o, "lies in a solid", x, "move the line");
+        return refuse(g, o, "lies in a solid", x, "move the line");
     if (fluid >= 0 && kinds[KIND_FLUID].points->open[fluid])
-        return fail_at(g, o, "overlaps another open boundary", x, "move one of the two");
+        return refuse(g, o, "overlaps another open boundary", x, "move one of the two");
     return ERR_OK;
 }
 
@@ -147,7 +147,7 @@ static enum err append(struct sampler *g, int number, const struct scene_open *o
             p->open[p->n] = number + 1;
             p->n++;
         }
-    return p->n > before ? ERR_OK : fail_at(g, o, "is above its level", o->from, "raise `level`");
+    return p->n > before ? ERR_OK : refuse(g, o, "is above its level", o->from, "raise `level`");
 }
 
 /* Enlarges a field of the fluid's points. */
@@ -170,8 +170,8 @@ enum err geometry_open(struct sampler *g)
         const struct scene_open o = scene_open_at(s, k);
         const struct lattice l = lattice_of(s, &o);
         if ((double)l.across * l.rows > 1e8)
-            return fail_at(g, &o, "has a buffer for more than 1e8 particles", o.from,
-                           "use a larger dp or a shorter line");
+            return refuse(g, &o, "has a buffer for more than 1e8 particles", o.from,
+                          "use a larger dp or a shorter line");
         more += (int64_t)l.across * l.rows;
     }
     GROW(x);
