@@ -3,41 +3,17 @@
 #   make                 ./sphfsi, build/release/libsphfsi.a and libsphfsi.so
 #   make gate            run cases/gate.cfg and draw it    (DP='0.5 mm' OUT=DIR ARGS='--until 0.1')
 #   make test            build and run the tests           (FILTER=cells for some of them)
-#   make test-sanitize   the quick tests under ASan and UBSan
-#   make test-thread     the same under clang's ThreadSanitizer, with an OpenMP runtime that it knows
-#   make memcheck        every shipped case, coarse and short, under valgrind
-#   make analyze         cppcheck, clang-tidy and gcc -fanalyzer: no finding without its reason
+#   make test-sanitize | test-thread | memcheck | analyze    tests and short runs under checkers
 #   make test-neon       tests of the numerics for AArch64, cross-compiled and run under qemu
-#   make faults          the long forms of the fault tests: 50 kills, many sizes of a full disk
-#   make absence         an effect that is off costs nothing: each compiled out in turn: docs/absence.md
-#   make fuzz            fuzz the readers with clang's libFuzzer (ARGS='SECONDS [TARGET...]')
-#   make mutants         put small faults into the sources and count those that tests find: docs/mutants.md
-#   make random-cases    1000 random scenes in every build, killed, restarted and forked: the same bits
-#   make reliability     run the rehearsals and write docs/reliability.md
-#   make stability       run the hard cases in their long form and write docs/stability.md; goes on where
-#                        it was interrupted
-#   make verify-fluid    rest, waves, impact, openings with both schemes: docs/fluid_verification.md
-#   make stability-map   1440 plates over density, thickness and stiffness: docs/stability_map.json, picture
-#   make verify-manufactured  orders of convergence against manufactured solutions: docs/manufactured.md
-#   make verify-contact  restitution, pressure, friction, stacks, folds, impacts: docs/contact_verification.md
-#   make verify-open     a vortex, a weir, a reversal with open boundaries: docs/open_verification.md
-#   make gallery         run the small cases, draw the pictures of the README's table
-#   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
-#   make performance     the same, longest steps and the gate: docs/performance.md
-#   make web             the program as a page for browsers: build/web/index.html
-#   make test-web        drive that page in a headless Chromium, compare its hashes with the native ones
-#   make examples        build examples/*.c, programs that use the library
-#   make accuracy        run what is missing of the accuracy study, write docs/accuracy.md (ARGS=--list)
-#   make forecast        what --explain foresees against what the shipped cases take: docs/accuracy.md
-#   make validate        run the paper's cases and the verification cases, write docs/validation.md: hours;
-#                        QUICK=1 for the coarse selection, ten minutes; goes on where it was interrupted;
-#                        KEEP=1 keeps the results of the longer runs in docs/validation/, where they count as
-#                        run from then on (ARGS=--again)
-#   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
-#   make docs            write the reference of keys in docs/cases.md
 #   make check | format  style, layers and exported symbols | clang-format in place
+#   make bench           what a step costs by phase: bench/<processor>.csv, and the change against it
+#   make debug | sanitize | serial    other builds, as build/<name>/sphfsi
+#   make web | test-web  the program as a page for browsers | drive it in a headless Chromium
+#   make examples        build examples/*.c, programs that use the library
+#   make docs            write the reference of keys in docs/cases.md
 #   make install         to PREFIX (/usr/local), below DESTDIR
 #   make info | dist | clean | distclean
+#   make help-reports    the goals that write the reports in docs/: validation, accuracy, stability, ...
 #
 # Variables: CC, CFLAGS, LDFLAGS, ARCH (native, x86-64-v3, x86-64-v4, armv8-a, ...), HDF5_PREFIX,
 # UNITY_DIR, PYTHON, WERROR=1, V=1 (show commands), SETUP=no (install nothing that is missing).
@@ -52,12 +28,13 @@ Q       := $(if $(V),,@)
 comma   := ,
 
 # Nothing is built by these goals, so nothing is looked for or installed either.
-IDLE  := help info format dist clean distclean
+IDLE  := help help-reports info format dist clean distclean
 GOALS := $(or $(MAKECMDGOALS),all)
 ifneq ($(filter-out $(IDLE),$(GOALS)),)
   NEEDS := $(strip build $(if $(filter test% validate reliability,$(GOALS)),test) \
              $(if $(filter web,$(GOALS)),plot web) \
-             $(if $(filter gate accuracy forecast validate verify-% bench performance,$(GOALS)),plot))
+             $(if $(filter gate gallery accuracy bench energy-account forecast glance performance \
+               stability-% turek-hron validate verify-%,$(GOALS)),plot))
   HINTS := CC='$(CC)' HDF5_PREFIX='$(HDF5_PREFIX)' UNITY_DIR='$(UNITY_DIR)' PYTHON='$(PYTHON)' \
            SETUP='$(SETUP)'
   ifneq ($(shell $(HINTS) tools/setup.sh $(NEEDS) >&2 && echo ready),ready)
@@ -67,7 +44,7 @@ endif
 -include build/hdf5.mk build/unity.mk build/zig.mk
 PROJECT_PYTHON := $(or $(shell cat build/python 2>/dev/null),python3)
 
-# --- flags (CMakeLists.txt lists the same ones; tools/check_style.py compares them) ---
+# --- flags (CMakeLists.txt lists the same ones; tools/dev/check_style.py compares them) ---
 # No contraction, no reassociation: the same bits from every compiler and instruction set.
 COMMON := -std=gnu11 -pthread -fPIC -ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden
 WARN   := -Wall -Wextra -Wshadow -Wconversion -Wdouble-promotion -Wno-psabi
@@ -120,15 +97,12 @@ EMBEDDED := $(sort $(wildcard cases/templates/*.cfg data/*))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 # Tests of one folder of src/ each, and of the tools.
-UNIT_DIRS := base particles case geometry fluid solid time output app tools
+UNIT_DIRS := $(patsubst src/%/,%,$(wildcard src/*/)) tools
 TESTS   := $(patsubst %.c,$(B)/%,$(foreach t,$(wildcard tests/*/test_*.c),\
              $(if $(FILTER),$(if $(findstring $(FILTER),$(t)),$(t)),$(t))))
 
-.PHONY: gallery absence faults fuzz reliability validate docs stability test-neon performance examples
-.PHONY: stability-map
-.PHONY: test-thread memcheck analyze
-.PHONY: all help debug sanitize serial test test-sanitize bench gate check format info install \
-        dist clean distclean FORCE
+.PHONY: all help debug sanitize serial test test-sanitize test-thread test-neon memcheck analyze gate \
+        examples check docs format info install dist clean distclean FORCE
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -194,7 +168,7 @@ $(TESTS): %: %.o $(SUPPORT) $(B)/unity.o $(CORE)
 	$(Q)$(LINK) $(WRAP)
 
 # A test that puts itself between the program and a library names the functions in lines of its own
-# (CMakeLists.txt and tools/mutants.py, too).
+# (CMakeLists.txt and tools/dev/mutants.py, too).
 $(TESTS): private WRAP = $(addprefix -Wl$(comma)--wrap=,$(shell sed -n 's/^ \* --wrap: //p' \
   $(@:$(B)/%=%).c | tr -d '*/'))
 
@@ -216,65 +190,18 @@ test-thread: export TSAN_OPTIONS := ignore_noninstrumented_modules=1 exitcode=66
 test-thread: export OMP_NUM_THREADS := 2
 test-thread:
 	@$(MAKE) --no-print-directory CONFIG=thread CC=clang all
-	@tools/short_runs.sh build/thread/sphfsi
+	@tools/dev/short_runs.sh build/thread/sphfsi
 	@TEST_DIRS='$(UNIT_DIRS)' TEST_KINDS=c $(MAKE) --no-print-directory CONFIG=thread CC=clang test
 
 # valgrind knows no AVX-512.
 memcheck: export OMP_NUM_THREADS := 1
 memcheck:
 	@$(MAKE) --no-print-directory CONFIG=memcheck ARCH=x86-64-v3 all
-	@tools/short_runs.sh build/memcheck/sphfsi valgrind --quiet --error-exitcode=99 \
+	@tools/dev/short_runs.sh build/memcheck/sphfsi valgrind --quiet --error-exitcode=99 \
 	  --leak-check=full --errors-for-leak-kinds=definite --show-leak-kinds=definite
 
 analyze:
-	@tools/analyze.sh $(ARGS)
-
-faults: $(PROGRAM)
-	@set -e; export SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)'; \
-	 export KILLS=50 FULL_STEPS=40 INJECT_STRIDE=1; \
-	 for t in fault/test_kill fault/test_full fault/test_inject fault/test_fork \
-	   agree/test_restart_cases; do bash tests/$$t.sh; done
-
-absence:
-	@SETUP=no $(PROJECT_PYTHON) tests/agree/test_absence.py --each
-
-fuzz:
-	@tools/fuzz.sh $(ARGS)
-
-.PHONY: mutants
-mutants:
-	@$(PROJECT_PYTHON) tools/mutants.py $(ARGS)
-
-.PHONY: random-cases
-random-cases: $(PROGRAM)
-	@$(PROJECT_PYTHON) tools/random_cases.py --all-builds $(ARGS)
-
-verify-fluid: $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_fluid.py $(ARGS)
-
-verify-contact: $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_contact.py $(ARGS)
-
-verify-manufactured: $(PROGRAM) $(SHARED)
-	$(Q)$(PROJECT_PYTHON) tools/manufactured.py $(ARGS)
-
-verify-open: $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/verify_open.py $(ARGS)
-
-stability-map: $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/stability_map.py $(ARGS)
-
-stability: $(PROGRAM)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/stability.py --report --keep $(ARGS)
-
-reliability: $(PROGRAM) $(TESTS)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' $(PROJECT_PYTHON) tools/reliability.py $(ARGS)
-
-bench: $(PROGRAM) $(BENCHES)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) tools/performance.py --bench $(ARGS)
-
-performance: $(PROGRAM) $(BENCHES)
-	$(Q)SPHFSI='$(abspath $(PROGRAM))' BUILD='$(B)' $(PROJECT_PYTHON) tools/performance.py $(ARGS)
+	@tools/dev/analyze.sh $(ARGS)
 
 # What a program outside of the source tree would do, with the library where it was built.
 EXAMPLES := $(patsubst examples/%.c,$(B)/example_%,$(wildcard examples/*.c))
@@ -296,55 +223,8 @@ gate: $(PROGRAM)
 	  --window -0.01 0.45 -0.01 0.17
 	@echo "pictures:"; ls $(OUT)/*.png | sed 's/^/  /'
 
-# CASE:TIME:FIELD
-GALLERY := channel:1:velocity vortices:0.4:velocity rolling_tank:1.2:pressure \
-           beam_on_beam:1.2:pressure two_posts:0.16:pressure \
-           rotating_patch:0.6:pressure accelerated_tank:1:pressure \
-           ringing_bar:0.01:pressure elastic_valve:0.75:velocity
-gallery: $(PROGRAM)
-	@set -e; for g in $(GALLERY); do \
-	   set -- $$(echo $$g | tr : ' '); [ -e cases/$$1.cfg ] || continue; \
-	   [ -e runs/$$1/summary.json ] || ./$(PROGRAM) cases/$$1.cfg --quiet; \
-	   $(PROJECT_PYTHON) tools/plot_fields.py runs/$$1 --time $$2 --field $$3 --out docs/img/$$1.png; done
-
-# What steps a simulation, without the files of runs: no HDF5, one thread. `fused` needs relaxed SIMD; `exact`
-# computes multiply-add in software. Both give the native program's bits.
-WEB_SRC := web/exports.c $(filter-out src/base/run_dir.c,$(wildcard $(patsubst %,src/%/*.c,base \
-             particles case geometry fluid solid time))) src/output/probes.c src/output/point_data.c \
-             $(patsubst %,src/app/%.c,api call session due)
-WEB_FLAGS := -target wasm32-wasi -msimd128 -D_WASI_EMULATED_SIGNAL $(filter-out -pthread -fPIC,$(COMMON)) \
-             $(OPT-release) -fopenmp-simd -Wno-unknown-pragmas -Wno-pass-failed -Iinclude -Isrc
-build/web/fused.wasm: RELAXED := -mrelaxed-simd
-build/web/%.wasm: $(WEB_SRC) $(wildcard src/*/*.h src/*/*.def include/*.h) Makefile $(B)/version
-	@mkdir -p $(@D); echo '  WASM $@'
-	$(Q)ZIG_LOCAL_CACHE_DIR=build/web/cache ZIG_GLOBAL_CACHE_DIR=build/web/cache $(ZIG) cc $(WEB_FLAGS) \
-	  $(RELAXED) -DSPHFSI_VERSION='"$(FULL_VERSION)"' -mexec-model=reactor -Wl,--gc-sections,--strip-all \
-	  -Wl,-z,stack-size=1048576 -o $@ $(WEB_SRC)
-
-.PHONY: web test-web
-web: $(PROGRAM) build/web/fused.wasm build/web/exact.wasm
-	$(Q)$(PROJECT_PYTHON) web/build.py --program '$(PROGRAM)' --fused build/web/fused.wasm \
-	  --exact build/web/exact.wasm --out build/web/index.html $(ARGS)
-
-# Without a compiler for WebAssembly there is no page, and the test is skipped.
-test-web: $(PROGRAM)
-	@$(MAKE) --no-print-directory web || echo "there is no page: the test will be skipped"
-	@WEB=1 SPHFSI='$(abspath $(PROGRAM))' PYTHON='$(PROJECT_PYTHON)' FILTER=web/ tests/run.sh $(B)
-
-.PHONY: accuracy forecast verify-contact verify-fluid verify-manufactured verify-open
-accuracy: $(PROGRAM)
-	$(Q)$(PROJECT_PYTHON) tools/accuracy_cost.py $(ARGS)
-	@$(MAKE) --no-print-directory all
-
-forecast: $(PROGRAM)
-	$(Q)$(PROJECT_PYTHON) tools/forecast.py $(ARGS)
-
-validate: $(PROGRAM) $(B)/tests/converge/test_solid_patch
-	$(Q)BUILD='$(B)' OMP_WAIT_POLICY=passive $(PROJECT_PYTHON) tools/validate.py --program '$(PROGRAM)' \
-	  $(if $(QUICK),--quick) $(if $(KEEP),--keep) $(ARGS)
-
 check: $(PROGRAM) $(LIB) $(SHARED)
-	@$(PROJECT_PYTHON) tools/check_style.py --library $(LIB) --library $(SHARED)
+	@$(PROJECT_PYTHON) tools/dev/check_style.py --library $(LIB) --library $(SHARED)
 	@$(PROJECT_PYTHON) tools/cases_doc.py ./$(PROGRAM) --check
 
 docs: $(PROGRAM)
@@ -383,4 +263,5 @@ clean:
 distclean: clean
 	rm -rf build .venv
 
+include tools/report/report.mk web/web.mk
 -include $(wildcard $(B)/*/*.d $(B)/*/*/*.d)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Replays the inputs that the fuzzers have kept (tests/fuzz/corpus/<target>/), each of which once
- * reached code that no other did, and what once failed. In any build, under any sanitizer.
+ * Replays the inputs that the fuzzers have kept (corpus/<target>/ in tests/fuzz/corpus.tar.gz), each of
+ * which once reached code that no other did, and what once failed. In any build, under any sanitizer.
  * With an argument: writes fresh seeds of the checkpoint fuzzer to that folder. */
 #include "base/files.h"
 #include "fuzz.h"
@@ -30,8 +30,8 @@ static void replay_file(const char *path, int (*target)(const uint8_t *, size_t)
 
 static void replay(const char *name, int (*target)(const uint8_t *, size_t))
 {
-    char folder[256], path[PATH_BYTES];
-    snprintf(folder, sizeof folder, "tests/fuzz/corpus/%s", name);
+    char folder[PATH_BYTES], path[PATH_BYTES];
+    snprintf(folder, sizeof folder, "%s/%s", tiny_path("corpus"), name);
     DIR *dir = opendir(folder);
     TEST_ASSERT_NOT_NULL_MESSAGE(dir, folder);
     for (const struct dirent *entry; (entry = readdir(dir)) != NULL;) {
@@ -41,6 +41,13 @@ static void replay(const char *name, int (*target)(const uint8_t *, size_t))
     }
     closedir(dir);
     TEST_ASSERT_TRUE_MESSAGE(replayed > 3, folder);
+}
+
+static void unpack(void)
+{
+    char command[PATH_BYTES];
+    snprintf(command, sizeof command, "tar -xzf tests/fuzz/corpus.tar.gz -C '%s'", tiny_path("."));
+    TEST_ASSERT_EQUAL_INT_MESSAGE(0, system(command), command);
 }
 
 static void cases(void) { replay("case", fuzz_case); }
@@ -78,6 +85,7 @@ int main(int argc, char **argv)
 {
     if (argc > 1) return write_seeds(argv[1]);
     UNITY_BEGIN();
+    RUN_TEST(unpack);
     RUN_TEST(cases);
     RUN_TEST(expressions);
     RUN_TEST(motion_tables);

@@ -14,7 +14,7 @@ from scripts import PROGRAM, ROOT, packages
 
 with packages():
     import numpy as np
-    from plot_ledger import read_ledger
+    from sphfsi.draw_ledger import read_ledger
     from runfiles import Run
 
 LIMITS = (("verlet", "3 ms", 1.7e-5), ("symplectic", "3 ms", 1.9e-5), ("leapfrog", "30 ms", 4.2e-5))

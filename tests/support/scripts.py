@@ -14,7 +14,7 @@ PACKAGES = ("cffi", "h5py", "matplotlib", "numpy", "PIL", "tomllib")
 PROGRAM = Path(os.environ.get("SPHFSI", ROOT / "sphfsi")).resolve()
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(TOOLS))
+sys.path[:0] = map(str, (TOOLS, TOOLS / "report", TOOLS / "dev"))
 if os.environ.get("SPHFSI_PACKAGE") != "installed":
     sys.path.insert(0, str(PYTHON))
 

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import PROGRAM, packages
 with packages():
     import h5py  # noqa: F401  the snapshots need it
-    import validate
+    import validation
     import validation_kept
     import validation_report
     import validation_runs
@@ -280,7 +280,7 @@ def test_archive():
 def test_choice():
     """--only: beginnings, or one run with `=`; without it the longest runs come first."""
     def names(only, quick=False):
-        return [spec.name for spec in validate.chosen(only, quick)]
+        return [spec.name for spec in validation.chosen(only, quick)]
     assert names("=gate") == ["gate"] and len(names("gate")) > 10
     assert names("=plate,gate-1mm-k,=plate") == ["plate", "gate-1mm-kappa10"]
     for only, quick in (("=gat", False), ("nothing", False), ("=gate", True)):

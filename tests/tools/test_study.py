@@ -98,7 +98,7 @@ def prepare(folder):
 
 def study(folder, environment, *more):
     done = subprocess.run(
-        [sys.executable, ROOT / "tools" / "accuracy_cost.py", "--study", folder / "study.toml",
+        [sys.executable, ROOT / "tools" / "report" / "accuracy.py", "--study", folder / "study.toml",
          "--runs", folder / "runs", "--out", folder, "--data", folder / "results.json", *more],
         capture_output=True, text=True, check=False, env=environment)
     return done.returncode, done.stdout + done.stderr
@@ -154,7 +154,7 @@ def resumed(folder, environment, points):
     status, text = study(folder, environment, "--cached")
     check(status == 0 and points_in(folder)["plate/2/base"]["errors"] == points["plate/2/base"]["errors"],
           f"without runs the collected results are lost: {text}")
-    status, text = study(folder, environment, "--point", "plate/9/base")
+    status, text = study(folder, environment, "--only", "plate/9/base")
     check(status == 1 and "no point plate/9/base" in text, text)
     (folder / "study.toml").write_text("[case")
     status, text = study(folder, environment)
@@ -176,7 +176,7 @@ def older_program(folder, environment):
 
 def presets():
     """Points that stand for a preset are the case that the preset makes; `standard` is the default."""
-    with open(ROOT / "tools" / "study" / "study.toml", "rb") as file:
+    with open(ROOT / "tools" / "report" / "accuracy.toml", "rb") as file:
         definition = tomllib.load(file)
     sets = {p["name"]: p["set"] for p in points_of(definition)}
 

@@ -136,7 +136,7 @@ def test_build(folder):
     ask = ("import validation_checks as v, validation_report as r; t = r.Report('', {}, None); v.patch(t); "
            "print(t.targets[0][2])")
     done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True,
-                          cwd=ROOT / "tools", env={**os.environ, "BUILD": str(folder)})
+                          cwd=ROOT / "tools" / "report", env={**os.environ, "BUILD": str(folder)})
     assert done.stdout.strip() == "2.0e-15", done.stdout
     rules = subprocess.run(["make", "-C", str(ROOT), "-n", "validate", "B=build/other", "SETUP=no"],
                            capture_output=True, text=True, check=True,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The references of tools/verify_contact_reference.py against what is known, and figures of made-up runs.
+"""The references of tools/report/verify_contact_reference.py against what is known, and figures of made-up runs.
 Exit 77: a package is missing."""
 
 import math
@@ -72,7 +72,7 @@ def test_the_order_of_an_error():
 
 def test_the_answer_counts_every_resolution():
     scene = {"name": "s", "levels": (1, 2)}
-    lines = tool.answer([(scene, "figure", [3.0, 1.0], 2), (scene, "not judged", [9.0, 9.0], None)])
+    lines = tool.answer([(scene, "figure", [3.0, 1.0], 2), (scene, "not judged", [9.0, 9.0], None)]).splitlines()
     assert lines[0] == "1 of 2 limits are kept." and "* s, figure, at 1: 3, limit 2" in lines, lines
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The figures of tools/verify_fluid_measures.py, of made-up runs with known answers. Exit 77: a package is
+"""The figures of tools/report/verify_fluid_measures.py, of made-up runs with known answers. Exit 77: a package is
 missing."""
 
 import math

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""What all reports share: the program, runs of it in folders that are read at once, kept results as JSON,
+and tables in Markdown."""
+
+import argparse
+import csv
+import json
+import math
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import runfiles  # noqa: E402  finds the package of the clone
+from runfiles import *  # noqa: E402,F403
+from runfiles import BadFile, np  # noqa: E402
+
+PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
+
+
+def settings(sets):
+    return [word for text in sets for word in ("--set", text)]
+
+
+def last_line(done):
+    """The last line of output of a failed program."""
+    return (done.stderr.strip().splitlines() or [f"no message, exit status {done.returncode}"])[-1]
+
+
+def ask(*words, program=PROGRAM):
+    """What the program answers to options that run nothing."""
+    try:
+        done = subprocess.run([str(program), *map(str, words)], capture_output=True, text=True,
+                              check=False)
+    except OSError:
+        raise BadFile(f"cannot run {program}; build it with make") from None
+    if done.returncode:
+        raise BadFile(last_line(done))
+    return done.stdout
+
+
+def program_version(program=PROGRAM):
+    return ask("--version", program=program).split()[-1]
+
+
+def machine():
+    info = Path("/proc/cpuinfo")
+    for line in info.read_text().splitlines() if info.exists() else []:
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
+def cpu_seconds():
+    """User time of the runs so far: other load on the machine changes it little."""
+    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+
+
+class CaseRun:
+    """A run of a case: its tables and summary, the seconds of processor time that it took, and whether a
+    guard stopped it. `case` is a path or the text of a case."""
+
+    def __init__(self, case, sets, folder, *more, threads=1):
+        self.folder = Path(folder)
+        if "\n" in str(case):
+            text, case = case, self.folder.with_suffix(".cfg")
+            case.write_text(text, encoding="utf-8")
+        command = [str(PROGRAM), str(case), "--quiet", "--out", str(folder), *settings(sets), *more]
+        before = cpu_seconds()
+        done = subprocess.run([*command, "--threads", str(threads)] if threads else command,
+                              capture_output=True, text=True, check=False)
+        self.seconds, self.stopped = cpu_seconds() - before, done.returncode == 2
+        if done.returncode not in (0, 2):
+            raise BadFile(f"{' '.join(command)}: {done.stderr.strip()}")
+        self.summary = json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+        top = self.summary["parameters"]
+        self.dp, self.end_time = top["dp"], top["end_time"]
+
+    def table(self, name="probes.csv"):
+        with open(self.folder / name, encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        return {column: np.array([float(row[k] or "nan") for row in rows[1:]])
+                for k, column in enumerate(rows[0])}
+
+
+def in_scratch(measure, case, sets, *more, **options):
+    """measure(run) of a run whose folder is then removed."""
+    with tempfile.TemporaryDirectory() as folder:
+        return measure(CaseRun(case, sets, f"{folder}/run", *more, **options))
+
+
+def summary_of(case, sets, *more, **options):
+    return in_scratch(lambda run: run.summary, case, sets, *more, **options)
+
+
+def case_of(scene, folder):
+    """The case of a scene: of cases/verify, of cases, or a template, which is written to the folder."""
+    for path in (ROOT / "cases" / "verify" / f"{scene}.cfg", ROOT / "cases" / f"{scene}.cfg"):
+        if path.is_file():
+            return path
+    path = Path(folder) / f"{scene}.cfg"
+    path.write_text(ask("--new", scene), encoding="utf-8")
+    return path
+
+
+# --- kept results ---
+def load(path, default=None):
+    return json.loads(path.read_text(encoding="utf-8")) if path.is_file() else default
+
+
+def store(path, data):
+    path.write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+
+
+def store_rows(path, head, name, rows):
+    """A row a line, so that a change of one is a change of a line."""
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    path.write_text(f'{json.dumps(head)[:-1]}, "{name}": [\n{lines}\n]}}\n', encoding="utf-8")
+
+
+# --- tables ---
+def table(head, rows):
+    rows = [[str(cell) for cell in row] for row in rows]
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def number(value):
+    if math.isnan(value):
+        return "stopped"
+    return str(value) if isinstance(value, int) else f"{value:.3g}"
+
+
+def kept(value, limit):
+    return limit is None or abs(value) <= limit
+
+
+def cell(value, limit):
+    """A number of a table, in brackets where it misses its limit."""
+    return number(value) if kept(value, limit) else f"({number(value)})"
+
+
+def write(path, template, **values):
+    """Fills the text of a report, which lies beside its tool."""
+    text = (Path(__file__).parent / template).read_text(encoding="utf-8").format(**values)
+    path.write_text(text.rstrip() + "\n", encoding="utf-8")
+    print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")
+
+
+# --- reports of many small scenes ---
+def judged(rows):
+    """The first lines of a report: how many limits are kept, and which are missed. `rows` are (words, value,
+    limit)."""
+    rows = [row for row in rows if row[2] is not None]
+    missed = [f"* {words}: {number(value)}, limit {number(limit)}" for words, value, limit in rows
+              if not kept(value, limit)]
+    text = f"{len(rows) - len(missed)} of {len(rows)} limits are kept."
+    return "\n".join([text, "", "Missed:", "", *missed] if missed else [text])
+
+
+def run_scenes(doc, names, run_scene, path, report):
+    """The command line of such a report. run_scene(name) gives the figures of a scene for JSON; those of all
+    scenes are kept beside the report at `path`, so that --only runs some anew. report(known) gives the values
+    of its text, which lies beside the tool under the name of `path`."""
+    parser = argparse.ArgumentParser(description=doc,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--list", action="store_true", help="say which scenes there are")
+    parser.add_argument("--only", default="", help="part of a scene's name")
+    args = parser.parse_args()
+    if args.list:
+        print("\n".join(names))
+        return
+    results = path.with_suffix(".json")
+    for name in (name for name in names if args.only in name):
+        found = {"version": program_version(), **run_scene(name)}
+        store(results, {**load(results, {}), name: found})
+    known = load(results, {})
+    known = {name: known[name] for name in names if name in known}
+    versions = ", ".join(sorted({entry["version"] for entry in known.values()}))
+    write(path, path.name, versions=versions, **report(known))

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Holds what --explain foresees against what runs take: steps and wall time of the shipped cases, each
+cut short by --until so that it takes about as long as --seconds says.
+
+Writes docs/forecast.json, one run a line, and the accuracy report, which shows it. The costs are
+calibrated anew, not taken from the user's cache. A case that fails is shown as that. Examples:
+
+  tools/report/forecast.py                     the cases in cases/, one thread and all
+  tools/report/forecast.py --seconds 60 gate   longer, and only cases whose name begins like this
+"""
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import study_report
+from common import BadFile, run_tool
+from study_points import PROGRAM, ROOT
+from study_results import machine
+from study_runs import timed
+from study_tables import forecast_cells
+
+UNITS = {"s": 1, "min": 60, "h": 3600}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="*", help="beginnings of names; all without")
+    parser.add_argument("--seconds", type=float, default=6, help="aimed at for a run, as foreseen")
+    parser.add_argument("--threads", type=int, nargs="+", help="1 and all")
+    parser.add_argument("--data", type=Path, default=ROOT / "docs" / "forecast.json")
+    parser.add_argument("--no-report", action="store_true", help="only the data")
+    return parser.parse_args()
+
+
+def foreseen(case, threads, more, cache):
+    """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does not."""
+    environment = dict(os.environ, XDG_CACHE_HOME=cache)
+    done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
+                          capture_output=True, text=True, check=False, env=environment)
+    steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)
+    solid = re.search(r"(?m)^ *about ([\d.e+]+) solid sub-steps", done.stdout)
+    cost = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", done.stdout)
+    if done.returncode or not steps or not cost:
+        lines = done.stderr.strip().splitlines()
+        raise BadFile(lines[-1] if lines else "no forecast")
+    return {"steps": float(steps[1]), "solid_steps": float(solid[1]) if solid else None,
+            "seconds": float(cost[1]) * UNITS[cost[2]]}
+
+
+def end_time(case):
+    text = subprocess.run([str(PROGRAM), "--effective", str(case)], capture_output=True, text=True,
+                          check=False).stdout
+    found = re.search(r"(?m)^end_time = ([\d.e+-]+)", text)
+    if not found:
+        raise BadFile("has no end_time")
+    return float(found[1])
+
+
+def taken(case, threads, more, folder):
+    command = [str(PROGRAM), str(case), "--quiet", "--out", str(folder), "--threads", str(threads), *more]
+    status, timing, said = timed(command, threads, 3600)
+    if status != 0:
+        raise BadFile(said.splitlines()[-1] if said else f"exit status {status}")
+    summary = json.loads((folder / "summary.json").read_text())
+    return {"steps": summary["steps"], "solid_steps": summary.get("solid_substeps"),
+            "seconds": summary["wall_seconds"], "cpu": timing["cpu"], "load": timing["load"],
+            "version": summary["version"]}
+
+
+def compare(case, threads, seconds):
+    row = {"case": case.stem, "threads": threads}
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            end = end_time(case)
+            whole = foreseen(case, threads, [], folder)
+            until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
+            more = ["--until", repr(until)]
+            row.update(end=end, until=until, whole=whole["seconds"],
+                       foreseen=foreseen(case, threads, more, folder),
+                       taken=taken(case, threads, more, Path(folder) / "run"))
+        except (BadFile, OSError, KeyError, ValueError) as problem:
+            row["failed"] = str(problem)
+    return row
+
+
+def main():
+    args = arguments()
+    all_threads = args.threads or sorted({1, os.cpu_count() or 1})
+    cases = [case for case in sorted((ROOT / "cases").glob("*.cfg"))
+             if not args.cases or any(case.stem.startswith(name) for name in args.cases)]
+    if not cases:
+        raise BadFile(f"no case in cases/ is called {' or '.join(args.cases)}")
+    rows = []
+    for case in cases:
+        for threads in all_threads:
+            rows.append(compare(case, threads, args.seconds))
+            print("  ".join(map(str, forecast_cells(rows[-1]))), flush=True)
+    head = {"machine": machine(ROOT), "seconds": args.seconds}
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    args.data.write_text(json.dumps(head)[:-1] + ', "rows": [\n' + lines + "\n]}\n")
+    print(f"written {args.data}")
+    results = args.data.with_name("accuracy.json")
+    return 0 if args.no_report or not results.exists() else study_report.write(results, ROOT / "docs")
+
+
+if __name__ == "__main__":
+    run_tool(main)

@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: MIT
+"""What is measured on the curves of runs, and the exact solutions they are held against."""
+
+import math
+
+from common import BadFile, np
+
+
+def crossings(time, value):
+    """Times at which a sampled curve changes sign; a zero at its start is none."""
+    k = np.flatnonzero(value[1:-1] * value[2:] < 0) + 1
+    return time[k] + (time[k + 1] - time[k]) * value[k] / (value[k] - value[k + 1])
+
+
+def oscillation(time, value, period):
+    """Of a free oscillation about zero that starts there: first period, mean period, drift of the
+    phase at the last crossing against `period` (degrees, positive: late), and share of the
+    amplitude that is lost in a second."""
+    zeros = crossings(time, value)
+    if len(zeros) < 2:
+        raise BadFile("the curve is shorter than a period")
+    ends = np.concatenate([[time[0]], zeros])
+    tops = [np.abs(value[(time >= a) & (time <= b)]).max() for a, b in zip(ends, ends[1:])]
+    middle = 0.5 * (ends[1:] + ends[:-1])
+    slope = np.polyfit(middle, np.log(tops), 1)[0] if len(tops) > 2 else math.nan
+    return {"first": zeros[1] - time[0], "mean": 2 * (zeros[-1] - time[0]) / len(zeros),
+            "drift": 360 * ((zeros[-1] - time[0]) / period - len(zeros) / 2),
+            "amplitude": np.abs(value).max(), "late": tops[-1], "loss": 1 - math.exp(slope)}
+
+
+def damped_sine(time, value, omega, mean=False):
+    """Frequency and decay of C exp(-g t) cos(w t + phi) that fits best, near `omega`; with `mean` of
+    exp(-g t) (C cos(w t + phi) + D)."""
+    def misfit(w, g):
+        fade = np.exp(-g * time)
+        base = np.stack([fade * np.cos(w * time), fade * np.sin(w * time)] + [fade] * mean, axis=1)
+        coefficients = np.linalg.lstsq(base, value, rcond=None)[0]
+        return float(np.sum((base @ coefficients - value) ** 2))
+
+    best, width, decay = (omega, 0.0), 0.15 * omega, 0.5
+    for _ in range(8):  # a grid that closes in
+        grid = [(best[0] + width * a, max(0.0, best[1] + decay * b))
+                for a in np.linspace(-1, 1, 13) for b in np.linspace(-1, 1, 9)]
+        best = min(grid, key=lambda pair: misfit(*pair))
+        width, decay = width / 3, decay / 3
+    return best
+
+
+def order(steps, errors):
+    """Order of convergence: slope of log error over log step."""
+    return float(np.polyfit(np.log(steps), np.log(np.abs(errors)), 1)[0])
+
+
+def strongest(time, value, least=0.0):
+    """Frequency (Hz) of the highest peak of the spectrum above `least`, the mean taken out."""
+    value = (value - value.mean()) * np.hanning(len(value))
+    step = (time[-1] - time[0]) / (len(time) - 1)
+    spectrum = np.abs(np.fft.rfft(value, 8 * len(value)))
+    frequency = np.fft.rfftfreq(8 * len(value), step)
+    return float(frequency[np.argmax(np.where(frequency >= least, spectrum, 0))])
+
+
+def running_mean(value, n):
+    """Mean over n samples; shorter by n - 1."""
+    return np.convolve(value, np.ones(n) / n, "valid")
+
+
+def wet_bed_bore(high, low, g=9.81):
+    """Stoker (1957): depth and speed of the bore where water of depth `high` breaks into `low`."""
+    def excess(depth):  # of the velocity behind the bore over that in the rarefaction
+        bore = math.sqrt(g * depth * (depth + low) / (2 * low))
+        return bore * (1 - low / depth) - 2 * (math.sqrt(g * high) - math.sqrt(g * depth))
+
+    lower, upper = low, high
+    for _ in range(80):
+        depth = 0.5 * (lower + upper)
+        lower, upper = (lower, depth) if excess(depth) > 0 else (depth, upper)
+    return depth, math.sqrt(g * depth * (depth + low) / (2 * low))
+
+
+def elastica(load, points=400):
+    """Tip of a cantilever of length 1 that carries the weight `load` = w L^3/D, spread evenly and
+    always downwards: with theta counted downwards theta'' = -load (1 - s) cos theta, theta(0) = 0,
+    theta'(1) = 0, by shooting with Runge-Kutta steps. Returns (x, y) of the tip; y is negative."""
+    step = 1 / points
+
+    def shoot(curvature):
+        def rate(s, state):
+            angle, bend, _, _ = state
+            return np.array([bend, -load * (1 - s) * math.cos(angle), math.cos(angle),
+                             -math.sin(angle)])
+        state = np.array([0.0, curvature, 0.0, 0.0])
+        for k in range(points):
+            s = k * step
+            a = rate(s, state)
+            b = rate(s + step / 2, state + step / 2 * a)
+            c = rate(s + step / 2, state + step / 2 * b)
+            d = rate(s + step, state + step * c)
+            state = state + step / 6 * (a + 2 * b + 2 * c + d)
+        return state
+
+    low, high = -(load + 10), load + 10
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if shoot(middle)[1] < 0 else (low, middle)
+    state = shoot(0.5 * (low + high))
+    return float(state[2]), float(state[3])
+
+
+def lattice_shear(h_over_dp):
+    """Square of the speed of shear waves across the diagonal of an even lattice under a pressure p,
+    over p/rho: the sum of V s^2 W_tt over the neighbours, s along the diagonal and t across it, which
+    follows from Eq. 3b for small displacements. A fluid has none; kernel of Eq. 4."""
+    n, h = int(2 * h_over_dp) + 1, h_over_dp
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(-n, n + 1.0), np.arange(-n, n + 1.0)))
+    r = np.hypot(x, y)
+    x, y, r = (a[(r > 0) & (r < 2 * h)] for a in (x, y, r))
+    q, norm = r / h, 7 / (4 * np.pi * h ** 2)
+    first = -5 * norm * q * (1 - q / 2) ** 3 / h
+    second = norm * (7.5 * q - 5 * (1 - q / 2)) * (1 - q / 2) ** 2 / h ** 2
+    along, across = (x + y) ** 2 / 2, (x - y) ** 2 / 2
+    return float(np.sum(along * (second * across / r ** 2 + first / r * (1 - across / r ** 2))))
+
+
+def nearest(points, others, reach):
+    """Distance from each point to the nearest of the others; reach where none is nearer."""
+    result = np.full(len(points), reach, dtype=float)
+    if not len(points) or not len(others):
+        return result
+    low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
+    others = others[((others > low) & (others < high)).all(axis=1)]
+    for k in range(0, len(points), 256):
+        part = points[k:k + 256]
+        if len(others):
+            d = np.hypot(part[:, None, 0] - others[None, :, 0], part[:, None, 1] - others[None, :, 1])
+            result[k:k + 256] = np.minimum(reach, d.min(axis=1))
+    return result
+
+
+def close_pairs(points, others, reach):
+    """Indices (of points, of others) of all pairs nearer than reach."""
+    low = np.minimum(points.min(axis=0), others.min(axis=0)) - 2 * reach
+    cell, own = ((((x - low) / reach).astype(np.int64)) for x in (others, points))
+    rows = int(max(cell[:, 1].max(), own[:, 1].max())) + 3
+    key = cell[:, 0] * rows + cell[:, 1]
+    order = np.argsort(key, kind="stable")
+    key, found = key[order], []
+    for shift in (dx * rows + dy for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
+        wanted = own[:, 0] * rows + own[:, 1] + shift
+        first, count = np.searchsorted(key, wanted), np.searchsorted(key, wanted, "right")
+        count -= first
+        a = np.repeat(np.arange(len(points)), count)
+        place = np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count)
+        b = order[np.repeat(first, count) + place]
+        near = np.hypot(*(points[a] - others[b]).T) < reach
+        found.append((a[near], b[near]))
+    return tuple(map(np.concatenate, zip(*found)))
+
+
+def surrounded(points, others, reach, sector):
+    """How many points have others nearer than reach on all sides: none of their directions leaves a free
+    sector (rad) as wide as that."""
+    if not len(points) or not len(others):
+        return 0
+    a, b = close_pairs(points, others, reach)
+    if not len(a):
+        return 0
+    angle = np.arctan2(*(others[b] - points[a]).T[::-1])
+    order = np.lexsort((angle, a))
+    a, angle = a[order], angle[order]
+    first = np.flatnonzero(np.r_[True, a[1:] != a[:-1]])
+    last = np.r_[first[1:], len(a)] - 1
+    gap = np.r_[0, np.diff(angle)]
+    gap[first] = 2 * math.pi - (angle[last] - angle[first])
+    return int((np.maximum.reduceat(gap, first) < sector).sum())
+
+
+def beam_frequency(young, poisson, density, thickness, length):
+    """First frequency (Hz) of a thin cantilever in plane strain, Euler and Bernoulli."""
+    stiffness = young / (1 - poisson ** 2) * thickness ** 3 / 12
+    return 1.875104 ** 2 / (2 * math.pi * length ** 2) * math.sqrt(stiffness / (density * thickness))
+
+
+def about_running_mean(time, value, width):
+    """Time and what is left of a curve when its mean over `width` (s) is taken out."""
+    half = max(1, round(0.5 * width / float(np.median(np.diff(time)))))
+    if len(time) < 4 * half:
+        raise BadFile(f"a curve of {time[-1] - time[0]:.3g} s is too short for a mean over {width:g} s")
+    return time[half:-half], value[half:-half] - running_mean(value, 2 * half + 1)
+
+
+def mean_frequency(time, value):
+    """From the first to the last change of sign; 0 with fewer than two."""
+    zeros = crossings(time, value)
+    return 0.5 * (len(zeros) - 1) / (zeros[-1] - zeros[0]) if len(zeros) > 1 else 0.0
+
+
+def surface_height(x, dp, at):
+    """Height of the topmost particle's upper side in columns of two spacings at the places `at`."""
+    column = np.round((x[:, 0] - at[0]) / (2 * dp)).astype(int)
+    top = np.zeros(len(at))
+    inside = (column >= 0) & (column < len(at))
+    np.maximum.at(top, column[inside], x[inside, 1] + dp / 2)
+    return top

@@ -1,0 +1,402 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Measures the cost of the program and writes bench/<processor>.csv and docs/performance.md.
+
+Four parts: the bench program (nanoseconds by phase, one thread and all; a million particles, too), the
+longest stable step of each integrator (a dam break against a wall), whole runs, and all of that
+against the targets there are (performance_targets.py).
+Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the bench
+only, prints the change against the file there was, and writes it anew.
+
+Example: tools/report/performance.py --bench
+"""
+
+import argparse
+import csv
+import json
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from performance_targets import bench_rows, run_rows
+from common import read_table, run_tool
+
+ROOT = Path(__file__).resolve().parents[2]
+# As the Makefile says where another build folder is measured (B=...).
+PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
+BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
+STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
+         "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
+# Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides, counted in the
+# source.
+OPERATIONS = 46
+# And of a solid's pair in the default form, its three loops together, displacements in two parts.
+SOLID_OPERATIONS = 56
+
+
+def arguments():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bench", action="store_true", help="the bench only")
+    parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median counts")
+    parser.add_argument("--large", action="store_true",
+                        help="with --bench: a million particles as well, as there are without it")
+    return parser.parse_args()
+
+
+def run_bench(args):
+    """Comment lines, and rows by (what, variant, particles, threads, part)."""
+    command = [str(BUILD / "bench_bench"), "--reps", str(args.reps)]
+    out = subprocess.run(command + ["--large"] * (args.large or not args.bench), check=True, text=True,
+                         capture_output=True).stdout
+    ways = subprocess.run([str(BUILD / "bench_neighbours"), "--reps", str(args.reps)],
+                          check=True, text=True, capture_output=True).stdout
+    return out + ways
+
+
+def parse(text):
+    lines = text.splitlines()
+    notes = [line[2:] for line in lines if line.startswith("#")]
+    rows = {}
+    for row in csv.DictReader(line for line in lines if not line.startswith("#")):
+        key = (row["what"], row["variant"], int(row["particles"]), int(row["threads"]), row["part"])
+        rows[key] = row
+    return notes, rows
+
+
+def bench_file(notes):
+    name = re.sub(r"[^a-z0-9]+", "-", notes[0].split(",")[0].lower()).strip("-")
+    return ROOT / "bench" / f"{name}.csv"
+
+
+def compare(rows, path):
+    if not path.exists():
+        print(f"{path.relative_to(ROOT)} does not exist yet: nothing to compare with")
+        return
+    before = parse(path.read_text())[1]
+    for key, row in rows.items():
+        if key not in before:
+            continue
+        old, new = float(before[key]["median"]), float(row["median"])
+        print(f"{' '.join(map(str, key)):60s} {old:10.4g} -> {new:10.4g} {row['unit']:24s} "
+              f"{100 * (new / old - 1) if old else 0:+6.1f} %")
+
+
+def run_case(case, sets, threads=0, until=None):
+    """Runs a case in a folder that goes away; the summary, and M1's rows where there are any."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [str(PROGRAM), str(ROOT / case), "--quiet", "--out", f"{folder}/run"]
+        for item in sets:
+            command += ["--set", item]
+        if threads:
+            command += ["--threads", str(threads)]
+        if until:
+            command += ["--until", until]
+        subprocess.run(command, capture_output=True, check=False)
+        try:
+            summary = json.loads(Path(folder, "run/summary.json").read_text())
+        except (OSError, ValueError):
+            return None, None
+        return summary, read_table(Path(folder, "run/probes.csv"))[0]
+
+
+def step_study():
+    """Rows of the table: integrator, C, steps, seconds, extremes of density, how it ended."""
+    rows = []
+    for integrator, factors in STEPS.items():
+        for factor in factors:
+            summary, _ = run_case("cases/verify/dam_break_impact.cfg", [
+                "ratio=40", f"integrator={integrator}", f"numerics.cfl={factor}"], threads=1)
+            if summary is None:
+                rows.append((integrator, factor, "-", "-", "-", "-", "no result"))
+                continue
+            ends = summary["extremes"]
+            low, high = (f"{100 * ends[f'density_{end}']:+.1f}" for end in ("lowest", "highest"))
+            rows.append((integrator, factor, summary["steps"], f"{summary['wall_seconds']:.1f}",
+                         low, high, summary["exit_reason"]))
+            print("  ", *rows[-1], flush=True)
+    return rows
+
+
+# case, --set arguments, words, whether on one thread as well
+WORK = [
+    ("cases/gate.cfg", ["dp=1 mm", "integrator=leapfrog"], "gate, dp = 1 mm, leapfrog", True),
+    ("cases/gate.cfg", ["dp=1 mm", "integrator=verlet"], "gate, dp = 1 mm, Verlet", False),
+    ("cases/gate.cfg", ["dp=1 mm", "integrator=symplectic"], "gate, dp = 1 mm, symplectic", False),
+    ("cases/gate.cfg", ["integrator=leapfrog"], "gate, dp = 0.5 mm, leapfrog", False),
+    ("cases/cantilever.cfg", ["ratio=10"], "cantilever, ts/dp = 10", False),
+    ("cases/cantilever.cfg", ["ratio=20"], "cantilever, ts/dp = 20", False),
+    ("cases/hydrostatic_plate.cfg", ["integrator=leapfrog"], "hydrostatic plate, leapfrog", False),
+]
+
+
+def work_runs(threads):
+    """Rows of the table, and {words: numbers} of the runs on all threads."""
+    rows, numbers = [], {}
+    for case, sets, words, alone in WORK:
+        for n in sorted({1, threads} if alone else {threads}):
+            summary, m1 = run_case(case, sets, threads=n)
+            if summary is None:
+                rows.append((words, n, *"-------"))
+                continue
+            seconds = summary["phase_seconds"]
+            numbers[words] = {"seconds": summary["wall_seconds"], "phases": seconds,
+                              "ms": 1e3 * summary["wall_seconds"] / summary["steps"],
+                              "rate": 1e-6 * summary["particle_steps_per_second"]}
+            whole = sum(seconds.values()) or 1
+            share = ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in seconds.items())
+            tops = [np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and len(c)]
+            peak = max(tops, default=float("nan"))
+            rows.append((words, n, summary["steps"], summary["solid_substeps"],
+                         f"{summary['wall_seconds']:.1f}",
+                         f"{1e3 * summary['wall_seconds'] / summary['steps']:.3g}",
+                         f"{1e-6 * summary['particle_steps_per_second']:.3g}",
+                         f"{1e3 * peak:.4g}", share))
+            print("  ", *rows[-1], flush=True)
+    return rows, numbers
+
+
+def shared_work(threads):
+    """The speed-up of all threads on a moving gate, in words; and the factors."""
+    seconds = {1: [], threads: []}
+    for _ in range(5):
+        for n, found in seconds.items():
+            summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], threads=n, until="0.02")
+            if summary is None:
+                return "The gate with dp = 0.5 mm did not run.", {}
+            phases = summary["phase_seconds"]
+            found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
+    (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
+    particles = sum(summary["particles"].values())
+    return (f"The first 0.02 s of the gate with dp = 0.5 mm ({particles} particles) take {one:.2f} s "
+            f"on one thread "
+            f"and {many:.2f} s on {threads}: {one / many:.2f} times as fast with output. The steps "
+            f"alone take "
+            f"{steps_one:.2f} s and {steps_many:.2f} s: {steps_one / steps_many:.2f} times as fast. "
+            f"The numbers "
+            "are medians of five alternating runs.",
+            {"with output": one / many, "steps alone": steps_one / steps_many})
+
+
+def table(header, rows):
+    lines = ["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)]
+    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
+
+
+def neighbour_words(rows):
+    """Clusters in chunks and without, against a tile and a neighbour list (bench/neighbours.c)."""
+    found = {key[1:2] + key[4:]: float(row["median"]) for key, row in rows.items()
+             if key[0] == "neighbours"}
+    n = next(key[2] for key in rows if key[0] == "neighbours")
+    swept = {"clusters, pairs once": found["chunk", "list and sweep"],
+             "clusters": found["cluster", "list and sweep"], "tile": found["tile", "copy and sweep"],
+             "list": found["list", "sweep"]}
+    return (f"Four methods of neighbour search are compared, with the bare laws over {n} particles on one "
+            "thread (ns a particle):\n\n"
+            "* Neighbour clusters, each pair within a chunk of cells taken once: "
+            f"{swept['clusters, pairs once']:.1f} ns ({found['chunk', 'pairs']:.0f} pairs).\n"
+            f"* Neighbour clusters, all pairs from both sides: {swept['clusters']:.1f} ns "
+            f"({found['cluster', 'pairs']:.0f} pairs).\n"
+            f"* A tile of candidates around each cell: {swept['tile']:.1f} ns with its copies.\n"
+            f"* A neighbour list with a skin: {swept['list']:.1f} ns, and "
+            f"{found['list', 'build']:.0f} ns each time "
+            f"that it is built. It needs {4 * found['list', 'entries']:.0f} bytes a particle.\n\n"
+            f"The fastest method: {min(swept, key=swept.get)}.")
+
+
+def bench_tables(rows):
+    text = []
+    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
+    threads = sorted({key[3] for key in rows})
+    value = lambda *key: float(rows[key]["median"]) if key in rows else float("nan")
+    variants = list(dict.fromkeys(key[1] for key in rows if key[0] == "fluid"))
+    parts = ["sort", "packed", "wall", "fluid", "update", "all"]
+    text.append("Time in ns per fluid particle and force evaluation, by phase:\n\n" + table(
+        ["kernel", "particles", "threads"] + parts + ["bytes/particle"],
+        [(v, n, t, *(f"{value('fluid', v, n, t, p):.1f}" for p in parts),
+          f"{value('fluid', v, n, t, 'memory'):.0f}")
+         for v in variants for n in sizes for t in threads]))
+    text.append("Time in ns per solid particle and step:\n\n" + table(
+        ["form", "threads", "ns"],
+        [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
+         if key[0] == "solid" and key[4] == "step"]))
+    written = [(v, n, t, *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
+               for v in variants for n in sizes for t in threads if ("fluid", v, n, t, "snapshot") in rows]
+    if written:
+        text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of "
+                    "files and folder:\n\n" +
+                    table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
+    counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
+               for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
+    text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
+                "not measured, because this machine has no counter. [absence.md](absence.md) has counts by "
+                "valgrind") + ".")
+    if any(key[0] == "neighbours" for key in rows):
+        text.append(neighbour_words(rows))
+    peak = value("machine", "fma", 0, 1, "float")
+    rich = next((v for v in variants if v.startswith("dam_break (mixed")), None)
+    if rich:
+        n = sizes[-1]
+        met = value("fluid", rich, n, 1, "pairs")
+        rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
+        text.append(
+            f"One core reaches {peak:.0f} G lane operations a second (1 G = 10^9) in chains of fused "
+            f"multiply-add. "
+            f"The pair loop ({rich}, {n} particles) reaches {rate:.0f} G, {100 * rate / peak:.0f} % of that. "
+            f"It has {met:.0f} pairs a particle and {OPERATIONS} operations a pair, among them a square root "
+            "and a division.")
+    slots = next((float(row["median"]) for key, row in rows.items()
+                  if key[:2] == ("solid", "default (mixed)") and key[4] == "slots"), None)
+    if slots:
+        ns = next(float(row["median"]) for key, row in rows.items()
+                  if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
+        rate = slots * SOLID_OPERATIONS / ns
+        text.append(f"The solid's loops reach {rate:.0f} G in mixed precision, {100 * rate / peak:.0f} % of "
+                    f"{peak:.0f} G. They have {slots:.0f} neighbours a particle, with those that fill "
+                    f"up a pack, "
+                    f"and {SOLID_OPERATIONS} operations a neighbour.")
+    if rich:
+        bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
+        copy = value("machine", "copy", 0, 1, "read + write")
+        text.append(f"One pass over the memory of a particle in each evaluation is "
+                    f"{bytes_each / ns:.1f} GB/s, "
+                    f"{100 * bytes_each / ns / copy:.0f} % of the speed of copying ({copy:.0f} GB/s, one "
+                    "thread). So arithmetic limits the sweeps, not memory.")
+    if len(threads) > 1 and rich:
+        one, many = threads[0], threads[-1]
+        speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
+        serial = max(0.0, (many / speed["all"] - 1) / (many - 1))
+        text.append(f"Speed-up of {many} threads over one, {n} particles: " + ", ".join(
+            f"{p} {s:.2f}" for p, s in speed.items()) +
+            f". By Amdahl's law {100 * serial:.1f} % of the work is serial.")
+    return "\n\n".join(text)
+
+
+def target_rows(rows, numbers, speed):
+    """Rows of the table of targets."""
+    sizes = sorted({key[2] for key in rows if key[0] == "fluid"})
+
+    def value(what, variant, particles, threads, part):
+        return next((float(row["median"]) for key, row in rows.items()
+                     if key[:2] + key[3:] == (what, variant, threads, part)
+                     and particles in (None, key[2])), float("nan"))
+    shares = {words: numbers[words]["phases"] for words in numbers if words.startswith("gate")
+              and words.endswith("leapfrog")}
+    return [*run_rows(numbers), *bench_rows(value, sizes, shares, speed)]
+
+
+def summary(rows, numbers, speed):
+    """Three sentences: targets met, the cost of a gate, the speed-up."""
+    targets = target_rows(rows, numbers, speed)
+    missed = [row[0] for row in targets if row[-1] != "met"]
+    gate = numbers.get("gate, dp = 0.5 mm, leapfrog")
+    text = f"**How fast is it?** {len(targets) - len(missed)} of {len(targets)} targets are met" + \
+        (f"; missed: {'; '.join(missed)}. " if missed else ". ")
+    if gate:
+        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, {gate['ms']:.3g} "
+                 f"ms a step of the "
+                 f"fluid and {gate['rate']:.3g} million particle steps a second. ")
+    return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one."
+                   if speed else
+                   "The speed-up by threads was not measured.")
+
+
+def target_words(rows, numbers, speed):
+    return "\n\n".join([
+        "The seconds of other programs were measured with their own solvers on two threads of an AMD "
+        "EPYC with "
+        "AVX-512. They are not measured again here. The targets were set for that machine. The measured "
+        "values are of the processor above, on all threads unless the row says one.",
+        table(["work", "other programs", "target", "measured", ""],
+              target_rows(rows, numbers, speed))])
+
+
+def other_processors(own):
+    """Rows of what was measured elsewhere, or with an earlier program, from the committed files."""
+    rows = []
+    for path in sorted((ROOT / "bench").glob("*.csv")):
+        if path == own:
+            continue
+        notes, found = parse(path.read_text())
+        median = {key[:2] + key[3:]: float(row["median"]) for key, row in found.items()}
+        rows.append((f"[{notes[0].split(',')[0]}](../bench/{path.name})", *(
+            f"{median[key]:.3g}" for key in (
+                ("machine", "fma", 1, "float"), ("machine", "copy", 1, "read + write"),
+                ("solid", "default (double)", 1, "step"), ("fluid", "bare (mixed)", 1, "fluid"),
+                ("fluid", "dam_break (mixed)", 1, "fluid"), ("fluid", "dam_break (mixed)", 1, "all")))))
+    return rows
+
+
+def main():
+    args = arguments()
+    text = run_bench(args)
+    notes, rows = parse(text)
+    path = bench_file(notes)
+    compare(rows, path)
+    path.write_text(text)
+    if args.bench:
+        return
+    threads = max(key[3] for key in rows)
+    print("longest steps:", flush=True)
+    steps = step_study()
+    print("whole runs:", flush=True)
+    whole, numbers = work_runs(threads)
+    shared, speed = shared_work(threads) if threads > 1 else ("", {})
+    load = os.getloadavg()[0]
+    version = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True,
+                             check=False).stdout.strip()
+    report = f"""# Speed and memory
+
+{summary(rows, numbers, speed)}
+
+`tools/report/performance.py` (`make performance`) writes this report. Program {version}.
+{notes[0]}; {notes[1]}; load {load:.1f} at the end.
+The numbers are medians of {args.reps} repetitions. All rows: [{path.name}](../bench/{path.name}).
+
+## Targets
+
+{target_words(rows, numbers, speed)}
+
+## Sweeps
+
+{bench_tables(rows)}
+
+## The longest stable step
+
+The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, hits the wall and falls back
+(0.8 s, one thread). If the step is too long, the extremes of the density grow long before the run
+fails.
+
+{table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
+
+The default `cfl` is 0.2 (symplectic and verlet, as in the paper) or 0.4 (leapfrog; 0.2 if a body has
+less than half of the fluid's density).
+
+## Whole runs
+
+The runs end at the end times of the case files. The paper's integrators take `cfl = 0.2`. The column of
+displacements has the largest displacement of the tip (M1 of the paper).
+
+{table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
+        "million particle steps a second", "displacement, mm", "share of phases, %"], whole)}
+
+{shared}
+
+## Other processors
+
+These are the committed results of the bench on other processors, with the program and the load of that
+day, on one thread and with the largest number of particles.
+
+{table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
+        "dam_break sweep, ns", "dam_break all, ns"], other_processors(path))}
+"""
+    (ROOT / "docs/performance.md").write_text(report)
+    print("wrote docs/performance.md and", path.relative_to(ROOT))
+
+
+if __name__ == "__main__":
+    run_tool(main)

@@ -1,0 +1,268 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The stability map: runs a plate between waters (tests/stability/thin.cfg) over density, thickness,
+stiffness, one wet side or two, integrator and scheme. Keeps the results in docs/stability_map.json and draws
+docs/img/stability_map.png. tools/report/stability_report.py puts both into docs/stability.md.
+
+Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), then the picture
+         tools/report/stability_map.py --most 100     at most 100 of those that no result is kept of
+         tools/report/stability_map.py --draw         the picture from the results that are kept"""
+import argparse
+import functools
+import itertools
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+CASE = ROOT / "tests/stability/thin.cfg"
+RESULTS = ROOT / "docs/stability_map.json"
+PICTURE = ROOT / "docs/img/stability_map.png"
+
+DENSITIES = (0.01, 0.1, 0.3, 1, 3, 10)        # over that of water
+ACROSS = (2, 3, 5, 10)                       # particles through the thickness
+SUBSTEPS = (0.5, 1.5, 2.5, 12.5, 100)        # step of the fluid over the limit of the solid's step
+SIDES = (1, 2)                               # wet sides
+INTEGRATORS = ("leapfrog", "symplectic", "verlet")
+SCHEMES = ("paper", "standard")
+TERMS = ("fluid", "dissipation", "interface", "solid", "restarts", "boundaries")
+COLUMNS = ("density", "across", "sides", "integrator", "scheme", "substeps",
+           "E",       # Pa
+           "result",  # finished, stopped, or why it was not run
+           "time",    # s
+           "gain",    # of a region by a term over the energy in play until then, at its largest (T-46)
+           "term",    # that has gained most
+           "in_run")  # the gain of that term over the largest energy in play of the run
+
+# thin.cfg and what is set here
+DP, HEIGHT, LENGTH, GRAVITY, WATER, NU = 5e-3, 0.1, 0.12, 9.81, 1000.0, 0.3
+RIGHT = {1: 0.0, 2: 0.05}  # level behind the plate
+END = 0.05
+LIMIT = 0.01               # gain over the available energy that passes
+TENTH = 0.1                # deflection over length, and strain, beyond which a scene is left out
+GREENHILL = 7.837          # weight x length^3 / stiffness at which a clamped column buckles
+
+
+def statics(density, across, sides, young):
+    """Why a plate cannot stand by itself: beam theory for its deflection by the net pressure of the water
+    and for buckling by its weight, and its strain by either. Empty where it stands."""
+    rho, thick = density * WATER, across * DP
+    bending = young * thick**3 / (12 * (1 - NU**2))
+
+    def tip(level):  # of a load that grows linearly downwards from `level`
+        return WATER * GRAVITY * level**4 * (level / 30 + (LENGTH - level) / 24) / bending
+
+    if tip(HEIGHT) - tip(RIGHT[sides]) > TENTH * LENGTH:
+        return "bends"
+    if rho * GRAVITY * thick * LENGTH**3 > GREENHILL * bending:
+        return "buckles"
+    if max(WATER * GRAVITY * HEIGHT, rho * GRAVITY * LENGTH) * (1 - NU**2) > TENTH * young:
+        return "is crushed"
+    return ""
+
+
+def case_text(sides):
+    """thin.cfg; for one wet side without the water on the right."""
+    text = CASE.read_text(encoding="utf-8")
+    if sides == 1:
+        begin, end = text.index("[fluid right]"), text.index("[wall tank]")
+        text = text[:begin] + text[end:]
+    return text
+
+
+def run(program, folder, scene, young, end):
+    """The summary of a run."""
+    density, across, sides, integrator, scheme = scene
+    case = Path(folder) / "scene.cfg"
+    case.write_text(case_text(sides), encoding="utf-8")
+    settings = [f"scheme={scheme}", f"integrator={integrator}", f"across={across}", f"E={young:.9g}",
+                f"plate.density={density * WATER:.9g}", f"end_time={end}", "output.ledger_interval=1",
+                "output.probe_interval=1", "output.snapshot_interval=1"]
+    settings += [f"right={RIGHT[sides]}"] if sides == 2 else []
+    command = [str(program), str(case), "--quiet", "--threads", "1", "--out", f"{folder}/run"]
+    for setting in settings:
+        command += ["--set", setting]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    summary = Path(folder) / "run/summary.json"
+    if done.returncode not in (0, 2) or not summary.exists():
+        sys.exit(f"stability_map: {' '.join(command)}: exit status {done.returncode}: {done.stderr}")
+    return json.loads(summary.read_text(encoding="utf-8"))
+
+
+@functools.cache
+def stiffness(program, scene):
+    """Young's modulus at which the fluid's step is the limit of the solid's. The limit goes with the speed of
+    sound in the solid, so one short run with a stiff plate gives it."""
+    young = 4e6 * scene[0]
+    with tempfile.TemporaryDirectory() as folder:
+        step = run(program, folder, scene, young, 2e-3)["time_step"]
+    return young * (step["solid"] / step["largest"])**2
+
+
+def result(program, point):
+    """A row of the table for one point of the grid."""
+    density, across, sides, integrator, scheme, substeps = point
+    scene = (density, across, sides, integrator, scheme)
+    young = substeps**2 * stiffness(program, scene)
+    row = [*point, float(f"{young:.4g}")]
+    reason = statics(density, across, sides, young)
+    if reason:
+        return [*row, reason, 0, 0, "", 0]
+    with tempfile.TemporaryDirectory() as folder:
+        summary = run(program, folder, scene, young, END)
+    drift = summary["drift"]
+    terms = {name: drift["gains_by_term"][name].get("gain_over_available_energy") or 0 for name in TERMS}
+    finished = summary["exit_reason"] == "finished"
+    return [*row, "finished" if finished else "stopped", float(f"{summary['time']:.4g}"),
+            float(f"{drift['gain_over_available_energy']:.3g}"), max(terms, key=lambda name: terms[name]),
+            float(f"{max(terms.values()):.3g}")]
+
+
+def save(program, rows):
+    version = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
+    before = json.loads(RESULTS.read_text(encoding="utf-8"))["versions"] if RESULTS.exists() else []
+    versions = [*before, *({version.strip()} - set(before))]  # all programs that rows are from
+    lines = ",\n".join(json.dumps(row) for row in sorted(rows))
+    head = f'"versions": {json.dumps(versions)}, "columns": {json.dumps(COLUMNS)}'
+    RESULTS.write_text(f'{{{head}, "rows": [\n{lines}\n]}}\n', encoding="utf-8")
+
+
+def run_all(program, jobs, most):
+    """Runs the plates that no result is kept of: heavy ones first, since light ones take ten times as long,
+    and else in an order that covers the grid at any time."""
+    grid = list(itertools.product(DENSITIES, ACROSS, SIDES, INTEGRATORS, SCHEMES, SUBSTEPS))
+    rows = [list(row.values()) for row in load()] if RESULTS.exists() else []
+    known = {tuple(row[:6]) for row in rows}
+    random.Random(1).shuffle(grid)
+    grid = sorted((point for point in grid if point not in known), key=lambda point: point[0] < 0.3)[:most]
+    with ThreadPoolExecutor(jobs) as pool:
+        for count, row in enumerate(pool.map(lambda point: result(program, point), grid), 1):
+            rows.append(row)
+            if row[7] == "stopped" or row[9] > LIMIT:
+                print(f"{count} of {len(grid)}: {row}", flush=True)
+            if count % 20 == 0:
+                save(program, rows)
+    save(program, rows)
+
+
+def load():
+    """The rows as dictionaries."""
+    kept = json.loads(RESULTS.read_text(encoding="utf-8"))
+    return [dict(zip(kept["columns"], row)) for row in kept["rows"]]
+
+
+def judge(row):
+    """`passes`, `gains`, `stopped` or `left out`."""
+    if row["result"] not in ("finished", "stopped"):
+        return "left out"
+    return "stopped" if row["result"] == "stopped" else "gains" if row["in_run"] > LIMIT else "passes"
+
+
+def grid_size():
+    return math.prod(map(len, (DENSITIES, ACROSS, SIDES, INTEGRATORS, SCHEMES, SUBSTEPS)))
+
+
+def report(rows):
+    """Section for docs/stability.md."""
+    versions = json.loads(RESULTS.read_text(encoding="utf-8"))["versions"]
+    verdicts = [judge(row) for row in rows]
+    ran = len(rows) - verdicts.count("left out")
+    gains = [row for row, verdict in zip(rows, verdicts) if verdict == "gains"]
+    early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))
+    count = {d: sum(row["density"] == d for row in rows) for d in DENSITIES}
+    each = grid_size() // len(DENSITIES)
+    counts = ", ".join(f"{n} of {d:g}" for d, n in count.items())
+    drawn = "" if len(rows) == grid_size() else (
+        f"The grid has {grid_size()} plates, {each} of each density. Here are {len(rows)} of them, drawn at "
+        f"random for each density:\n{counts} times that of water.\n")
+    reasons = {name: sum(row["result"] == name for row in rows)
+               for name in ("bends", "buckles", "is crushed")}
+    text = (f"![Stability map](img/stability_map.png)\n\n{drawn}"
+            f"Of {ran} plates **{verdicts.count('stopped')} were stopped, and {len(gains)} gained "
+            f"more than {100 * LIMIT:g} %** of the largest\nenergy in play. This is kinetic, elastic and "
+            "compression energy, and potential energy above its minimum\n(theory.md, T-46). "
+            f"{early} more gained {100 * LIMIT:g} % of what was in play until then, "
+            "at the start of the\nrun, where a sudden load moves a light plate "
+            "and little energy is in play.\n")
+    if gains:
+        text += ("\n| density | across | wet sides | integrator | scheme | sub-steps | gain | term |\n"
+                 "|---|---|---|---|---|---|---|---|\n")
+        for row in sorted(gains, key=lambda r: -r["in_run"]):
+            text += (f"| {row['density']:g} | {row['across']} | {row['sides']} | {row['integrator']} | "
+                     f"{row['scheme']} | {row['substeps']:g} | {100 * row['in_run']:.2g} % | "
+                     f"{row['term']} |\n")
+    return text + (
+        f"\n{verdicts.count('left out')} more cannot stand by statics and were not run. "
+        f"{reasons['bends']} bend by more than a tenth of their length under\nthe net pressure. "
+        f"{reasons['buckles']} buckle under their weight. {reasons['is crushed']} are compressed by more "
+        "than a tenth.\n(Beam theory and Greenhill's limit: `statics` in `tools/report/stability_map.py`.)\n\n"
+        f"Each plate is `tests/stability/thin.cfg` over {END:g} s with {HEIGHT:g} m of water on one side,\n"
+        f"and none or {RIGHT[2]:g} m on the other. "
+        "A cell has the three integrators from left to right,\nscheme `paper` below and `standard` above.\n"
+        f"Programs: {', '.join(versions)}; a result is of one of them.\n")
+
+
+def draw(rows):
+    import matplotlib  # pylint: disable=import-outside-toplevel
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
+    passes = plt.get_cmap("YlGn_r")
+
+    def colour(row):
+        verdict = judge(row)
+        if verdict == "passes" and row["gain"] > LIMIT:
+            return "#f2c879"
+        if verdict == "passes":  # 1e-6 dark to 1e-2 light
+            return passes(0.15 + 0.7 * min(1, max(0, (math.log10(row["gain"] + 1e-12) + 6) / 4)))
+        return {"left out": "0.93", "gains": "#e06a10", "stopped": "#9c1010"}[verdict]
+
+    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(11, 5.6), sharex=True, sharey=True)
+    for row in rows:
+        panel = axes[SIDES.index(row["sides"])][ACROSS.index(row["across"])]
+        x = DENSITIES.index(row["density"]) + INTEGRATORS.index(row["integrator"]) * 0.3
+        y = SUBSTEPS.index(row["substeps"]) + SCHEMES.index(row["scheme"]) * 0.45
+        panel.add_patch(plt.Rectangle((x, y), 0.3, 0.45, color=colour(row), lw=0))
+    for i, j in itertools.product(range(len(SIDES)), range(len(ACROSS))):
+        panel = axes[i][j]
+        panel.set(xlim=(-0.1, len(DENSITIES)), ylim=(-0.1, len(SUBSTEPS)))
+        panel.set_xticks([k + 0.45 for k in range(len(DENSITIES))], [f"{d:g}" for d in DENSITIES], fontsize=8)
+        panel.set_yticks([k + 0.45 for k in range(len(SUBSTEPS))], [f"{n:g}" for n in SUBSTEPS], fontsize=8)
+        wet = "one side" if SIDES[i] == 1 else "both sides"
+        panel.set_title(f"{ACROSS[j]} across, water on {wet}", fontsize=9)
+        panel.tick_params(length=0)
+    figure.supxlabel("density of the plate over that of water", fontsize=10)
+    figure.supylabel("fluid step over the limit of the solid's step", fontsize=10)
+    handles = [plt.Rectangle((0, 0), 1, 1, color=c) for c in
+               (passes(0.15), passes(0.5), passes(0.85), "#f2c879", "#e06a10", "#9c1010", "0.93")]
+    words = ("gain 1e-6", "1e-4", "1e-2", "above 1 % at the start", "above 1 % of the run", "stopped",
+             "cannot stand by statics")
+    figure.legend(handles, words, loc="upper center", ncol=7, fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0.01, 0, 1, 0.95))
+    figure.savefig(PICTURE, dpi=110)
+    print(f"wrote {PICTURE.relative_to(ROOT)}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--draw", action="store_true", help="only draw the results that are kept")
+    parser.add_argument("--jobs", type=int, default=1, help="runs at a time (1)")
+    parser.add_argument("--most", type=int, help="at most so many plates in this call")
+    args = parser.parse_args()
+    if not args.draw:
+        os.nice(10)
+        run_all(Path(os.environ.get("SPHFSI", str(ROOT / "sphfsi"))).resolve(), args.jobs, args.most)
+    rows = load()
+    print(report(rows), end="")
+    draw(rows)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: MIT
+"""The report of the accuracy study (docs/accuracy.md and its figures) from its collected results."""
+
+import json
+import os
+import re
+from pathlib import Path
+
+from matplotlib.ticker import LogFormatter
+
+from common import COLOURS, WIDTH, BadFile, np, plt, read_text, save
+from study_points import ROOT, SCENES
+from study_presets import fronts, preset_table, write_evidence
+from study_results import (CROSSING, Study, across, against, cost, finished, machine_text, main_error,
+                           percent)
+from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table, halving_table,
+                          knob_table, order_table, ranked_knobs, schemes_table)
+
+MARKS = "osD^v<>ph*XP"
+PANEL = 2.5  # inches
+
+
+# --- figures ---
+
+class PlainLog(LogFormatter):
+    """0.2 instead of 2e-01; which ticks have a label is left to its parent."""
+
+    def __call__(self, x, pos=None):
+        return f"{x:g}" if super().__call__(x, pos) else ""
+
+
+
+def groups_of(study, case):
+    """{group: [(knob, value)]} of the settings that the case has, in the order of the definition."""
+    groups = {}
+    for knob, entry in study.knobs.items():
+        for value in entry["values"]:
+            if study.of(case, knob, value):
+                groups.setdefault(entry.get("group", "settings"), []).append((knob, value))
+    return groups or {"settings": []}
+
+
+def draw_line(axes, study, points, **style):
+    """Points of one setting in the order of resolution; those that did not finish stand as crosses at the
+    top, over the time that they took."""
+    known = sorted((p for p in points if study.error(p)), key=lambda p: p["level"])
+    style.setdefault("markersize", 4.5)
+    if known:
+        axes.loglog([cost(p) for p in known], [100 * study.error(p) for p in known], **style)
+    lost = [p for p in points if p["timing"] and not finished(p)]
+    if lost:
+        if not known:
+            axes.plot([], [], **dict(style, label=style["label"] + ": none finished"))
+        axes.plot([cost(p) for p in lost], [0.96] * len(lost), "x", color=style["color"], markersize=6,
+                  markeredgewidth=1.5, transform=axes.get_xaxis_transform(), clip_on=False)
+
+
+def draw_group(axes, study, case, group, settings):
+    front = study.front(case)
+    axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.85",
+                linewidth=7, solid_capstyle="round", zorder=1, label="Pareto front of all settings")
+    draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6, zorder=4,
+              label="defaults")
+    knobs = list(dict.fromkeys(knob for knob, _ in settings))
+    for number, (knob, value) in enumerate(settings):
+        draw_line(axes, study, study.of(case, knob, value), color=COLOURS[number % len(COLOURS)],
+                  linestyle=["-", "--", ":"][knobs.index(knob) % 3],
+                  marker=MARKS[1 + number % (len(MARKS) - 1)], linewidth=0.9, zorder=3,
+                  label=study.label(knob, value))
+    axes.set_title(group, loc="left")
+    axes.set_ylabel(f"{main_error(study.cases[case])} (%)", fontsize=7)
+    axes.grid(True, which="both", linewidth=0.3, alpha=0.5)
+    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7)
+
+
+def draw_case(study, case, path):
+    groups = groups_of(study, case)
+    figure, panels = plt.subplots(len(groups), 1, figsize=(WIDTH, 0.4 + PANEL * len(groups)), sharex=True,
+                                  sharey=True, squeeze=False)
+    for axes, (group, settings) in zip(panels[:, 0], groups.items()):
+        draw_group(axes, study, case, group, settings)
+    panels[-1, 0].set_xlabel("CPU time (s)")
+    for axis in (panels[0, 0].xaxis, panels[0, 0].yaxis):  # all panels share them
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(PlainLog(minor_thresholds=(1, 0.5)))
+    figure.suptitle(study.cases[case].get("title", case), fontsize=10)
+    figure.tight_layout()
+    save(figure, path)
+    plt.close(figure)
+
+
+# --- text ---
+
+TEXT = """# What accuracy costs in time
+
+{summary}
+
+`make accuracy` (`tools/report/accuracy.py`) writes this report from `{data}`. Nothing in it is edited by hand.
+
+{circumstances}
+
+How to read the tables and figures:
+
+* A *point* is one run: a case, a resolution and a setting. *Defaults* are the settings of the case file
+  with the program's defaults. Every other setting is named by its key in the case file.
+* Cost is CPU time, the least of a point's repeats. Points that cost more than {repeat_below:g} s were
+  run once.
+* An error is measured against an *exact* solution, against the *own finest run*, or against an
+  *experiment*. An error against an experiment includes the difference between the model and nature.
+* {crossing} marks a zero crossing. A finer run with the same setting has a larger error, so the error
+  changes its sign near this resolution. The small value is not an accuracy.
+* A dash (-) means that there is no value: no run is that exact, the run is its own reference, the error
+  does not fall with resolution, or the machine cannot measure it.
+* In the figures each setting has a line. The broad grey line is the Pareto front: the points that no
+  other point beats in both error and cost. Crosses at the top are points that did not finish. {note}
+
+## The cheapest run for an error
+
+Each cell has the CPU seconds, the setting and the particles across of the cheapest point whose main
+error is no larger.
+
+{aims}
+
+## Both schemes of the fluid
+
+CPU seconds of the cheapest run within an error, with `scheme = standard` and `scheme = paper`, and their
+ratio. A zero crossing is taken only where no other run is as exact. *Particle step* is the time of a step
+per particle with the standard scheme over that with the paper's, the median over all resolutions.
+
+{schemes}
+
+{cases}
+
+## Order of convergence
+
+The three finest runs with defaults give the observed order p and the extrapolated value. The band of
+the finest run is 1.25 |f1 - f2|/(r^p - 1), relative to it, with p at most 2. This is the grid
+convergence index (Roache 1994; Celik et al. 2008).
+
+Where the three runs do not converge monotonically, or p < 0.5, there is no order. The band is then
+three times their largest difference (Eça and Hoekstra 2014). The order one level coarser uses the next
+coarser run instead of the finest. If both orders differ much, neither is reliable. *Extrapolated*
+differs from *reference* if the model is in error, or if three grids are not enough for the order.
+
+{order}
+
+## To halve the error
+
+The slopes of the error over cost and over dp are fitted to all resolutions with defaults.
+
+{halving}
+
+## Which setting gives most accuracy per second
+
+Each column has error and cost over those of the defaults at the same resolution. *Gain* is how many
+times longer the defaults, refined, would take to the same error (geometric mean over the columns).
+Above 1 the setting saves time. A gain means little if an error crosses zero (z) or hardly depends on
+resolution. If the error does not fall with cost, there is no gain.
+
+{knobs}
+
+### Best by kind of scene
+
+Only settings with which every run finished are listed.
+
+{best}
+
+## Presets
+
+`accuracy = draft | standard | fine` at the top of a case file sets the keys that `src/case/presets.def`
+lists. `standard` is the program's defaults.
+
+{fronts}
+
+### Errors of the presets in the study
+
+{presets}
+
+## Forecast against measurement
+
+{forecast}
+
+## What failed
+
+{failures}
+
+## What is missing
+
+{holes}
+"""
+
+CASE = """## {title}
+
+{words} Main error: **{error}**, measured against: {against}.
+
+{references}
+
+![Error against cost](img/accuracy_{case}.png)
+
+{table}
+
+Pareto front, from cheap to exact:
+
+{front}
+"""
+
+
+def case_text(study, case):
+    entry = study.cases[case]
+    sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
+               for e in entry["error"] if e.get("source")]
+    front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
+    return CASE.format(title=entry.get("title", case), words=entry.get("words", ""), case=case,
+                       error=main_error(entry), against=against(entry["error"][0]),
+                       references="\n".join(sources),
+                       table=base_table(study, case), front=front or "no finished point")
+
+
+def summary(study):
+    """Three sentences: the price of half the error, the finest runs, the settings that save most."""
+    price, finest, none = [], [], []
+    for case, entry in study.cases.items():
+        title = entry.get("title", case)
+        title = title[0].lower() + title[1:]
+        b = study.slope(case, main_error(entry))
+        price += [(2 ** (1 / b), title)] if b else []
+        none += [] if b else [title]
+        known = [p for p in study.base(case) if study.error(p)]
+        finest += [(study.error(known[-1]), cost(known[-1]), title)] if known else []
+    text = "**What does accuracy cost?** "
+    if price:
+        (low, easy), (high, hard) = min(price), max(price)
+        text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times "
+                 "the CPU time")
+        text += (f". It does not reduce the error of: {', '.join(none)}. " if none else ". ")
+    if finest:
+        (low, fast, best), (high, slow, worst) = min(finest), max(finest)
+        text += (f"The finest runs with an error reach {percent(low)} % ({best}, {fast:.3g} s) to "
+                 f"{percent(high)} % ({worst}, {slow:.3g} s). ")
+    saving = []
+    for scene, words in SCENES.items():
+        safe = [row for row in ranked_knobs(study, scene) if not row[4] and row[0] > 1]
+        saving += [f"`{study.label(*safe[0][2:4])}` ({words})"] if safe else []
+    return text + ("Without zero crossings, the settings that save most time at equal error are "
+                   f"{' and '.join(saving)}." if saving else "No setting saves time at equal error "
+                                                             "everywhere.")
+
+
+def circumstances(study):
+    """Machine, compiler, threads, load: as the timings have them."""
+    points = [p for p in study.points if p["timing"]]
+    timings = [t for p in points for t in p["timing"]]
+    machines = "; ".join(map(machine_text, study.head["machines"])) or "unknown machine"
+    versions = ", ".join(study.head["versions"]) or "unknown"
+    lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a run: "
+             f"{study.threads()}.",
+             f"* {len(points)} of {len(study.points)} points ran, in {len(timings)} runs."]
+    if timings:
+        loads = [t["load"] for t in timings]
+        lines.append(f"* Load average before a run: median {np.median(loads):.1f}, {min(loads):.1f} to "
+                     f"{max(loads):.1f}.")
+    for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
+                               ("‡", study.beside, "was timed beside another run of the study"),
+                               ("§", study.older, "is of an older program with the same effective case")):
+        number = sum(map(is_so, points))
+        lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
+    if not any(t.get("joules") is not None for t in timings):
+        lines.append("* Energy (J) is not measured: the machine has no counter in /sys/class/powercap.")
+    return "\n".join(lines)
+
+
+def forecast_section(path):
+    if not path.exists():
+        return "Not measured: `make forecast` does it."
+    try:
+        data = json.loads(read_text(path))
+        return ("The table compares the forecast of `--explain` with runs of the shipped cases (`make "
+                "forecast`). "
+                f"Runs were cut short to about {data['seconds']:g} s. {machine_text(data['machine'])}.\n\n"
+                f"{forecast_table(data)}")
+    except (ValueError, KeyError, TypeError) as problem:
+        raise BadFile(f"{path}: not the forecasts of tools/report/forecast.py ({problem})") from None
+
+
+def write(data, out, evidence=None):
+    study = Study(data)
+    if evidence:
+        write_evidence(study, evidence)
+    (out / "img").mkdir(parents=True, exist_ok=True)
+    for case in study.cases:
+        draw_case(study, case, out / "img" / f"accuracy_{case}.png")
+    rules = study.definition["study"]
+    knobs = "\n\n".join(f"### {entry.get('title', case)}: {main_error(entry)}\n\n{knob_table(study, case)}"
+                        for case, entry in study.cases.items())
+    inside = data.resolve().is_relative_to(ROOT)
+    text = TEXT.format(
+        summary=summary(study), crossing=CROSSING,
+        data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
+        circumstances=circumstances(study), note=rules.get("note", ""),
+        repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study), schemes=schemes_table(study),
+        cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),
+        halving=halving_table(study), knobs=knobs, best=best_knobs(study), fronts=fronts(study),
+        presets=preset_table(study), forecast=forecast_section(data.with_name("forecast.json")),
+        failures=failures(study), holes="\n".join(f"* {h}" for h in study.head["holes"]) or "None.")
+    (out / "accuracy.md").write_text(re.sub(r" +\n", "\n", text), encoding="utf-8")
+    print(f"written {out / 'accuracy.md'}")
+    return 0

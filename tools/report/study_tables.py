@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: MIT
+"""Tables of the accuracy study's report."""
+
+from common import np
+from study_order import convergence
+from study_points import SCENES
+from study_results import CROSSING, across, against, cost, finished, main_error, percent, seconds
+
+AIMS = (0.1, 0.05, 0.02, 0.01, 0.005)
+# Kinds of error whose reference is the value that the table of orders shows.
+SCALAR = ("period", "damped_period", "settled", "final")
+
+
+def table(head, rows):
+    return "\n".join(["| " + " | ".join(head) + " |", "|" + "---|" * len(head)] +
+                     ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]) if rows else "None."
+
+
+def aims_table(study):
+    """The cheapest run whose main error is within some percent."""
+    rows = []
+    for case, entry in study.cases.items():
+        cells = []
+        for aim in AIMS:
+            good = [p for p in study.known(case) if study.error(p) <= aim]
+            p = min(good, key=cost, default=None)
+            cells.append(f"{cost(p):.3g} s: {study.setting(p)}, {across(entry, p):.3g} particles"
+                         if p else "-")
+        rows.append([entry.get("title", case), main_error(entry), against(entry["error"][0]), *cells])
+    return table(["case", "error", "against"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
+
+
+def cheapest(study, points, aim):
+    """Cost and text of the cheapest point within an error; zero crossings only where nothing else is."""
+    good = sorted((study.crosses(p), cost(p)) for p in points if (study.error(p) or np.inf) <= aim)
+    return (good[0][1], f"{good[0][1]:.3g} s{f' {CROSSING}' if good[0][0] else ''}") if good else (None, "-")
+
+
+def schemes_table(study):
+    """What an error costs with either scheme of the fluid, and what a step does."""
+    rows = []
+    for case, entry in study.cases.items():
+        paper, standard = study.of(case, "scheme", "paper"), study.of(case, "base")
+        if not paper:
+            continue
+        cells = []
+        for aim in AIMS[1:4]:
+            (new, say_new), (old, say_old) = cheapest(study, standard, aim), cheapest(study, paper, aim)
+            cells.append(f"{say_new} / {say_old}" + (f" = {new / old:.2f}" if new and old else ""))
+        errors = [" to ".join(percent(study.error(p)) for p in (points[0], points[-1]))
+                  for points in ([p for p in of if study.error(p)] for of in (standard, paper)) if points]
+        steps = [cost(p) / p["particle_steps"] / (cost(q) / q["particle_steps"])
+                 for p, q in zip(standard, paper) if finished(p) and finished(q)]
+        rows.append([entry.get("title", case), main_error(entry), *errors, *cells,
+                     f"{np.median(steps):.2f}" if steps else "-"])
+    return table(["case", "error", "standard, coarsest to finest (%)", "paper (%)",
+                  *(f"{100 * aim:g} %: standard / paper" for aim in AIMS[1:4]), "particle step"], rows)
+
+
+def base_table(study, case):
+    entry = study.cases[case]
+    names = [e["name"] for e in entry["error"]]
+    head = [entry.get("what", "across"), "dp (mm)"] + \
+        [f"{e['name']} (%), against: {against(e)}" for e in entry["error"]] + \
+        ["CPU s: median (spread)", "wall s", "million particle steps", "evaluations", "J",
+         "ns a particle step"]
+    rows = []
+    for p in study.of(case, "base"):
+        if not finished(p):
+            rows.append([f"level {p['level']}", f"**{p['outcome']}** {p['message']}"] +
+                        [""] * (len(head) - 2))
+            continue
+        energy = all(t.get("joules") is not None for t in p["timing"])
+        rows.append([f"{across(entry, p):.3g}", f"{1e3 * p['dp']:.4g}"] +
+                    [percent(p["errors"].get(n)) + (f" {CROSSING}" if study.crosses(p, n) else "")
+                     for n in names] +
+                    [f"{seconds(p, 'cpu')} {study.marks(p)}", seconds(p, "wall"),
+                     f"{1e-6 * p['particle_steps']:.3g}", f"{p['evaluations']:,}",
+                     seconds(p, "joules") if energy else "-",
+                     f"{1e9 * cost(p) / p['particle_steps']:.0f}"])
+    return table(head, rows)
+
+
+def orders(values):
+    """Order of the three finest runs, and of the three that begin one level coarser."""
+    c = convergence(*zip(*values[:3]))
+    before = convergence(*zip(*values[1:4])) if len(values) > 3 else {"order": None, "why": "three only"}
+    return c, f"{before['order']:.2f}" if before["order"] else f"none ({before['why']})"
+
+
+def order_table(study):
+    rows = []
+    for case, entry in study.cases.items():
+        base = sorted(study.base(case), key=lambda p: p["dp"])
+        for error in entry["error"]:
+            values = [(p["dp"], p["values"].get(error["name"])) for p in base]
+            values = [v for v in values if v[1] is not None]
+            if len(values) < 3 or error["kind"] == "noise":
+                continue
+            c, before = orders(values)
+            reference = error.get("reference") if error["kind"] in SCALAR else None
+            rows.append([entry.get("title", case), error["name"], against(error),
+                         *(f"{v:.5g}" for _, v in values[:3]),
+                         f"{c['order']:.2f}" if c["order"] else f"none ({c['why']})", before,
+                         f"{c['extrapolated']:.5g}" if c["order"] else "-", f"{100 * c['band']:.2g}",
+                         "-" if reference is None else f"{reference:.5g}"])
+    return table(["case", "quantity", "against", "finest", "middle", "coarsest", "observed order",
+                  "order one level coarser", "extrapolated", "band of the finest (%)", "reference"], rows)
+
+
+def halving_table(study):
+    rows = []
+    for case, entry in study.cases.items():
+        for error, reference in [(e["name"], against(e)) for e in entry["error"]]:
+            b = study.slope(case, error)
+            points = sorted((p for p in study.base(case) if p["errors"].get(error)), key=lambda p: -p["dp"])
+            if len(points) < 2:
+                continue
+            order = np.polyfit(np.log([p["dp"] for p in points]),
+                               np.log([p["errors"][error] for p in points]), 1)[0]
+            rows.append([entry.get("title", case), error, reference,
+                         f"{percent(points[0]['errors'][error])} to "
+                         f"{percent(points[-1]['errors'][error])}", f"{order:.2f}",
+                         f"{2 ** (1 / b):.1f}" if b else "refinement does not reduce it"])
+    return table(["case", "error", "against", "coarsest to finest (%)", "power of dp",
+                  "halving it costs x times"], rows)
+
+
+def knob_rows(study, case, error):
+    """(gain, knob, value, {level: cell}, whether all finished, whether any error is a zero crossing)."""
+    for knob, entry in study.knobs.items():
+        for value in entry["values"]:
+            points = study.of(case, knob, value)
+            if not points:
+                continue
+            cells, gains = {}, []
+            for p in points:
+                ratios = study.ratios(p, error)
+                cells[p["level"]] = f"**{p['outcome']}**" if not finished(p) else \
+                    f"{ratios[0]:.2f} / {ratios[1]:.2f}{f' {CROSSING}' if study.crosses(p, error) else ''}" \
+                    if ratios else "-"
+                gains.append(study.gain(p, error))
+            gains = [g for g in gains if g]
+            yield (float(np.exp(np.mean(np.log(gains)))) if gains else 0, knob, value, cells,
+                   all(finished(p) for p in points), any(study.crosses(p, error) for p in points))
+
+
+def gain_text(gain):
+    return "-" if not gain else "over 1000" if gain > 1000 else f"{gain:.3g}"
+
+
+def knob_table(study, case):
+    entry = study.cases[case]
+    rows = sorted(knob_rows(study, case, main_error(entry)), key=lambda r: -r[0])
+    levels = sorted({level for r in rows for level in r[3]})
+    fineness = {p["level"]: f"{across(entry, p):.3g} {entry.get('what', 'across')}"
+                for p in study.of(case) if p["dp"]}
+    head = [f"error / cost, {fineness.get(k, f'level {k}')}" for k in levels]
+    return table(["setting", *head, "gain"], [
+        [study.label(k, v)] + [cells.get(level, "") for level in levels] + [gain_text(g)]
+        for g, k, v, cells, *_ in rows])
+
+
+def ranked_knobs(study, scene):
+    """(least gain, largest gain, knob, value, whether any error is a zero crossing), best first."""
+    found, crossed = {}, set()
+    for case in (c for c in study.cases if study.cases[c]["scene"] == scene):
+        for gain, knob, value, _, sound, zero in knob_rows(study, case, main_error(study.cases[case])):
+            found.setdefault((knob, value), []).append(gain if sound else 0)
+            crossed |= {(knob, value)} if zero else set()
+    return sorted(((min(g), max(g), *k, k in crossed) for k, g in found.items() if min(g) > 0), reverse=True)
+
+
+def best_knobs(study):
+    """Per scene the settings with the largest gain in all cases where they ran."""
+    rows = []
+    for scene, words in SCENES.items():
+        rows += [[words, study.label(knob, value) + (f" {CROSSING}" if zero else ""),
+                  " to ".join(dict.fromkeys(map(gain_text, (low, high))))]
+                 for low, high, knob, value, zero in ranked_knobs(study, scene)[:8]]
+    return table(["scene", "setting", "gain, least and most over its cases"], rows)
+
+
+def failures(study):
+    rows = [[p["name"], p["outcome"], p["message"]] for p in study.points
+            if not finished(p) and p["outcome"] != "not run"]
+    missing = [p["name"] for p in study.points if p["outcome"] == "not run"]
+    text = table(["point", "outcome", "message"], rows)
+    if missing:
+        text += f"\n\nNot run: {len(missing)} of {len(study.points)} points: {', '.join(missing)}."
+    return text
+
+
+def forecast_cells(row):
+    """Case, threads, and forecast / measured steps and seconds, with the error of the forecast."""
+    head = [row["case"], row["threads"]]
+    if "failed" in row:
+        return head + [f"**{row['failed']}**"] + [""] * 5
+    cells = [f"{row['until']:g} of {row['end']:g}"]
+    for key, number in (("steps", "{:,.0f}"), ("seconds", "{:.1f}")):
+        wanted, got = row["foreseen"][key], row["taken"][key]
+        cells += [f"{number.format(wanted)} / {number.format(got)}", f"{100 * (wanted / got - 1):+.0f}"]
+    return head + cells + [f"{row['taken']['load']:.1f}"]
+
+
+def speed_up(data):
+    """The speed-up by more threads, from the time of a step."""
+    each = {(r["case"], r["threads"]): r["taken"]["seconds"] / r["taken"]["steps"]
+            for r in data["rows"] if "failed" not in r}
+    text = ""
+    for threads in sorted({n for _, n in each if n > 1}):
+        gains = [each[case, 1] / each[case, n] for case, n in each if n == threads and (case, 1) in each]
+        if gains:
+            text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast as one, "
+                     f"{np.exp(np.mean(np.log(gains))):.2f} times in the geometric mean.")
+    return text
+
+
+def forecast_table(data):
+    off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
+           for r in data["rows"] if "failed" not in r]
+    text = (f"The seconds are right within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs."
+            f"{speed_up(data)}")
+    return table(["case", "threads", "until (s)", "steps forecast / measured", "error (%)",
+                  "seconds forecast / measured", "error (%)", "load before"],
+                 [forecast_cells(row) for row in data["rows"]]) + "\n\n" + text

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: MIT
+"""The figures of tools/report/verify_contact.py: how each is taken from finished runs. A figure is (words, value,
+limit or None); it is kept if |value| <= limit. run.constants holds what the tool has set."""
+import functools
+import math
+
+from common import np
+import verify_contact_reference as reference
+from sphfsi.snapshots import KINDS, Snapshots
+
+G = 9.81
+DISC = {"radius": 0.05, "density": 1000, "young": 1e6, "poisson": 0.3}
+impact = functools.cache(reference.disc_impact)
+lying_beam = functools.cache(reference.lying_beam)
+
+
+def speed_after(run, column, count=100):
+    """Slope of the last rows."""
+    table = run.table()
+    return float(np.polyfit(table["time_s"][-count:], table[column][-count:], 1)[0])
+
+
+# --- pressure ---
+def press_of(stiffer, limit):
+    """What floor and joint add to the compression of the blocks, as the height of a layer of the softer
+    block."""
+    def measure(run):
+        table, dp, soft = run.table(), run.dp, min(1, stiffer)
+        strain = -1e-4 * (1 - 0.3 ** 2)
+        lower, upper = (float(table[f"{body}_dy_m"][-1]) / strain for body in ("lower", "upper"))
+        at_floor, at_joint = lower - 0.05, upper - lower - 0.05 - 0.05 / stiffer
+        return [("layer that the floor adds, dp", at_floor / dp, limit),
+                ("layer that the joint adds, dp", at_joint * soft / dp, limit)]
+    return measure
+
+
+# --- impact ---
+def disc_of(speed, limits):
+    def measure(run):
+        """The disc touches first a spacing below its start."""
+        back, way, until = impact(speed, **DISC, n=24)
+        y, ledger = run.table()["disc_cy_m"], run.table("ledger.csv")
+        touching = ledger["time_s"][ledger["contact_J_per_m"] > 0]
+        found = (speed_after(run, "disc_cy_m") / speed, float(y[0] - y.min()) - run.dp,
+                 float(touching[-1]) - run.dp / speed)
+        rows = []
+        for words, value, wanted, limit in zip(("restitution", "way of the centre", "time in contact"), found,
+                                               (back, way, until), limits):
+            rows.append((f"{words}, % more than {wanted:.4g}", 100 * (value / wanted - 1), limit))
+        balance = abs(ledger["dissipated_J_per_m"]).max() / ledger["kinetic_J_per_m"][0]
+        return rows + [("energy that does not close, % of the kinetic", 100 * float(balance), 0.5)]
+    return measure
+
+
+def measure_bars(run):
+    apart = (speed_after(run, "long_cx_m") - speed_after(run, "short_cx_m")) / run.constants["v"]
+    return [("restitution less 1/2", apart - 0.5, 0.02)]
+
+
+# --- line contact ---
+def measure_line(runs):
+    """Loads at two ways of the plate. The lattice moves the whole curve by a part of dp; its slope does not
+    know."""
+    ways, loads = [], []
+    for run in runs:
+        ways.append(run.constants["D"])
+        loads.append(-float(run.table()["plate_fy_N_per_m"][-10:].mean()))
+    exact = [reference.disc_compression(load, DISC["radius"], DISC["young"], DISC["poisson"])
+             for load in loads]
+    return [("disc too large by, dp a contact", float(exact[1] - ways[1]) / 2 / runs[0].dp, 0.25),
+            ("indentation between two loads, % too large",
+             100 * ((ways[1] - ways[0]) / (exact[1] - exact[0]) - 1), 5)]
+
+
+# --- friction ---
+def incline(run):
+    slope, friction = run.constants["slope"], run.constants["mu"]
+    norm = G / math.sqrt(1 + slope ** 2)
+    table = run.table()
+    start = run.constants["settle"] + 0.5 * run.constants["rise"]
+    return norm, slope, friction, table["time_s"], table["block_cx_m"] - table["block_cx_m"][0], start
+
+
+def slide_of(limit):
+    def measure(run):
+        """Driven for `push` with (slope - mu) of the normal gravity, then braked with mu of it."""
+        norm, slope, friction, t, x, start = incline(run)
+        push = run.constants["push"]
+        speed = (slope - friction) * norm * push
+        way, time = speed ** 2 / (2 * friction * norm), speed / (friction * norm)
+        pushed = float(np.interp(start + push, t, x))
+        rest = t[x < x[-1] - 1e-5][-1]
+        return [("way until it rests, % more than v^2/(2 mu g)",
+                 100 * (float(x[-1] - pushed) / way - 1), limit),
+                ("time until it rests, % more than v/(mu g)",
+                 100 * (float(rest - start - push) / time - 1), limit)]
+    return measure
+
+
+def slope_of(limit):
+    def measure(run):
+        norm, slope, friction, t, x, start = incline(run)
+        way = 0.5 * (slope - friction) * norm * (t[-1] - start) ** 2
+        return [("way down, % more than t^2/2 g (sin a - mu cos a)", 100 * (float(x[-1]) / way - 1), limit)]
+    return measure
+
+
+def held_of(limit):
+    def measure(run):
+        """Ways in spacings, of the last 0.5 s and before."""
+        _, _, _, t, x, _ = incline(run)
+        late = t > t[-1] - 0.5
+        return [("way down before 1 s, dp", float(x[~late][-1]) / run.dp, None),
+                ("way down from 1 to 1.5 s, dp", float(x[-1] - x[~late][-1]) / run.dp, limit)]
+    return measure
+
+
+def topple_of(falls):
+    def measure(run):
+        angle = float(abs(run.table()["block_angle_rad"]).max())
+        return [("falls over, as statics says" if falls else "stands, as statics says (1: falls)",
+                 int((angle > 0.3) != falls), 0)]
+    return measure
+
+
+# --- a stack ---
+def gaps(run, step):
+    """Mean distance between the surfaces of the stack at each joint, in spacings; 1 is touch."""
+    with Snapshots(run.folder / "fields.vtkhdf") as shots:
+        x, body = shots.load(step, "Points")[:, :2], shots.load(step, "body")
+        solid = shots.load(step, "kind") == KINDS["solid"]
+        first = shots.load(0, "Points")[:, :2]
+    rows = []
+    for k in range(3):
+        mine = solid & (body == k)
+        for side in (first[mine, 1].min(), first[mine, 1].max()):
+            rows.append(x[mine & (abs(first[:, 1] - side) < 1e-6), 1].mean())
+    return [(above - below) / run.dp for below, above in zip([-0.5 * run.dp, *rows[1::2]], rows[0::2])]
+
+
+def measure_stack(run):
+    """Pressures of the weight above each joint over E; statics."""
+    table = run.table()
+    half = len(table["time_s"]) // 2
+    moved = max(float(np.hypot(table[f"{b}_cx_m"][half:] - table[f"{b}_cx_m"][half],
+                               table[f"{b}_cy_m"][half:] - table[f"{b}_cy_m"][half]).max()) for b in "abc")
+    overlap = [1 - gap for gap in gaps(run, -1)]
+    return [("moves from 5 to 10 s, dp", moved / run.dp, 1e-3),
+            ("largest overlap at rest, dp", max(overlap), 0.01)]
+
+
+def stands_of(falls):
+    def measure(run):
+        angle = float(abs(run.table()["c_angle_rad"]).max())
+        return [("upper block falls, as statics says" if falls else
+                 "stack stands, as statics says (1: falls)", int((angle > 0.2) != falls), 0)]
+    return measure
+
+
+# --- a strip that folds ---
+def measure_fold(run):
+    thick, drop, length = 0.02, 0.05, 0.5
+    places, heights = lying_beam(length, thick, 3e6, 0.3, 1000 * G * thick, drop)
+    with Snapshots(run.folder / "fields.vtkhdf") as shots:
+        first, x = shots.load(0, "Points")[:, :2], shots.load(-1, "Points")[:, :2]
+    arm = (first[:, 1] > 0) & (first[:, 0] > 0)
+    off = []
+    for place in np.unique(np.round(first[arm, 0], 7)):
+        row = arm & (abs(first[:, 0] - place) < 1e-6)
+        off.append(x[row, 1].mean() - 0.5 * thick - np.interp(place, places, heights))
+    off = 100 * np.array(off) / drop
+    return [("axis from the beam's, RMS, % of the gap", float(np.sqrt((off ** 2).mean())), 0.5),
+            ("the same, largest", float(abs(off).max()), 1)]
+
+
+def measure_beams(run):
+    table = run.table()
+    rest = 0.5 * (0.015 - 0.0025)
+    return [("deflection of the lower beam, % more than half of the way",
+             100 * (float(-table["lower_dy_m"][-20:].mean()) / rest - 1), 1)]
+
+
+# --- what must not pass ---
+def particles(shots, step):
+    x, kind, body = shots.load(step, "Points")[:, :2], shots.load(step, "kind"), shots.load(step, "body")
+    return x, kind == KINDS["wall"], kind == KINDS["solid"], body
+
+
+def outline(x, first):
+    """Of a lattice of columns: the outermost particles in order, in their present places."""
+    left, right = (np.flatnonzero(abs(first[:, 0] - side) < 1e-6)
+                   for side in (first[:, 0].min(), first[:, 0].max()))
+    left, right = left[np.argsort(first[left, 1])], right[np.argsort(-first[right, 1])]
+    return x[np.concatenate([left, right])]
+
+
+def inside(points, polygon):
+    """How many points lie in the polygon: an odd number of its edges is to the right of each."""
+    ax, ay = polygon.T
+    bx, by = np.roll(polygon, -1, axis=0).T
+    px, py = points[:, :1], points[:, 1:]
+    crosses = (ay > py) != (by > py)
+    at = ax + (py - ay) * (bx - ax) / np.where(by == ay, 1, by - ay)
+    return int((np.count_nonzero(crosses & (at > px), axis=1) % 2 == 1).sum())
+
+
+def measure_bullet(run):
+    """Particles of the body between the outermost ones of the target, summed over 200 snapshots."""
+    passed = 0
+    with Snapshots(run.folder / "fields.vtkhdf") as shots:
+        first, wall, solid, body = particles(shots, 0)
+        for step in range(len(shots.times)):
+            x = shots.load(step, "Points")[:, :2]
+            target = solid & (body == 0) if run.constants["held"] else wall
+            passed += inside(x[solid & (body == 1)], outline(x[target], first[target]))
+    return [("particles that have passed", passed, 0), ("1: the run stopped", int(run.stopped), None)]
+
+
+def measure_driven(run):
+    """The ram moves by 60 of the 115 mm between itself and the floor. The blocks begin 5 mm apart."""
+    table = run.table()
+    apart = 0.005 + table["U_dy_m"] - table["L_dy_m"]
+    return [("largest overlap of the blocks, dp", -float(apart.min()) / run.dp, 0.5),
+            ("1: the run stopped", int(run.stopped), 0)]
