@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The exchange between fluid and structure: what it knows, and its part of a step. README.md tells the
- * order. */
+ * The exchange between fluid and structure: what it knows, and its part of a step. README.md
+ * tells the order. */
 #ifndef SPHFSI_COUPLING_COUPLING_H
 #define SPHFSI_COUPLING_COUPLING_H
 
@@ -21,8 +21,8 @@ struct coupling {
     struct particles *particles; /* of the solid */
     bool substeps;               /* the structure takes several steps in one of the fluid */
     double impedance;            /* rho0 c0, kg/(m^2 s); 0: without sub-steps */
-    /* Of the integrator: the evaluation whose rates advance the fluid is this fraction of a step after
-     * the step's start; the solid kicks in the middle of its drifts. */
+    /* Of the integrator: the evaluation whose rates advance the fluid is this fraction of a
+     * step after the step's start; the solid kicks in the middle of its drifts. */
     double ahead;
     bool centred;
     /* T-35b, s: time over which the fluid receives the interface impulse; of the run's state. */
@@ -33,17 +33,19 @@ struct coupling {
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 
-/* Sub-steps or not, which follows from the bounds of the step; the exchange time begins with the fluid's
- * longest step. Also after a checkpoint has been loaded, which has the exchange time of its run. */
+/* Sub-steps or not, which follows from the bounds of the step; the exchange time begins with
+ * the fluid's longest step. Also after a checkpoint has been loaded, which has the exchange
+ * time of its run. */
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest);
 
 /* --- a step of dt of the fluid --- */
 
-/* With a predictor, between two evaluations: the structure half a step ahead; `last` is the step before. */
+/* With a predictor, between two evaluations: the structure half a step ahead; `last` is the
+ * step before. */
 void coupling_predict(struct coupling *coupling, double dt, double last);
 
-/* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure. Returns
- * the largest displacement of a particle, m. */
+/* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
+ * Returns the largest displacement of a particle, m. */
 double coupling_advance(struct coupling *coupling, double dt, int n, double kick, double last);
 
 #endif

@@ -80,7 +80,8 @@ SPHFSI_INLINE void fluid_force(const struct fluid *f, const struct neighbours *n
         add_force(wet_x, wet_y, 2 * PAIR_SLOPE * f->k.h, volume, wet[0], wet[1]);
 }
 
-/* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed fields. */
+/* The forces on the `count` particles at `index` of a cluster, of which `own` are the packed
+ * fields. */
 SPHFSI_INLINE void force_on_cluster(const struct fluid *f, struct particles *p,
                                     const int32_t *index, int count, const real *own,
                                     const struct neighbours *neighbours,

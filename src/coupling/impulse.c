@@ -84,8 +84,8 @@ void impulse_end(struct coupling *coupling)
     }
 }
 
-/* The force on the body contains the pressure that gave the fluid a part of the impulse. The body has
- * had that part in its sub-steps: it is taken off the force, and off the impulse. */
+/* The force on the body contains the pressure that gave the fluid a part of the impulse. The
+ * body has had that part in its sub-steps: it is taken off the force, and off the impulse. */
 void impulse_return(struct coupling *coupling, double kick)
 {
     struct particles *const p = coupling->particles;

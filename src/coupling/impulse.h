@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * The impedance of the fluid at a structure within the structure's sub-steps, and the impulse that it
- * exchanges (T-35a to T-35e). */
+ * The impedance of the fluid at a structure within the structure's sub-steps, and the impulse
+ * that it exchanges (T-35a to T-35e). */
 #ifndef SPHFSI_COUPLING_IMPULSE_H
 #define SPHFSI_COUPLING_IMPULSE_H
 
 #include "coupling/coupling.h"
 
-/* Before sub-steps of dt: the wetted normals. Afterwards: the impulse of the sub-steps, and the pressure
- * that gives it to the fluid. */
+/* Before sub-steps of dt: the wetted normals. Afterwards: the impulse of the sub-steps, and
+ * the pressure that gives it to the fluid. */
 void impulse_begin(struct coupling *coupling, double dt);
 void impulse_end(struct coupling *coupling);
 

@@ -10,11 +10,12 @@
 typedef void advance_rows(struct particles *p, const void *by, int64_t from, int64_t end);
 void advance_fluid(struct simulation *sim, advance_rows *rows, const void *by);
 
-/* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the fluid for
- * `kick`. */
+/* The sub-steps of a structure in a fluid step of dt; the rates of the evaluation act on the
+ * fluid for `kick`. */
 void advance_structure(struct simulation *sim, double dt, double kick);
 
-/* Finds the extremes of the fluid's present state; and the speed of the fastest particle of any kind. */
+/* Finds the extremes of the fluid's present state; and the speed of the fastest particle of
+ * any kind. */
 void update_extremes(struct simulation *sim);
 void find_speed(struct simulation *sim);
 

@@ -37,16 +37,16 @@ static void add_external(struct simulation *sim, double time)
     sim->fluid.extremes.acceleration2 = top;
 }
 
-/* L-5a: the gradients of the density are found once in the time in which sound crosses the kernel's reach.
- * Verlet's even and odd steps would drift apart by it. */
+/* L-5a: the gradients of the density are found once in the time in which sound crosses the
+ * kernel's reach. Verlet's even and odd steps would drift apart by it. */
 static bool keeps_slopes(const struct simulation *sim, double time)
 {
     const struct state *const st = &sim->state;
     const double interval = KERNEL_REACH * sim->fluid.k.h / sim->fluid.k.c0;
     if (sim->integrator->alternates) return false;
     if (time != st->time) return true; /* symplectic: the predictor's */
-    /* Not after the evaluation before: time - dt has errors of round-off, and may have passed a multiple
-     * of the interval that the step before had not reached. */
+    /* Not after the evaluation before: time - dt has errors of round-off, and may have passed
+     * a multiple of the interval that the step before had not reached. */
     const double before = time - st->dt - 2 * DBL_EPSILON * time;
     return st->steps > 0 && floor(time / interval) <= floor(before / interval);
 }

@@ -134,8 +134,8 @@ static enum err check_fall(const struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Fluid that falls within the domain is never faster, on the mean, than after a fall through all of it.
- * One that is faster falls through periodic sides for ever. */
+/* Fluid that falls within the domain is never faster, on the mean, than after a fall through
+ * all of it. One that is faster falls through periodic sides for ever. */
 static enum err check_held_fluid(const struct simulation *s, struct diag *d)
 {
     const struct particles *const p = &s->kind[KIND_FLUID];

@@ -6,8 +6,8 @@
 
 #include "particles/kernel.h"
 
-/* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope from r to
- * r0, by four points of Gauss. */
+/* L-7b without volumes and beta rho0 c0^2, 1/m^2: the integral of L-7 times the kernel's slope
+ * from r to r0, by four points of Gauss. */
 static double repulsion_held(double r, double r0, double h)
 {
     static const double at[] = {0.069431844202973713, 0.330009478207571868, 0.669990521792428132,

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * A run in memory: from a scene to its state at time zero, and step by step onward. Contains no file names
- * and no command lines. */
+ * A run in memory: from a scene to its state at time zero, and step by step onward. Contains
+ * no file names and no command lines. */
 #ifndef SPHFSI_TIME_SIMULATION_H
 #define SPHFSI_TIME_SIMULATION_H
 
@@ -24,8 +24,8 @@ void simulation_free(struct simulation *sim);
  * comes within a step of it. ERR_GUARD: the state is invalid; d has the message. */
 enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d) SPHFSI_CHECKED;
 
-/* After the STATE fields, n of each kind and sim->state have been loaded from a checkpoint: rebuilds
- * everything derived. The next step gives the same bits as in the uninterrupted run. */
+/* After the STATE fields, n of each kind and sim->state have been loaded from a checkpoint:
+ * rebuilds everything derived. The next step gives the same bits as in the uninterrupted run. */
 enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
 /* The account of energy begins with the present state. */

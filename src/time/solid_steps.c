@@ -38,9 +38,9 @@ static void advance_lone(struct simulation *s, double dt, int n)
     }
 }
 
-/* When a contact is near, each step is chosen separately and may be shorter than planned. Where surfaces
- * are pressed so hard that the material may fail, the guards judge each step. Returns the time
- * advanced, or 0 if all *n steps were as long as planned. */
+/* When a contact is near, each step is chosen separately and may be shorter than planned.
+ * Where surfaces are pressed so hard that the material may fail, the guards judge each step.
+ * Returns the time advanced, or 0 if all *n steps were as long as planned. */
 static double advance_near(struct simulation *s, double dt, int *n)
 {
     double advanced = 0;
@@ -62,8 +62,8 @@ static double advance_near(struct simulation *s, double dt, int *n)
     return shorter ? advanced : 0;
 }
 
-/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). The positions after
- * the step follow later. */
+/* `verlet` kicks at the start of a step (T-32), the others in its middle (T-30, T-36). The
+ * positions after the step follow later. */
 static void external_for_step(struct simulation *s, double dt)
 {
     struct particles *const p = &s->kind[KIND_SOLID];

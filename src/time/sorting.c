@@ -90,8 +90,8 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     return ERR_OK;
 }
 
-/* For the fluid: the larger of its speeds before and after, half a step of its acceleration, and its
- * shift. */
+/* For the fluid: the larger of its speeds before and after, half a step of its acceleration,
+ * and its shift. */
 void use_skin_left(struct simulation *sim, double speed2_before)
 {
     const double dt = sim->state.dt, speed = sqrt(max2(speed2_before, sim->extremes.speed2)),
@@ -100,8 +100,8 @@ void use_skin_left(struct simulation *sim, double speed2_before)
     sim->skin_left -= moved + max2(moved, sim->solid_max_move);
 }
 
-/* Where displacements are bounded, cells need not be measured at every step. Rounding errors of the displacements are below the
- * tolerance. */
+/* Where displacements are bounded, cells need not be measured at every step. Rounding errors
+ * of the displacements are below the tolerance. */
 bool sorting_due(struct simulation *sim)
 {
     if (sim->effects & FX_OPEN && open_due(&sim->open, &sim->kind[KIND_FLUID], sim->scene->top.dp))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The state of a run in memory: what it carries from step to step, and `struct simulation`, which all files
- * of this folder work on. */
+ * The state of a run in memory: what it carries from step to step, and `struct simulation`,
+ * which all files of this folder work on. */
 #ifndef SPHFSI_TIME_STATE_H
 #define SPHFSI_TIME_STATE_H
 
@@ -39,8 +39,9 @@ struct account {
     double restarts[ACCOUNT_ENTRIES]; /* TERM_RESTARTS of fluids */
     double dummies[ACCOUNT_ENTRIES]; /* work of dummies on the fluid beyond that on the structure */
     double exchange[ACCOUNT_ENTRIES]; /* TERM_INTERFACE of solids, with the work still to return */
-    /* Of regions, at their first section: the lowest value of each term, the energy that dummies
-     * could return then, and the largest available energy since then; the lowest potential energy. */
+    /* Of regions, at their first section: the lowest value of each term, the energy that
+     * dummies could return then, and the largest available energy since then; the lowest
+     * potential energy. */
     double low[ACCOUNT_TERMS][ACCOUNT_ENTRIES], available[ACCOUNT_TERMS][ACCOUNT_ENTRIES];
     double lowest[ACCOUNT_ENTRIES];
     double region[ACCOUNT_ENTRIES]; /* the first section of the region that a section belongs to */
@@ -147,11 +148,10 @@ struct simulation {
     struct extremes extremes; /* of the fluid */
     double speed2;            /* of the fastest particle of any kind, squared, (m/s)^2 */
     double solid_max_move;    /* of a solid particle in the last step, m (not with symplectic) */
-    double shifted;   /* largest shift of a fluid particle in the last step, m; 0: no shifting */
-    double skin_left; /* distance that two particles may move until a sorting is due, m */
-    bool evaluated;   /* rates, pressures and the fluid's force are those of the present state */
-    bool
-        cells_overfull; /* cells hold more particles than the sweeps support: evaluations do nothing */
+    double shifted;      /* largest shift of a fluid particle in the last step, m; 0: no shifting */
+    double skin_left;    /* distance that two particles may move until a sorting is due, m */
+    bool evaluated;      /* rates, pressures and the fluid's force are those of the present state */
+    bool cells_overfull; /* more particles in a cell than the sweeps support: no evaluations */
     bool gravity_varies; /* with time */
     int uneven; /* the output, from 1, that has no such grid with those before it; 0: none */
     double output_grid; /* s, of all frequent outputs; 0: none is needed (T-34d) */

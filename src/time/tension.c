@@ -24,13 +24,14 @@ int particles_near(const struct simulation *sim, double x, double y)
 
 void limit_isolated_tension(struct simulation *sim)
 {
-    /* T-45: what a water hammer at the speed that c0 is chosen for changes, and two thirds of the guard's
-     * limit. Larger tension is not part of the flow. */
+    /* T-45: what a water hammer at the speed that c0 is chosen for changes, and two thirds of
+     * the guard's limit. Larger tension is not part of the flow. */
     const double factor = sim->scene->numerics.sound_factor;
     const double lowest = max2(-1 / factor, -2.0 / 3 * sim->guard.dens_limit);
     if (!(sim->extremes.dens_low < lowest)) return;
     struct particles *const p = &sim->kind[KIND_FLUID];
-    /* Particles within reach: a third of the number inside the fluid, fewer than a corner of it has. */
+    /* Particles within reach: a third of the number inside the fluid, fewer than a corner of
+     * it has. */
     const double reach = KERNEL_REACH * sim->fluid.k.h / sim->scene->top.dp;
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < p->n; i++) {

@@ -142,8 +142,8 @@ bool timestep_beyond(const struct simulation *s, double cfl)
     return s->effects & FX_FLUID && timestep_courant(s) > cfl * (1 + 1e-9);
 }
 
-/* The step that the bounds allow now, s: the last one may be short because an output followed it. INFINITY
- * before the first step. */
+/* The step that the bounds allow now, s: the last one may be short because an output followed
+ * it. INFINITY before the first step. */
 static double usual_step(const struct simulation *s)
 {
     double step = s->state.dt > 0 ? s->state.dt_max : (double)INFINITY;
@@ -204,8 +204,8 @@ bool timestep_output(const struct scene *c, int which, struct output_interval *o
     return true;
 }
 
-/* The grid of outputs less than `most` apart, 0: none is needed. False if it is finer than half a step or
- * half of the shortest interval; s->uneven is then the output that makes it so. */
+/* The grid of outputs less than `most` apart, 0: none is needed. False if it is finer than
+ * half a step or half of the shortest interval; s->uneven is then the output that makes it so. */
 static bool find_grid(struct simulation *s, double step, double most)
 {
     double grid = 0, shortest = (double)INFINITY;
@@ -262,8 +262,8 @@ double timestep_choose(struct simulation *s, double t_limit, bool *hits)
     return equal;
 }
 
-/* The fraction of the solid's stable step that is used. At half of it uneven steps feed no oscillation that
- * viscosity does not damp (T-34d). */
+/* The fraction of the solid's stable step that is used. At half of it uneven steps feed no
+ * oscillation that viscosity does not damp (T-34d). */
 static double solid_safety(const struct simulation *s)
 {
     return s->scene->numerics.solid_safety * (s->uneven ? 0.5 : 1);

@@ -8,7 +8,8 @@
 /* Steps before an output time that are made equal: one step more in so many is a small change. */
 enum { EQUAL_STEPS = 64 };
 
-/* Outputs that are fewer steps apart must have a common grid of times. Others disturb the steps rarely. */
+/* Outputs that are fewer steps apart must have a common grid of times. Others disturb the
+ * steps rarely. */
 enum { FREQUENT_STEPS = 16 };
 
 /* Largest possible step of the fluid, s: Eq. 28b at rest. */
@@ -39,8 +40,8 @@ void timestep_find_grid(struct simulation *s);
 /* The time at which the coming steps end: the next of that grid, or t_limit if that is earlier. */
 double timestep_stop(const struct simulation *s, double t_limit);
 
-/* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step, with half of the
- * last step, if neither cfl nor solid_safety sets that step. */
+/* The key of [numerics] that makes steps shorter, and half of its value. It is fixed_step,
+ * with half of the last step, if neither cfl nor solid_safety sets that step. */
 const char *timestep_shorter(const struct simulation *s, double *half);
 
 /* Chooses the next step from the fluid's last evaluation and the solid's bound. It ends no later

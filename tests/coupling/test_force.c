@@ -18,8 +18,8 @@ static void open(const char *text, const char *set, const char *another)
     solid = &rig.sim.kind[KIND_SOLID];
 }
 
-/* A fluid particle of rho = 1010 beside one solid particle, h = 1 m apart, no gravity: the solid takes
- * the fluid's pressure P = 1030.5050301001436 Pa and density, m_H = m = 640 kg/m, and
+/* A fluid particle of rho = 1010 beside one solid particle, h = 1 m apart, no gravity: the solid
+ * takes the fluid's pressure P = 1030.5050301001436 Pa and density, m_H = m = 640 kg/m, and
  *   F = m_H m 2 P/rho^2 |grad W| = 640^2 * 2 * 1030.505/1010^2 * 0.34815 = 288.1147585563459 N/m,
  * away from the fluid; the fluid's acceleration is F/640 the other way. */
 static void test_pair_by_hand(void)

@@ -84,10 +84,10 @@ static void face_one(void)
     impulse_begin(&rig.sim.coupling, 1e-4);
 }
 
-/* By hand: mass 100 * 1e-4 = 0.01 kg/m, rho0 c0 = 2e4, dt = 1e-4: k = 1e-4 * 2e4 * 0.01/0.01 = 2;
- * along the surface 0.6 * 3 + 0.8 * 2.75 = 4 m/s faster, of which 2/3 go: kick (-1.6, -6.4/3), of
- * which 0.01 is the impulse, 0.08/3 N s/m. Over 1 ms half of the pressure on 0.01 m gives it. A kick
- * of a quarter of that gives a quarter of what waits. */
+/* By hand: mass 100 * 1e-4 = 0.01 kg/m, rho0 c0 = 2e4, dt = 1e-4: k = 1e-4 * 2e4 * 0.01/0.01 =
+ * 2; along the surface 0.6 * 3 + 0.8 * 2.75 = 4 m/s faster, of which 2/3 go: kick (-1.6,
+ * -6.4/3), of which 0.01 is the impulse, 0.08/3 N s/m. Over 1 ms half of the pressure on 0.01
+ * m gives it. A kick of a quarter of that gives a quarter of what waits. */
 static void test_kick_and_settling_by_hand(void)
 {
     static const char *const integrators[] = {"integrator=symplectic", "integrator=leapfrog"};
@@ -354,8 +354,8 @@ static void test_small_surface_has_no_large_pressure(void)
     assert_near(1e-6 * fabs(pressure), pressure, solid->interface_pressure[0], "pressure");
 }
 
-/* T-35e: after short steps the time of the exchange falls by a step each, and grows to a longer step at once.
- * The pressure times that time is what waits, however it changes. */
+/* T-35e: after short steps the time of the exchange falls by a step each, and grows to a
+ * longer step at once. The pressure times that time is what waits, however it changes. */
 static void test_the_exchange_follows_the_steps(void)
 {
     static const double steps[] = {4e-4, 4e-4, 1e-9, 3e-4, 2e-4},

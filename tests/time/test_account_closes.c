@@ -61,8 +61,8 @@ static void go_on(double end)
                                       rig.diag.text);
 }
 
-/* The largest size of a term at the checks of a run, over the available energy, with a step that is a
- * fraction of the stable one. */
+/* The largest size of a term at the checks of a run, over the available energy, with a step
+ * that is a fraction of the stable one. */
 static double remainder_of(const char *text, const char *integrator, enum account_term term,
                            const char *key, double fraction, double end)
 {
@@ -106,8 +106,8 @@ static void test_the_solid_closes_with_the_step(void)
     falls(beam, TERM_SOLID, "numerics.solid_safety", 0.9, 0.05, 1e-3);
 }
 
-/* All terms and the work of dummies are the change of energy that the ledger has, which knows none of
- * them. */
+/* All terms and the work of dummies are the change of energy that the ledger has, which knows
+ * none of them. */
 static void test_the_terms_add_up(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -131,8 +131,9 @@ static void test_the_terms_add_up(void)
     "max_speed = 3\nvelocity = 0, -2\nartificial_viscosity = 0.02\n"
 static const char plain_drop[] = DROP, drop[] = DROP "acoustic_damper = 4\n";
 
-/* By L-7 a wall stores the energy of particles that it repels, and returns it (L-7b). A jet that runs into
- * the corner of the wall gives it 3 to 5 % of all energy. Without that energy the account gains up to 4 %. */
+/* By L-7 a wall stores the energy of particles that it repels, and returns it (L-7b). A jet
+ * that runs into the corner of the wall gives it 3 to 5 % of all energy. Without that energy
+ * the account gains up to 4 %. */
 static void test_repulsion_is_counted(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -153,8 +154,8 @@ static void test_repulsion_is_counted(void)
     }
 }
 
-/* The stored energy is the work of the repulsion: a particle between two dummies, by the integral of its
- * force over small ways. */
+/* The stored energy is the work of the repulsion: a particle between two dummies, by the
+ * integral of its force over small ways. */
 static void test_what_repulsion_holds(void)
 {
     static const char one[] =
@@ -181,8 +182,8 @@ static void test_what_repulsion_holds(void)
     assert_near(1e-3 * work, work, after - before, "stored energy");
 }
 
-/* Each Euler step of Verlet (Eq. 26) discards one of two solutions (T-46f): four times as many steps between
- * them gain a quarter. The rest of the account closes. */
+/* Each Euler step of Verlet (Eq. 26) discards one of two solutions (T-46f): four times as many
+ * steps between them gain a quarter. The rest of the account closes. */
 static void test_restarts_of_verlet(void)
 {
     double gained[2];
@@ -201,8 +202,8 @@ static void test_restarts_of_verlet(void)
     assert_near(0.08, 0.25, gained[1] / gained[0], "with four times as many steps between");
 }
 
-/* A drop that meets a wall: its damper takes work of the wall as of the fluid, so its dissipation gains
- * nothing. */
+/* A drop that meets a wall: its damper takes work of the wall as of the fluid, so its
+ * dissipation gains nothing. */
 static void test_the_damper_dissipates(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -214,7 +215,8 @@ static void test_the_damper_dissipates(void)
     }
 }
 
-/* What the damper holds is not dissipated yet: 1/2 m c0^2 (rho - rho_slow)^2/rho0^2 of each particle. */
+/* What the damper holds is not dissipated yet: 1/2 m c0^2 (rho - rho_slow)^2/rho0^2 of each
+ * particle. */
 static void test_what_the_damper_holds(void)
 {
     begin(drop, NULL, NULL, NULL);

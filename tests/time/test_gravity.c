@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Gravity that varies with time: bodies and fluid that nothing holds follow it, the energy that it gives is
- * booked, and one that is written as an expression but does not vary keeps the bits of a number. */
+ * Gravity that varies with time: bodies and fluid that nothing holds follow it, the energy
+ * that it gives is booked, and one that is written as an expression but does not vary keeps
+ * the bits of a number. */
 #include "rig.h"
 #include "unity.h"
 

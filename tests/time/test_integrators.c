@@ -111,8 +111,8 @@ static void rates(void)
     solid_forces(&rig.sim.solid, solid);
 }
 
-/* Positions are held to 1e-16 m, velocities and densities to 1e-16 of some tenths; rates are the same
- * numbers, so that only the last digits of the sums may differ. */
+/* Positions are held to 1e-16 m, velocities and densities to 1e-16 of some tenths; rates are
+ * the same numbers, so that only the last digits of the sums may differ. */
 static void compare(const struct memory *f, const struct memory *s)
 {
     for (int64_t i = 0; i < fluid->n; i++) {
@@ -215,8 +215,8 @@ static void test_verlet_steps(void)
     }
 }
 
-/* T-32a and T-32b written out over four steps, the last two half as long; the structure gets the impulse
- * of the fluid's kick. */
+/* T-32a and T-32b written out over four steps, the last two half as long; the structure gets
+ * the impulse of the fluid's kick. */
 static void test_leapfrog_steps(void)
 {
     open("integrator=leapfrog", "numerics.multirate=off");
@@ -241,7 +241,8 @@ static void test_leapfrog_steps(void)
             f1.y[i] += dt[n] * half.v[i];
             f1.u[i] = half.u[i] + 0.5 * dt[n] * f1.ax[i];
             f1.v[i] = half.v[i] + 0.5 * dt[n] * f1.ay[i];
-            /* The mean of the parabola's slope and curvature terms over the step, Adams' weights. */
+            /* The mean of the parabola's slope and curvature terms over the step, Adams'
+             * weights. */
             const double now = rate[n][i], old = rate[n > 1 ? n - 1 : 1][i],
                          older = rate[n > 2 ? n - 2 : 1][i];
             const double r = n > 1 ? dt[n] / dt[n - 1] : 1,
@@ -296,7 +297,8 @@ static void look_at_places(void *context, double time, const struct particles *p
     memcpy(seen.y, p->y, (size_t)p->n * sizeof(double));
 }
 
-/* A lone solid is shown to a program where it is in the middle of its step, for Verlet at its start. */
+/* A lone solid is shown to a program where it is in the middle of its step, for Verlet at its
+ * start. */
 static void test_a_lone_solid_as_a_program_sees_it(void)
 {
     static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",
@@ -321,9 +323,10 @@ static void test_a_lone_solid_as_a_program_sees_it(void)
     }
 }
 
-/* T-35 for one component: u, v, w of the particle when a step starts, u1, v1 after it; a and j are the mean
- * acceleration and its rate of change, of the instant `old` before the step's start; its lag is shorter by
- * `less` steps, and of the rate a share is carried on. Advances a, j and w. */
+/* T-35 for one component: u, v, w of the particle when a step starts, u1, v1 after it; a and j
+ * are the mean acceleration and its rate of change, of the instant `old` before the step's
+ * start; its lag is shorter by `less` steps, and of the rate a share is carried on. Advances
+ * a, j and w. */
 struct shown {
     double x, w, a; /* what the evaluation at `on` within the step is to see */
 };
@@ -336,13 +339,15 @@ static struct shown show(double u, double v, double u1, double v1, double *w, do
     const double a1 = *a + dt / (dt + lag) * ((v1 - v) / dt - *a);
     *j += dt / (dt + lag) * ((a1 - *a) / dt - *j);
     *a = a1;
-    /* From the middle of the step to its end; on the way the acceleration is a quarter of a step old. */
+    /* From the middle of the step to its end; on the way the acceleration is a quarter of a
+     * step old. */
     *w = (u1 - u) / dt + 0.5 * dt * (a1 + (lag + 0.5 * dt - 0.25 * dt) * *j);
     return s;
 }
 
-/* With sub-steps the fluid sees the structure carried on to the instant of the evaluation, `ahead` steps on,
- * with an acceleration that follows the mean over about h/c0 (T-35, T-14), shorter by `less` steps. */
+/* With sub-steps the fluid sees the structure carried on to the instant of the evaluation,
+ * `ahead` steps on, with an acceleration that follows the mean over about h/c0 (T-35, T-14),
+ * shorter by `less` steps. */
 static void see_substeps(const char *integrator, double ahead, double less)
 {
     open(integrator, "numerics.multirate=on");
@@ -404,9 +409,9 @@ static void four_steps_of_eq_27(double dt)
     }
 }
 
-/* Four sub-steps of Eq. 27 are four steps of Eq. 27 with the fluid's force held: in the first step that of
- * the evaluation, later carried on to the middle of the kicks, 3/8 of a step, by the rate at which its mean
- * over about h/c0 changes (T-36a). */
+/* Four sub-steps of Eq. 27 are four steps of Eq. 27 with the fluid's force held: in the first
+ * step that of the evaluation, later carried on to the middle of the kicks, 3/8 of a step, by
+ * the rate at which its mean over about h/c0 changes (T-36a). */
 static void test_substeps_are_steps_with_the_force_held(void)
 {
     open("integrator=verlet", "numerics.multirate=on");
@@ -469,7 +474,8 @@ static void test_the_force_on_a_dry_particle_fades(void)
     TEST_ASSERT_TRUE(solid->mean_fx[dry] == 0);
 }
 
-/* Where there are no sub-steps, or their middle is where the force is found, it is taken as it is. */
+/* Where there are no sub-steps, or their middle is where the force is found, it is taken as it
+ * is. */
 static void test_the_force_is_carried_only_to_where_it_is_used(void)
 {
     open("integrator=verlet", "numerics.multirate=on");
@@ -486,7 +492,8 @@ static void test_the_force_is_carried_only_to_where_it_is_used(void)
     TEST_ASSERT_NULL(solid->mean_fx);
 }
 
-/* However long the step, the acceleration that the fluid sees is a mean over a quarter of h/c0 at least. */
+/* However long the step, the acceleration that the fluid sees is a mean over a quarter of h/c0
+ * at least. */
 static void test_least_lag_of_what_the_fluid_sees(void)
 {
     open("integrator=leapfrog", "numerics.multirate=on");
@@ -496,8 +503,8 @@ static void test_least_lag_of_what_the_fluid_sees(void)
     assert_near(1e-15, lag / 4, reduced_averaging_time(&rig.sim.coupling, lag), "a long one");
 }
 
-/* A block of fluid without pressure falls: v = g t and y = g t^2/2 are exact for every scheme, whatever
- * the steps; here they vary as output times cut them. */
+/* A block of fluid without pressure falls: v = g t and y = g t^2/2 are exact for every scheme,
+ * whatever the steps; here they vary as output times cut them. */
 static void test_free_fall_with_uneven_steps(void)
 {
     static const char drop[] = "dp = 1 cm\nend_time = 1\ngravity = 0, -10\nprecision = double\n"
@@ -524,8 +531,8 @@ static void test_free_fall_with_uneven_steps(void)
     }
 }
 
-/* T-9b once a step, whatever the number of evaluations: in water of an even density the excess of the damper
- * falls by tau/(tau + dt) a step. The step before the first one is 0. */
+/* T-9b once a step, whatever the number of evaluations: in water of an even density the excess
+ * of the damper falls by tau/(tau + dt) a step. The step before the first one is 0. */
 static void test_the_damper_follows_once_a_step(void)
 {
     static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet",

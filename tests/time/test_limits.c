@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * What an effect adds to a step vanishes with its parameter: a scene that has it at next to nothing, so that
- * its code runs, keeps the bits of one that has not. */
+ * What an effect adds to a step vanishes with its parameter: a scene that has it at next to
+ * nothing, so that its code runs, keeps the bits of one that has not. */
 #include "rig.h"
 #include "unity.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Mass damping against exact decays (T-77); and the search for rest (T-78): the elongation of a hanging bar
- * by hand, no motion afterwards, the clock at zero, the bits of a search that was continued. */
+ * Mass damping against exact decays (T-77); and the search for rest (T-78): the elongation of
+ * a hanging bar by hand, no motion afterwards, the clock at zero, the bits of a search that
+ * was continued. */
 #include "output/checkpoint.h"
 #include "rig.h"
 #include "time/relax.h"
@@ -191,8 +192,8 @@ static void test_a_body_that_falls_has_no_rest(void)
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(text, "and 0 stops the speed is 1 of its largest"), text);
 }
 
-/* What is said of a search, and that the first velocities of the two-step scheme are those of rest: the bar
- * stays where it was found. */
+/* What is said of a search, and that the first velocities of the two-step scheme are those of
+ * rest: the bar stays where it was found. */
 static void test_verlet_and_what_is_said(void)
 {
     char text[RELAX_TEXT];

@@ -65,8 +65,9 @@ static void test_once_while_sound_crosses_the_kernel(void)
     }
 }
 
-/* Steps that divide the interval: round-off decides on which side of a multiple a step begins. Five intervals
- * and more were left out where the step before was taken to begin at the time less dt. */
+/* Steps that divide the interval: round-off decides on which side of a multiple a step begins.
+ * Five intervals and more were left out where the step before was taken to begin at the time
+ * less dt. */
 static void test_no_interval_is_left_out(void)
 {
     static const struct {

@@ -46,7 +46,8 @@ static double after(int64_t i, double dens)
     return fluid->dens[i];
 }
 
-/* The kernel reaches over 22 particles within the fluid; a third of that, 7, and less are a drop. */
+/* The kernel reaches over 22 particles within the fluid; a third of that, 7, and less are a
+ * drop. */
 static void test_who_is_a_drop(void)
 {
     const int64_t drop = at(41.5e-3, 40.5e-3);
@@ -83,8 +84,8 @@ static void test_leapfrog_forgets_its_rates(void)
     TEST_ASSERT_EQUAL_INT64(1, rig.sim.state.tension_limited);
 }
 
-/* A water hammer at the speed that c0 is chosen for: with sound_factor = 20 a twentieth; with 5 and less a
- * fifth, which the guard leaves. */
+/* A water hammer at the speed that c0 is chosen for: with sound_factor = 20 a twentieth; with
+ * 5 and less a fifth, which the guard leaves. */
 static void test_limit_follows_the_sound_factor(void)
 {
     static const struct {
@@ -153,8 +154,8 @@ static double off_account(const char *integrator, const char *cfl)
     return off;
 }
 
-/* The account closes with an error that falls with the step. Without the half step in which the density
- * still sank it is 3 % at C = 0.05. */
+/* The account closes with an error that falls with the step. Without the half step in which
+ * the density still sank it is 3 % at C = 0.05. */
 static void test_the_account_closes_over_a_reset(void)
 {
     static const struct {
@@ -196,8 +197,8 @@ static void assert_same_after_restart(const char *integrator, int cut)
     checkpoint_free(&image);
 }
 
-/* Cut before a reset, just after it, where the density is zero and its old rates are forgotten, and a step
- * later: the same bits of state, account and ledger. */
+/* Cut before a reset, just after it, where the density is zero and its old rates are
+ * forgotten, and a step later: the same bits of state, account and ledger. */
 static void test_restart_at_a_reset(void)
 {
     static const char *const integrators[] = {"integrator=leapfrog", "integrator=symplectic",

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The time step: its bounds by hand, output times hit exactly, sub-steps, and that the solid's bound
- * is the one that matters: stable below, unstable above. */
+ * The time step: its bounds by hand, output times hit exactly, sub-steps, and that the solid's
+ * bound is the one that matters: stable below, unstable above. */
 #include "time/warnings.h"
 #include "rig.h"
 #include "coupling/bounds.h"
@@ -121,8 +121,8 @@ static void test_multirate_auto(void)
     TEST_ASSERT_EQUAL_INT64(rig.sim.state.steps, rig.sim.state.solid_substeps);
 }
 
-/* A bound belongs to its effect: nu = 1e-2 m^2/s allows 0.125 * 0.0135^2/0.01 = 2.278125e-3 s, nothing
- * allows anything. */
+/* A bound belongs to its effect: nu = 1e-2 m^2/s allows 0.125 * 0.0135^2/0.01 = 2.278125e-3 s,
+ * nothing allows anything. */
 static void test_viscous_bound_by_hand(void)
 {
     bool hits;
@@ -177,7 +177,8 @@ static void test_repulsion_bound_by_hand(void)
     assert_near(1e-15, 3.0375e-4, rig.sim.dt_bound[BOUND_repulsion], "1/omega");
 }
 
-/* T-35d, h/c0 = 0.0135/20 s: at a fifth of the fluid's density b = 2/11, of the lightest of the bodies. */
+/* T-35d, h/c0 = 0.0135/20 s: at a fifth of the fluid's density b = 2/11, of the lightest of
+ * the bodies. */
 static void test_added_mass_bound_by_hand(void)
 {
     static const char body[] = "[solid cork]\nlike = gate\nshape = box 0.2, 0.2, 0.24, 0.24\n"
@@ -280,8 +281,8 @@ static void test_a_lone_solid_hits_its_times_in_batches(void)
     }
 }
 
-/* Energy of the block `steps` steps after a shake of 1 cm/s of every particle by itself; infinity if a
- * guard stops it. */
+/* Energy of the block `steps` steps after a shake of 1 cm/s of every particle by itself;
+ * infinity if a guard stops it. */
 static double energy_after(int steps, double *start)
 {
     struct particles *const p = &rig.sim.kind[KIND_SOLID];
@@ -304,8 +305,8 @@ static const char *const kappas[] = {"block.hourglass=0", "block.hourglass=10",
                                      "block.hourglass=50"};
 static const char *const integrators[] = {"integrator=symplectic", "integrator=verlet"};
 
-/* At the full bound, with the viscosity of the paper, a shaken block comes to rest but for its rigid
- * motion and its slowest modes. */
+/* At the full bound, with the viscosity of the paper, a shaken block comes to rest but for its
+ * rigid motion and its slowest modes. */
 static void test_stable_at_the_bound(void)
 {
     for (int k = 0; k < 6; k++) {
@@ -360,8 +361,9 @@ static void test_bound_knows_the_hourglass_springs(void)
     }
 }
 
-/* A chain of springs by hand is not at hand; but frequencies scale: with E by 4 the step halves, with
- * dp by 2 it doubles (all else in proportion). Power iteration does the same rounds: to round-off. */
+/* A chain of springs by hand is not at hand; but frequencies scale: with E by 4 the step
+ * halves, with dp by 2 it doubles (all else in proportion). Power iteration does the same
+ * rounds: to round-off. */
 static void test_bound_scales_as_it_must(void)
 {
     rig_open(&rig, block, "block.artificial_viscosity=0", NULL);
@@ -375,8 +377,9 @@ static void test_bound_scales_as_it_must(void)
     assert_near(1e-6, 2, rig.sim.solid.stable_step / step, "dp by 2");
 }
 
-/* The bound of a body that is stretched by 1 % and pulls at its ends, and the stiffness at 20 % in both
- * directions, are near those of the body at rest: not the forces count but their changes. */
+/* The bound of a body that is stretched by 1 % and pulls at its ends, and the stiffness at 20
+ * % in both directions, are near those of the body at rest: not the forces count but their
+ * changes. */
 static void test_bound_of_a_stretched_block(void)
 {
     for (int much = 0; much < 2; much++) {
