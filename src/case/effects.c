@@ -6,7 +6,7 @@
 #include <string.h>
 
 const struct effect_info effect_table[EFFECT_COUNT] = {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
     {#name, key, equation, meaning, groups, KIND_##kind},
 #include "case/effects.def"
 #undef EFFECT
@@ -69,7 +69,7 @@ static int first_wall_force(const struct scene *s)
     return -1;
 }
 
-#define EFFECT(name, when, key, equation, groups, kind, meaning)                  \
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning)           \
     static bool calls_for_##name(const struct scene *s, struct effect_caller *by) \
     {                                                                             \
         (void)s, (void)by;                                                        \
@@ -81,7 +81,7 @@ static int first_wall_force(const struct scene *s)
 bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by)
 {
     static bool (*const calls[EFFECT_COUNT])(const struct scene *, struct effect_caller *) = {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) calls_for_##name,
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) calls_for_##name,
 #include "case/effects.def"
 #undef EFFECT
     };
@@ -89,7 +89,7 @@ bool effect_called(const struct scene *s, enum effect effect, struct effect_call
 }
 
 static const effect_set effect_bits[EFFECT_COUNT] = {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) FX_##name,
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) FX_##name,
 #include "case/effects.def"
 #undef EFFECT
 };

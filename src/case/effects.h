@@ -7,7 +7,7 @@
 #include "particles/particles.h"
 
 enum effect {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) EFFECT_##name,
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) EFFECT_##name,
 #include "case/effects.def"
 #undef EFFECT
     EFFECT_COUNT
@@ -22,7 +22,7 @@ _Static_assert(EFFECT_COUNT <= 64, "a set of effects has 64 bits");
  * and the compiler removes their code. Used to prove that an effect costs nothing while it is off
  * (tests/agree/test_absence.py). */
 enum {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
     OUT_##name = (uint64_t)1 << EFFECT_##name,
 #include "case/effects.def"
 #undef EFFECT
@@ -32,11 +32,46 @@ enum {
 #endif
 
 enum {
-#define EFFECT(name, when, key, equation, groups, kind, meaning) \
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
     FX_##name = (uint64_t)1 << EFFECT_##name & ~(uint64_t)(SPHFSI_WITHOUT),
 #include "case/effects.def"
 #undef EFFECT
 };
+
+/* PAIR_x: FX_x of an effect that has a law in the pair sums by the column `pairs`. PAIR_EFFECTS: all of
+ * them; SURFACE_EFFECTS: those of walls and structures. */
+enum {
+#define PAIR_NONE(name)
+#define PAIR_WITH_FLUID(name) PAIR_##name = FX_##name,
+#define PAIR_WITH_SURFACE(name) PAIR_##name = FX_##name,
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) PAIR_##pairs(name)
+#include "case/effects.def"
+#undef PAIR_NONE
+#undef PAIR_WITH_FLUID
+#undef PAIR_WITH_SURFACE
+#define PAIR_NONE(name)
+#define PAIR_WITH_FLUID(name)
+#define PAIR_WITH_SURFACE(name) | FX_##name
+    SURFACE_EFFECTS = (uint64_t)0
+#include "case/effects.def"
+    ,
+#undef PAIR_WITH_FLUID
+#define PAIR_WITH_FLUID(name) | FX_##name
+    PAIR_EFFECTS = (uint64_t)0
+#include "case/effects.def"
+#undef PAIR_NONE
+#undef PAIR_WITH_FLUID
+#undef PAIR_WITH_SURFACE
+#undef EFFECT
+};
+
+/* The effects of a pair sum, a type of its own: FX_x cannot be tested in it, and PAIR_HAS(set, x) does
+ * not compile unless the column `pairs` has x. So PAIR_EFFECTS masks no law. That no bit is without a
+ * law is tested in tests/agree/test_kernels.c. */
+struct pair_set {
+    effect_set fx;
+};
+#define PAIR_HAS(set, name) (((set).fx & PAIR_##name) != 0)
 
 /* Open boundaries of either kind. */
 #define FX_OPEN (FX_INFLOW | FX_OUTFLOW)

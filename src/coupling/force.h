@@ -142,7 +142,6 @@ typedef void SWEEP(force)(const struct fluid *f, struct particles *p, enum kind 
     {                                                                                           \
         force_on_cell(f, p, kind, c, cell, k, (set));                                           \
     }
-#define FORCE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION | FX_WALL_DAMPING)
 #define STANDARD_SURFACE (FX_REPULSION | FX_WALL_DAMPING)
 FORCE(bare, 0u)
 FORCE(impedance, FX_IMPEDANCE)
@@ -156,7 +155,7 @@ void SWEEP(find_force)(const struct fluid *f, struct particles *p, enum kind kin
 {
     const struct vector_constants k = constants_of_sweep(f);
     const bool impedance = kind == KIND_SOLID && f->effects & FX_IMPEDANCE;
-    const effect_set surface = f->effects & FORCE_EFFECTS;
+    const effect_set surface = f->effects & (effect_set)SURFACE_EFFECTS;
     SWEEP(force) *const force =
         surface == 0 ? (impedance ? SWEEP(force_impedance) : SWEEP(force_bare))
         : surface == STANDARD_SURFACE

@@ -65,9 +65,6 @@ static void mirrored_velocity(const struct neighbours *neighbours, const struct 
     }
 }
 
-/* Effects that need more of walls and structures than pressure and velocity. */
-#define SURFACE_EFFECTS (FX_NO_SLIP | FX_ONE_SIDED | FX_REPULSION)
-
 /* The particles of a cluster: their number and their indices in the arrays. */
 struct dummies {
     enum kind kind;

@@ -94,7 +94,7 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     f->never_skip = s->test.never_skip;
     f->sweeps = s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double;
     while (f->sweeps->effects != ANY_EFFECTS &&
-           (s->test.generic_kernel || f->sweeps->effects != (effects & PAIR_EFFECTS)))
+           (s->test.generic_kernel || f->sweeps->effects != (effects & (effect_set)PAIR_EFFECTS)))
         f->sweeps++;
     f->threads = thread_count();
     for (int k = 0; k < KIND_COUNT; k++) f->packed[k].n = packed_count((enum kind)k, effects);

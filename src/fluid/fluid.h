@@ -95,12 +95,6 @@ struct fluid_sweeps {
 };
 #define ANY_EFFECTS (~(effect_set)0)
 
-/* Effects that the kernels of pairs are specialised for. */
-#define PAIR_EFFECTS                                                                       \
-    (FX_VISCOSITY | FX_DIFFUSION | FX_FOURTAKAS | FX_LAMINAR | FX_NO_SLIP | FX_SHIFTING |  \
-     FX_TENSILE | FX_ANTUONO | FX_REPULSION | FX_WALL_DAMPING | FX_ONE_SIDED | FX_MASSES | \
-     FX_LIMITER)
-
 extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
 
 /* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its

@@ -145,15 +145,15 @@ SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vec
  * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
  * of both particles' gradients. */
 SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
-                                 const struct vector_constants *k, effect_set fx)
+                                 const struct vector_constants *k, struct pair_set fx)
 {
     vreal step = a->dens - q->dens;
-    if (fx & FX_FOURTAKAS) step = step - vfma(k->gy, q->y, k->gx * q->x);
-    if (fx & FX_ANTUONO)
+    if (PAIR_HAS(fx, FOURTAKAS)) step = step - vfma(k->gy, q->y, k->gx * q->x);
+    if (PAIR_HAS(fx, ANTUONO))
         step = step - vset((real)0.5) *
                           vfma(a->slope_y + q->slope_y, q->y, (a->slope_x + q->slope_x) * q->x);
     const vreal mixing = step * (q->slope * (q->r2 * inv));
-    return fx & FX_LIMITER ? mixing * fx_limiter(q, inv, k) : mixing;
+    return PAIR_HAS(fx, LIMITER) ? mixing * fx_limiter(q, inv, k) : mixing;
 }
 
 /* Lind et al. 2012, Eq. 20: grad C = sum of V_b grad W; and the divergence of the positions,

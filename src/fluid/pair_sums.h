@@ -39,13 +39,13 @@ SPHFSI_INLINE void add_concentration(struct cluster_sums *s, int row, int part,
 
 /* Adds the contributions of pairs to their receivers. */
 SPHFSI_INLINE void add_exchange(struct cluster_sums *s, int row, int part, const struct exchange *e,
-                                effect_set fx)
+                                struct pair_set fx)
 {
     s->ax[row][part] = s->ax[row][part] + e->ax;
     s->ay[row][part] = s->ay[row][part] + e->ay;
     s->rate[row][part] = s->rate[row][part] + e->rate;
-    if (fx & FX_DIFFUSION) s->mixing[row][part] = s->mixing[row][part] + e->mixing;
-    if (fx & FX_SHIFTING) add_concentration(s, row, part, e);
+    if (PAIR_HAS(fx, DIFFUSION)) s->mixing[row][part] = s->mixing[row][part] + e->mixing;
+    if (PAIR_HAS(fx, SHIFTING)) add_concentration(s, row, part, e);
 }
 
 /* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the candidates. */
@@ -59,46 +59,46 @@ SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, 
 
 /* Contributions of pairs of receivers and candidates; fx is a constant in specialised kernels. */
 SPHFSI_INLINE struct exchange pair_of_fluid(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, effect_set fx,
+                                            const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)
 {
     struct exchange e;
     struct pair q = pair_between(a, code, b);
     e.rate = fx_continuity(&q);
     vreal stress = fx_pressure(a, &q), inv;
-    if (fx & (FX_VISCOSITY | FX_DIFFUSION)) {
+    if (PAIR_HAS(fx, VISCOSITY) || PAIR_HAS(fx, DIFFUSION)) {
         q.dens = lane(b, PACKED_DENS);
-        if (fx & FX_ANTUONO) {
+        if (PAIR_HAS(fx, ANTUONO)) {
             q.slope_x = lane(b, PACKED_SLOPE_X);
             q.slope_y = lane(b, PACKED_SLOPE_Y);
         }
         vreal both;
         const vreal damping = pair_damping(a, &q, k, &both);
         inv = damping * both;
-        if (fx & FX_VISCOSITY) stress = fx_viscosity(a, &q, damping, k, stress);
-        if (fx & FX_DIFFUSION) e.mixing = fx_diffusion(a, &q, inv, k, fx);
+        if (PAIR_HAS(fx, VISCOSITY)) stress = fx_viscosity(a, &q, damping, k, stress);
+        if (PAIR_HAS(fx, DIFFUSION)) e.mixing = fx_diffusion(a, &q, inv, k, fx);
     } else {
         inv = vset(1) / (q.r2 + k->eta2);
     }
-    if (fx & FX_TENSILE) stress = stress + fx_tensile(a, &q, k);
+    if (PAIR_HAS(fx, TENSILE)) stress = stress + fx_tensile(a, &q, k);
     const vreal radial = q.slope * stress;
     e.ax = radial * q.x;
     e.ay = radial * q.y;
-    if (fx & FX_LAMINAR) {
+    if (PAIR_HAS(fx, LAMINAR)) {
         const vreal weight = fx_laminar(&q, inv, k);
         e.ax = e.ax - weight * q.u;
         e.ay = e.ay - weight * q.v;
     }
-    if (fx & FX_SHIFTING) fx_concentration(&q, &e);
+    if (PAIR_HAS(fx, SHIFTING)) fx_concentration(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
     /* cppcheck-suppress uninitvar ; sums of effects that are off are not read */
     return e;
 }
 
 /* Numbers deferred for a cluster; and the position of one of the sums, with the first at `at`. */
-SPHFSI_INLINE size_t deferred_stride(effect_set fx)
+SPHFSI_INLINE size_t deferred_stride(struct pair_set fx)
 {
-    return (size_t)pair_sums(fx) * CLUSTER * CLUSTER;
+    return (size_t)pair_sums(fx.fx) * CLUSTER * CLUSTER;
 }
 #define DEFERRED(at, sum) ((at) + (int)(sum)*CLUSTER * CLUSTER)
 
@@ -111,13 +111,13 @@ SPHFSI_INLINE size_t deferred_slot(const struct chunk *chunk, size_t cluster)
 SPHFSI_INLINE void defer_add(real *at, vreal more) { vstore(at, vload(at) + more); }
 
 /* Adds the contributions of pairs to their candidates. */
-SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, effect_set fx)
+SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, struct pair_set fx)
 {
     defer_add(DEFERRED(at, SUM_X), e->ax);
     defer_add(DEFERRED(at, SUM_Y), e->ay);
     defer_add(DEFERRED(at, SUM_RATE), e->rate);
-    if (fx & FX_DIFFUSION) defer_add(DEFERRED(at, SUM_MIXING), e->mixing);
-    if (!(fx & FX_SHIFTING)) return;
+    if (PAIR_HAS(fx, DIFFUSION)) defer_add(DEFERRED(at, SUM_MIXING), e->mixing);
+    if (!(PAIR_HAS(fx, SHIFTING))) return;
     defer_add(DEFERRED(at, SUM_GRAD_C_X), e->grad_c_x);
     defer_add(DEFERRED(at, SUM_GRAD_C_Y), e->grad_c_y);
     defer_add(DEFERRED(at, SUM_DIV_R), e->div_r);
@@ -126,7 +126,7 @@ SPHFSI_INLINE void defer_sum(real *at, const struct exchange *e, effect_set fx)
 /* Sums over neighbouring fluid. Candidates that are not ahead in the chunk add to the discard
  * slot. */
 SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                             const struct vector_constants *k, effect_set fx,
+                             const struct vector_constants *k, struct pair_set fx,
                              const struct chunk *chunk, struct cluster_sums *sums)
 {
     for (int m = 0; m < neighbours->n; m++)
@@ -146,28 +146,29 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
 
 /* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
 SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
-                                            const struct vector_constants *k, effect_set fx,
+                                            const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)
 {
     struct exchange e;
     struct pair q = pair_between(a, code, b);
-    e.rate = fx & FX_ONE_SIDED ? fx_one_sided_rate(&q) : fx_continuity(&q);
+    e.rate = PAIR_HAS(fx, ONE_SIDED) ? fx_one_sided_rate(&q) : fx_continuity(&q);
     const vreal inv = vset(1) / (q.r2 + k->eta2);
     vreal stress = fx_pressure(a, &q);
-    if (fx & FX_ONE_SIDED)
+    if (PAIR_HAS(fx, ONE_SIDED))
         stress = stress + fx_one_sided(a->p, a->dens, q.x, q.y, lane(b, PACKED_LIFT_X),
                                        lane(b, PACKED_LIFT_Y), k);
-    if (fx & FX_REPULSION) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
-    if (fx & FX_WALL_DAMPING) stress = stress + fx_wall_damping(lane(b, PACKED_NEAR), inv, q.vx, k);
+    if (PAIR_HAS(fx, REPULSION)) stress = stress + fx_repulsion(lane(b, PACKED_NEAR), inv, k);
+    if (PAIR_HAS(fx, WALL_DAMPING))
+        stress = stress + fx_wall_damping(lane(b, PACKED_NEAR), inv, q.vx, k);
     const vreal radial = q.slope * stress;
     e.ax = radial * q.x;
     e.ay = radial * q.y;
-    if (fx & FX_NO_SLIP) {
+    if (PAIR_HAS(fx, NO_SLIP)) {
         const vreal weight = lane(b, PACKED_STICKS) * fx_laminar(&q, inv, k);
         e.ax = e.ax - weight * (a->u - lane(b, PACKED_MIRROR_U));
         e.ay = e.ay - weight * (a->v - lane(b, PACKED_MIRROR_V));
     }
-    if (fx & FX_SHIFTING) fx_concentration(&q, &e);
+    if (PAIR_HAS(fx, SHIFTING)) fx_concentration(&q, &e);
     *approach = vmax(*approach, fx_approach(&q, inv));
     /* cppcheck-suppress uninitvar ; sums of effects that are off are not read */
     return e;
@@ -175,16 +176,17 @@ SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t c
 
 /* Sums over neighbouring walls or structures; the forces on these have a sweep of their own. */
 SPHFSI_INLINE void sum_dummies(const struct neighbours *neighbours, const struct receiver a[ROWS],
-                               const struct vector_constants *k, effect_set fx,
+                               const struct vector_constants *k, struct pair_set fx,
                                struct cluster_sums *sums)
 {
+    const struct pair_set rest = {fx.fx & ~(effect_set)PAIR_DIFFUSION};
     for (int m = 0; m < neighbours->n; m++)
         for (int part = 0; part < PARTS; part++) {
             const uint32_t code = neighbours->code[m];
             const real *const b = candidates(neighbours, code, part);
             for (int row = 0; row < ROWS; row++) {
                 const struct exchange e = pair_of_dummy(&a[row], code, b, k, fx, &sums->approach);
-                add_exchange(sums, row, part, &e, fx & ~(effect_set)FX_DIFFUSION);
+                add_exchange(sums, row, part, &e, rest);
             }
         }
 }

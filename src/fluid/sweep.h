@@ -56,15 +56,15 @@ SPHFSI_INLINE void store_four(double *to, four_double four, int count)
 /* Writes the rates of `count` particles from i on, from their sums and the factors not included in
  * them. */
 SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32_t i, int count,
-                               const struct cluster_sums *s, real *deferred, effect_set fx,
+                               const struct cluster_sums *s, real *deferred, struct pair_set fx,
                                double acceleration2[CLUSTER])
 {
     const struct fluid_constants *const k = &f->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
-    const double mix = fx & FX_LIMITER ? 2 : 2 * k->delta * k->c0;
+    const double mix = PAIR_HAS(fx, LIMITER) ? 2 : 2 * k->delta * k->c0;
     four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
-    if (fx & FX_MASSES) { /* all sums contain the volume of the particle itself */
+    if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
         factor = factor / FOUR(p->m, i);
         full = full / FOUR(p->m, i);
     }
@@ -72,7 +72,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
         factor * (own_sum(s->ax) - take_deferred(DEFERRED(deferred, SUM_X))) + k->gravity[0];
     const four_double ay =
         factor * (own_sum(s->ay) - take_deferred(DEFERRED(deferred, SUM_Y))) + k->gravity[1];
-    if (fx & FX_DIFFUSION)
+    if (PAIR_HAS(fx, DIFFUSION))
         rate = rate + mix * (own_sum(s->mixing) - take_deferred(DEFERRED(deferred, SUM_MIXING)));
     const four_double ddens = -slope * full * rate;
     store_four(p->ax + i, ax, count);
@@ -80,7 +80,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     store_four(p->ddens + i, ddens, count);
     const four_double a2 = ax * ax + ay * ay;
     for (int r = 0; r < count; r++) acceleration2[r] = max2(acceleration2[r], a2[r]);
-    if (!(fx & FX_SHIFTING)) return;
+    if (!(PAIR_HAS(fx, SHIFTING))) return;
     const four_double grad_c_x =
         own_sum(s->grad_c_x) - take_deferred(DEFERRED(deferred, SUM_GRAD_C_X));
     const four_double grad_c_y =
@@ -108,7 +108,7 @@ SPHFSI_INLINE void touch_store(const struct fluid *f, struct particles *p, int32
 
 /* Receivers of the fluid from their packed fields. */
 SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const real *own,
-                                       const struct vector_constants *k, effect_set fx)
+                                       const struct vector_constants *k, struct pair_set fx)
 {
     struct receiver a = receiver_at(sides, own);
     a.u = vspread(own + PACKED_U * CLUSTER);
@@ -116,8 +116,8 @@ SPHFSI_INLINE struct receiver fluid_at(const struct cell_sides *sides, const rea
     a.p = vspread(own + PACKED_P * CLUSTER);
     a.dens = vspread(own + PACKED_DENS * CLUSTER);
     a.volume = vspread(own + PACKED_VOLUME * CLUSTER);
-    if (fx & FX_VISCOSITY) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
-    if (fx & FX_ANTUONO) {
+    if (PAIR_HAS(fx, VISCOSITY)) a.viscous = -vfma(k->viscosity, a.dens, k->viscosity);
+    if (PAIR_HAS(fx, ANTUONO)) {
         a.slope_x = vspread(own + PACKED_SLOPE_X * CLUSTER);
         a.slope_y = vspread(own + PACKED_SLOPE_Y * CLUSTER);
     }
@@ -129,7 +129,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
                                     int count, int32_t cluster,
                                     const struct neighbours neighbours[KIND_COUNT],
                                     const struct cell_sides *sides,
-                                    const struct vector_constants *k, effect_set fx,
+                                    const struct vector_constants *k, struct pair_set fx,
                                     const struct chunk *chunk, struct chunk_maxima *top)
 {
     const real *const own = cluster_packed(&f->packed[KIND_FLUID], (size_t)cluster);
@@ -159,7 +159,7 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
 }
 
 SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, const struct cells *c,
-                                 int32_t cell, const struct vector_constants *k, effect_set fx,
+                                 int32_t cell, const struct vector_constants *k, struct pair_set fx,
                                  const struct chunk *chunk, struct chunk_maxima *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
@@ -190,7 +190,7 @@ SPHFSI_INLINE void rates_of_cell(const struct fluid *f, struct particles *p, con
 /* A chunk of the active cells, first to end - 1. */
 SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, const struct cells *c,
                                   int32_t first, int32_t end, const struct vector_constants *k,
-                                  effect_set fx, struct fluid_extremes *top)
+                                  struct pair_set fx, struct fluid_extremes *top)
 {
     const struct cell_list *const list = &c->kind[KIND_FLUID];
     const struct chunk chunk = {clusters_of(list, first, end),
@@ -216,10 +216,10 @@ typedef void SWEEP(chunk)(const struct fluid *f, struct particles *p, const stru
                                        struct fluid_extremes *top)                        \
     {                                                                                     \
         const struct vector_constants constants = *k;                                     \
-        rates_of_chunk(f, p, c, first, end, &constants, (set), top);                      \
+        rates_of_chunk(f, p, c, first, end, &constants, (struct pair_set){set}, top);     \
     }
 #include "fluid/variants.def"
-VARIANT(any, f->effects &PAIR_EFFECTS)
+VARIANT(any, f->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
 
 static void all_chunks(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
