@@ -157,12 +157,16 @@ enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case/check_probes.c */
 enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
-/* case/table.c: the content of a table, its columns, and whether it begins with zeros. */
+/* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place of
+ * the key, or with the table's name and line. The caller closes `csv`, also after a failure. */
+struct csv;
+enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
+                    const char *key, struct diag *d) SPHFSI_CHECKED;
+/* The content of a table, its columns, and whether it begins with zeros. */
 struct table_kind {
     const char *what, *columns;
     bool from_rest;
 };
-/* Reads the file `name` given by a key of a line, with its path as in messages. */
 enum err table_load(struct scene *s, struct scene_table *table, const struct table_kind *kind,
                     const char *name, int line, const char *key, struct diag *d) SPHFSI_CHECKED;
 /* The row at or before a time, but not before the first nor the last one. */

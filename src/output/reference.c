@@ -1,40 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "output/reference.h"
 
-#include "case/case.h"
+#include "base/csv.h"
 #include "base/files.h"
-#include "case/params.h"
+#include "case/case.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { MAX_ROWS = 1000000 };
-
-/* --- files: time and value, commas or blanks between them, # comments, one line of names --- */
-
-static const char *next_line(const char *at)
-{
-    at += strcspn(at, "\n");
-    return *at ? at + 1 : at;
-}
-
-/* 1: a row; 0: a comment, an empty line or (if allowed) names; -1: malformed. */
-static int read_row(const char *line, bool names_allowed, double row[2])
-{
-    const char *at = line + strspn(line, " \t\r");
-    if (!*at || *at == '\n' || *at == '#') return 0;
-    if (names_allowed && isalpha((unsigned char)*at)) return 0;
-    for (int k = 0; k < 2; k++) {
-        char *end;
-        row[k] = strtod(at, &end);
-        if (end == at || !isfinite(row[k])) return -1;
-        at = end + strspn(end, " \t\r");
-        if (k == 0 && *at == ',') at += 1 + strspn(at + 1, " \t\r");
-    }
-    return *at == '\n' || *at == '\0' ? 1 : -1;
-}
 
 /* Inserts a row by time: times of digitised points need not ascend. */
 static void insert_row(struct reference *r, const double row[2])
@@ -48,50 +21,28 @@ static void insert_row(struct reference *r, const double row[2])
     r->value[k] = row[1];
 }
 
-static enum err read_rows(struct reference *r, const char *path, const char *text, struct arena *a,
-                          struct diag *d)
+static enum err read_rows(struct reference *r, struct csv *csv, struct arena *a)
 {
-    int lines = 1;
-    for (const char *at = text; *at; at = next_line(at)) lines++;
-    if (lines > MAX_ROWS)
-        return diag_fail(d, ERR_INPUT, "%s: has more than %d lines; use fewer points", path,
-                         MAX_ROWS);
-    r->t = arena_alloc(a, (size_t)lines, sizeof *r->t, "reference", d);
-    r->value = arena_alloc(a, (size_t)lines, sizeof *r->value, "reference", d);
+    double row[3];
+    int more;
+    r->t = arena_alloc(a, (size_t)csv->lines, sizeof *r->t, "reference", csv->diag);
+    r->value = arena_alloc(a, (size_t)csv->lines, sizeof *r->value, "reference", csv->diag);
     if (!r->t || !r->value) return ERR_MEMORY;
-    int number = 1;
-    bool names_allowed = true;
-    for (const char *at = text; *at; at = next_line(at), number++) {
-        double row[2];
-        const int got = read_row(at, names_allowed, row);
-        if (got < 0)
-            return diag_fail(d, ERR_INPUT,
-                             "%s:%d: '%.*s' is not a row of a reference; write two numbers, time "
-                             "(s) and value (SI)",
-                             path, number, (int)(strcspn(at, "\r\n") % 60), at);
-        if (got > 0) insert_row(r, row);
-        if (got > 0 || isalpha((unsigned char)*at)) names_allowed = false;
-    }
-    if (r->n == 0) return diag_fail(d, ERR_INPUT, "%s: contains no row of time and value", path);
-    return ERR_OK;
+    while ((more = csv_row(csv, row)) > 0) insert_row(r, row);
+    if (more == 0 && r->n == 0)
+        return diag_fail(csv->diag, ERR_INPUT, "%s: contains no row of time and value", csv->path);
+    return more < 0 ? ERR_INPUT : ERR_OK;
 }
 
-static enum err read_file(struct reference *r, const struct scene *s, struct arena *a,
+static enum err read_file(struct reference *r, const struct scene *scene, struct arena *a,
                           struct diag *d)
 {
-    char path[4096 + SCENE_TEXT], place[LOCATION_TEXT], *text;
-    size_t size;
-    struct diag why = {.code = ERR_OK};
-    scene_location(s, r->from->common.line, place);
-    if (!scene_file(s, r->from->file, path, sizeof path))
-        return diag_fail(d, ERR_INPUT, "%s: the path of %s is too long", place, r->from->file);
-    enum err e = file_read(path, &text, &size, &why);
-    if (e)
-        return diag_fail(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s: [reference %s] file: %.400s",
-                         place, r->from->common.name, why.text);
-    e = strlen(text) == size ? read_rows(r, path, text, a, d)
-                             : diag_fail(d, ERR_INPUT, "%s: is not a text file", path);
-    free(text);
+    struct csv csv = {.columns = "time (s), value (SI)", .n = 2, .limit = HUGE_VAL};
+    char key[2 * SCENE_NAME];
+    snprintf(key, sizeof key, "[reference %s] file", r->from->common.name);
+    enum err e = table_open(scene, &csv, r->from->file, r->from->common.line, key, d);
+    if (!e) e = read_rows(r, &csv, a);
+    csv_close(&csv);
     return e;
 }
 
@@ -99,25 +50,13 @@ static enum err read_file(struct reference *r, const struct scene *s, struct are
 
 enum { COLUMN_NAMES = 64 };
 
-/* The k-th item of a line of comma-separated ones and its length; NULL: there are fewer. */
-static const char *column_name(const char *header, int k, size_t *length)
-{
-    for (; k > 0; k--) {
-        header = strchr(header, ',');
-        if (!header) return NULL;
-        header++;
-    }
-    *length = strcspn(header, ",\n");
-    return header;
-}
-
 /* Searches one file for the column; collects its names for the message. */
 static bool has_column(struct reference *r, int file, const char *header, struct nearest *near,
                        char names[][2 * SCENE_NAME], int *n_names)
 {
     const char *const wanted = r->from->probe, *name;
     size_t length;
-    for (int k = 1; (name = column_name(header, k, &length)) != NULL; k++) {
+    for (int k = 1; (name = csv_field(header, k, &length)) != NULL; k++) {
         if (strlen(wanted) == length && strncmp(wanted, name, length) == 0) {
             r->file = file;
             r->column = k;
@@ -173,11 +112,11 @@ struct curve {
 static void read_curve(struct curve *curve, const char *csv, int column)
 {
     curve->n = 0;
-    for (const char *line = next_line(csv); *line; line = next_line(line)) {
+    for (const char *line = csv_next_line(csv); *line; line = csv_next_line(line)) {
         if (!strchr(line, '\n')) break; /* incomplete */
         size_t length;
-        const char *const field = column_name(line, column, &length);
-        if (!field || field > line + strcspn(line, "\n")) continue;
+        const char *const field = csv_field(line, column, &length);
+        if (!field) continue;
         curve->t[curve->n] = strtod(line, NULL);
         curve->value[curve->n++] = strtod(field, NULL);
     }
@@ -261,7 +200,7 @@ enum err references_score(const struct references *r, int file, const char *prob
     if (!any) return ERR_OK;
     TRY(file_read(probes_csv, &csv, &size, d));
     size_t lines = 1, rows;
-    for (const char *at = csv; *at; at = next_line(at)) lines++;
+    for (const char *at = csv; *at; at = csv_next_line(at)) lines++;
     rows = lines;
     for (int k = 0; k < r->n; k++) rows = rows > (size_t)r->item[k].n ? rows : (size_t)r->item[k].n;
     double *const numbers = malloc(4 * rows * sizeof *numbers);

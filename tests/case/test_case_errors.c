@@ -182,7 +182,7 @@ static const struct {
      "bad.cfg:3: gravity = ..., 1/(t - 0.5): component 2 is not finite at t = 0.5 s; it must be "
      "finite at all times up to end_time"},
     {TOP "gravity_file = none.csv\n" SOLID, NULL,
-     "bad.cfg:3: gravity_file = none.csv cannot be opened: No such file or directory"},
+     "bad.cfg:3: gravity_file: none.csv: cannot be read: No such file or directory"},
     {TOP "gravity = 0, 9.81 m\n" SOLID, NULL,
      "bad.cfg:3: gravity = 0, 9.81 m: a length (m) where an acceleration (m/s^2) is expected"},
     {TOP "integrator = verlett\n" SOLID, NULL,
@@ -296,7 +296,7 @@ static const struct {
     {TOP FLUID "[motion lift]\nkind = table\n", NULL,
      "bad.cfg:6: [motion lift] kind = table needs `file`"},
     {TOP FLUID "[motion lift]\nkind = table\nfile = none/such.txt\n", NULL,
-     "bad.cfg:6: [motion lift] file = none/such.txt cannot be opened: No such file or directory"},
+     "bad.cfg:6: [motion lift] file: none/such.txt: cannot be read: No such file or directory"},
     {TOP FLUID "[motion lift]\nstart = 2\nstop = 1\n", NULL,
      "bad.cfg:6: [motion lift] start = 2 s must come before stop = 1 s"},
     {TOP FLUID "[motion lift]\nkind = polynomial\n", NULL,

@@ -339,27 +339,21 @@ static void test_gravity_tables_that_are_hardly_meant(void)
     }
 }
 
-static void test_long_lines_and_long_tables(void)
+static void test_long_tables(void)
 {
     static char bytes[12000000];
-    memset(bytes, ' ', 600);
-    memcpy(bytes, "0, 0, 0\n0.1, 0, 0", 17);
-    strcpy(bytes + 530, "\n");
-    TEST_ASSERT_EQUAL_INT(ERR_INPUT, load_table(bytes, 531));
-    TEST_ASSERT_NOT_NULL_MESSAGE(
-        strstr(diag.text, "test_case_limits.tmp:2: the line has more than 510 characters"),
-        diag.text);
     size_t n = 0;
     for (int k = 0; k <= 1000000; k++) n += (size_t)sprintf(bytes + n, "%d 0 0\n", k);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, load_table(bytes, n));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "more than 1000000 rows; use fewer"), diag.text);
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "more than 1000000 lines; use fewer rows"),
+                                 diag.text);
 }
 
 static void test_a_folder_is_no_table(void)
 {
     refuses(TOP SOLID
             "clamp = box 0, 0, 10 mm, 5 mm\nclamp_motion = m\n[motion m]\nkind = table\nfile = .\n",
-            "l.cfg:10: [motion m] file = . is not a regular file");
+            "l.cfg:10: [motion m] file: .: is not a file");
 }
 
 int main(void)
@@ -379,7 +373,7 @@ int main(void)
     RUN_TEST(test_a_file_that_is_too_long);
     RUN_TEST(test_tables);
     RUN_TEST(test_gravity_tables_that_are_hardly_meant);
-    RUN_TEST(test_long_lines_and_long_tables);
+    RUN_TEST(test_long_tables);
     RUN_TEST(test_a_folder_is_no_table);
     return UNITY_END();
 }

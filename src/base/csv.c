@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+#include "base/csv.h"
+
+#include "base/files.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_LINES = 1000000 };
+
+const char *csv_next_line(const char *at)
+{
+    at += strcspn(at, "\n");
+    return *at ? at + 1 : at;
+}
+
+const char *csv_field(const char *line, int k, size_t *length)
+{
+    for (;; k--) {
+        const bool quoted = *line == '"';
+        line += quoted;
+        *length = strcspn(line, quoted ? "\"\n" : ",\n");
+        if (k == 0) return line;
+        line += *length;
+        line += strcspn(line, ",\n");
+        if (*line++ != ',') return NULL;
+    }
+}
+
+enum err csv_open(struct csv *c, const char *file)
+{
+    size_t size;
+    TRY(file_read(file, &c->text, &size, c->diag));
+    c->at = c->text;
+    c->line = 0;
+    c->lines = !*c->text;
+    c->begun = false;
+    for (const char *at = c->text; *at; at++) c->lines += *at == '\n' || !at[1];
+    const bool wide = strncmp(c->text, "\xFF\xFE", 2) == 0 || strncmp(c->text, "\xFE\xFF", 2) == 0;
+    if (strlen(c->text) < size)
+        return diag_add(c->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text%s", c->path,
+                        c->lines, wide ? ", not UTF-16: save it as UTF-8" : "");
+    if (c->lines > MAX_LINES)
+        return diag_add(c->diag, ERR_INPUT, "%s: more than %d lines; use fewer rows", c->path,
+                        MAX_LINES);
+    return ERR_OK;
+}
+
+void csv_close(struct csv *c)
+{
+    free(c->text);
+    c->text = NULL;
+}
+
+/* Whether 0,5;1 stands here: it has two columns for one reader, three for another. */
+static const char *doubtful_separator(const char *at, size_t length)
+{
+    const char *const other = memchr(at, ';', length) ? "semicolons" : "tabs";
+    if (*other == 't' && !memchr(at, '\t', length)) return NULL;
+    for (size_t k = 1; k + 1 < length; k++)
+        if (at[k] == ',' && isdigit((unsigned char)at[k - 1]) && isdigit((unsigned char)at[k + 1]))
+            return other;
+    return NULL;
+}
+
+static int read_numbers(struct csv *c, const char *line, double *row)
+{
+    const size_t length = strcspn(line, "\r\n");
+    const char *const doubtful = doubtful_separator(line, length), *at = line;
+    const char *const blanks = " \t\r", *const count = c->n == 2 ? "two" : "three";
+    if (doubtful) {
+        diag_add(c->diag, ERR_INPUT,
+                 "%s:%d: commas and %s: if a comma stands for a decimal point, write a point, as "
+                 "in 0.5; if not, separate the columns by one of the two",
+                 c->path, c->line, doubtful);
+        return -1;
+    }
+    for (int k = 0; k < c->n; k++) {
+        char *end;
+        row[k] = strtod(at, &end);
+        if (*at == '\n' || end == at || !isfinite(row[k]) || fabs(row[k]) > c->limit) {
+            diag_add(c->diag, ERR_INPUT, "%s:%d: %s numbers are expected: %s; here `%.*s`", c->path,
+                     c->line, count, c->columns, (int)(length < 60 ? length : 60), line);
+            return -1;
+        }
+        at = end + strspn(end, blanks);
+        if (k + 1 < c->n && (*at == ',' || *at == ';')) at += 1 + strspn(at + 1, blanks);
+    }
+    if (!*at || *at == '\n') return 1;
+    diag_add(c->diag, ERR_INPUT, "%s:%d: more than %s columns; %s are expected", c->path, c->line,
+             count, c->columns);
+    return -1;
+}
+
+int csv_row(struct csv *c, double row[3])
+{
+    while (*c->at) {
+        const char *const at = c->at + strspn(c->at, " \t\r");
+        c->at = csv_next_line(c->at);
+        c->line++;
+        if (!*at || *at == '\n' || *at == '#') continue;
+        const bool names = !c->begun && isalpha((unsigned char)*at);
+        c->begun = true;
+        if (!names) return read_numbers(c, at, row);
+    }
+    return 0;
+}

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ * Text tables: rows of numbers, or fields with commas between them. */
+#ifndef SPHFSI_BASE_CSV_H
+#define SPHFSI_BASE_CSV_H
+
+#include "base/error.h"
+
+/* The line after the one at `at`, or the end of the text. */
+const char *csv_next_line(const char *at);
+
+/* Field k of the line, without the quotes around it; NULL: there are fewer. A comma in quotes does
+ * not end a field. */
+const char *csv_field(const char *line, int k, size_t *length);
+
+/* A table of numbers with a comma, a semicolon or blanks between them. Lines that begin with # are
+ * comments. Names of the columns may come before the first row. */
+struct csv {
+    const char *path;    /* as in messages */
+    const char *columns; /* their names as in messages, such as "time (s), value (SI)" */
+    int n;               /* their number, 2 or 3 */
+    double limit;        /* largest magnitude of a number */
+    char *text;          /* malloc'd */
+    const char *at;      /* the next line */
+    int line;            /* number of the last line read */
+    int lines;           /* of the whole text: at least the number of rows */
+    bool begun;          /* names or a row were read */
+    struct diag *diag;
+};
+
+/* Reads the file into text. ERR_INPUT: it cannot be read, is no text, or is too long. */
+enum err csv_open(struct csv *c, const char *file) SPHFSI_CHECKED;
+/* 1: a row; 0: the end; -1: failed, in the diag. */
+int csv_row(struct csv *c, double row[3]);
+void csv_close(struct csv *c);
+
+#endif
