@@ -238,18 +238,7 @@ SPHFSI_API uint64_t sphfsi_hash(struct sphfsi_simulation *s);
  * and checkpoints to its folder. */
 SPHFSI_API enum sphfsi_status sphfsi_run(const struct sphfsi_options *options);
 
-/** Prints, through the message callback, the cost of the case in a few resolutions, and the finest one that
- * this machine runs within `seconds` of wall time. Writes nothing but a cache of costs. */
-SPHFSI_API enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds);
-
-/** Runs a case in `runs` resolutions (3 to 6), dp growing by `ratio` (1.1 to 4), coarsest first, in
- * sub-folders of the run's folder. Prints the limits of probes and energies, with the order and the error
- * band of the finest run, and writes them to refine.json. Finished runs are not repeated. */
-SPHFSI_API enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs,
-                                            double ratio);
-
-/** Prints, line by line through the message callback, effects, memory, time step and cost of a case. Writes
- * nothing but a cache of costs. */
+/** Prints, line by line through the message callback, effects, memory, time step and cost of a case. */
 SPHFSI_API enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options);
 
 /** Prints the same as one JSON text through the message callback; docs/formats.md lists its keys. */

@@ -71,8 +71,6 @@ export BUILD=$1 RESULTS=$1/test-results PYTHON=${PYTHON:-python3} SPHFSI=${SPHFS
 # Tests share the cores: a thread that spins while it waits would take them from its neighbour.
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY:-passive}
 export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
-# What a test calibrates is not kept in the user's home.
-export XDG_CACHE_HOME=$PWD/$BUILD/test-cache
 mkdir -p "$BUILD/test-logs"
 : >"$RESULTS"
 

@@ -22,7 +22,7 @@ EXAMPLE = """example:
 def arguments(description, example, default, picture):
     parser = argparse.ArgumentParser(description=description, epilog=example,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of --refine")
+    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of tools/refine.py")
     parser.add_argument("--column", action="append", default=[], metavar="NAME",
                         help="column of probes.csv, such as M1_dx_m; may be repeated "
                         f"(default: {default})")

@@ -10,9 +10,11 @@ import tempfile
 import threading
 import warnings
 from pathlib import Path
-from typing import Any, Mapping, TextIO
+from typing import Any, Callable, Mapping, TextIO
 
-from .library import Call, Interrupted, check, ffi, lib, text
+from .budget import find_dp
+from .library import Call, check, ffi, lib, log, text
+from .refine import Refinement
 from .run import Run
 from .simulation import Simulation
 
@@ -113,12 +115,16 @@ class Case:
     def _call(self, **options: Any) -> Call:
         return Call(case_path=self.path, case_text=self.text, sets=_sets(self.changes), **options)
 
-    def effective(self) -> str:
+    def effective(self, *, until: float = 0.0) -> str:
         """The case in effect, every default spelled out in SI units."""
-        with tempfile.NamedTemporaryFile("r", suffix=".cfg", encoding="utf-8") as file:
-            call = self._call()
-            call.finish(lib.sphfsi_effective(call.options, os.fsencode(file.name)))
-            return Path(file.name).read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            return self.write_effective(Path(folder) / "case.cfg", until=until)
+
+    def write_effective(self, path: str | os.PathLike, *, until: float = 0.0) -> str:
+        """Writes the case in effect to a file; names of files in it are relative to that file."""
+        call = self._call(until=until)
+        call.finish(lib.sphfsi_effective(call.options, os.fsencode(path)))
+        return Path(path).read_text(encoding="utf-8")
 
     def preview(self, path: str | os.PathLike | None = None) -> Preview:
         """Draws the scene as it would start; writes it to `path` (SVG), if there is one."""
@@ -131,17 +137,17 @@ class Case:
             preview.save(path)
         return preview
 
-    def explain(self, *, threads: int = 0) -> Explanation:
+    def explain(self, *, until: float = 0.0, threads: int = 0) -> Explanation:
         """What would be simulated and what it would cost on this machine: particles, effects with what
         calls for them, bounds of the time step (s), wall time (s), memory and disk (bytes), all values in
         effect."""
         lines: list[str] = []
-        call = self._call(threads=threads, notes=lines.append)
+        call = self._call(until=until, threads=threads, notes=lines.append)
         call.finish(lib.sphfsi_explain(call.options))
         found: list[str] = []
         with warnings.catch_warnings():  # the first call has said them
             warnings.simplefilter("ignore")
-            call = self._call(threads=threads, notes=found.append)
+            call = self._call(until=until, threads=threads, notes=found.append)
             call.finish(lib.sphfsi_explain_json(call.options))
         explanation = Explanation(json.loads(found[-1]))
         explanation.text = "\n".join(lines)
@@ -165,17 +171,18 @@ class Case:
         return Path("runs") / (name + "-fork" * fork)
 
     def run(self, out: str | os.PathLike | None = None, *, progress: bool = True, restart: bool = False,
-            fork: str | os.PathLike | None = None, until: float = 0.0, threads: int = 0) -> Run:
+            fork: str | os.PathLike | None = None, until: float = 0.0, threads: int = 0,
+            notes: Callable[[str], None] | None = None) -> Run:
         """Runs the case to its end, or to `until` (s), and returns its results.
 
         `out`: folder of the results (default: runs/NAME, of a fork runs/NAME-fork); `restart`: go on from
-        its newest checkpoint; `fork`: begin with the state of another run. Ctrl-C leaves a checkpoint and
-        raises `Interrupted`."""
+        its newest checkpoint; `fork`: begin with the state of another run; `notes`: called with each line
+        that the program would print. Ctrl-C leaves a checkpoint and raises `Interrupted`."""
         folder = Path(out) if out is not None else self.folder(fork=fork is not None)
         bar = _Progress(sys.stderr) if progress else None
         # The callback is also where Python gets to see a signal.
         call = self._call(out=folder, restart=int(restart), fork=fork, until=until, threads=threads,
-                          progress=bar or (lambda _: None), progress_interval=0.1)
+                          notes=notes, progress=bar or (lambda _: None), progress_interval=0.1)
         with _Stopping(call):
             status = lib.sphfsi_run(call.options)
         if bar:
@@ -184,25 +191,34 @@ class Case:
         return Run(folder)
 
     def refine(self, out: str | os.PathLike | None = None, *, runs: int = 3, ratio: float = 2.0,
-               threads: int = 0) -> dict:
+               until: float = 0.0, threads: int = 0, progress: bool = False,
+               notes: Callable[[str], None] | None = None,
+               results: Callable[[str], None] | None = None) -> dict:
         """Runs the case in `runs` resolutions, dp growing by `ratio`, coarsest first, and returns what the
-        probes and energies converge to: refine.json of docs/formats.md."""
+        probes and energies converge to: refine.json of docs/formats.md. Finished runs are not run again.
+        `notes` and `results`: called with the lines on the runs and of the table."""
         folder = Path(out) if out is not None else self.folder()
-        call = self._call(out=folder, threads=threads, progress=lambda _: None, progress_interval=0.1)
-        with _Stopping(call):
-            status = lib.sphfsi_refine(call.options, runs, ratio)
-        call.finish(status)
-        return json.loads((folder / "refine.json").read_text(encoding="utf-8"))
+        said = notes or log.info
+        study = Refinement(self, folder, runs, ratio, until, threads, said)
+        study.run(progress)
+        return study.report(results or log.info)
+
+    def budget(self, seconds: float, *, until: float = 0.0, threads: int = 0,
+               notes: Callable[[str], None] | None = None) -> float | None:
+        """The finest round dp (m) that runs within so many seconds of wall time and fits all bodies to the
+        lattice, or None. `notes`: called with lines on the costs of several dp and on the errors to expect."""
+        return find_dp(self, seconds, until, threads, notes or log.info)
 
     def __repr__(self) -> str:
         return f"<case {self.path or 'of a text'}{''.join(f', {item}' for item in _sets(self.changes))}>"
 
 
 class _Stopping:
-    """While it holds, Ctrl-C asks the run to write a checkpoint and stop; a second one is an exception."""
+    """While it holds, SIGINT (Ctrl-C) or SIGTERM asks the run to write a checkpoint and stop; a second one is
+    an exception."""
 
     def __init__(self, call: Call):
-        self.call, self.before = call, None
+        self.call, self.before = call, {}
 
     def _stop(self, number: int, frame: Any) -> None:
         if self.call.requests.stop:
@@ -211,11 +227,12 @@ class _Stopping:
 
     def __enter__(self) -> None:
         if threading.current_thread() is threading.main_thread():
-            self.before = signal.signal(signal.SIGINT, self._stop)
+            for number in (signal.SIGINT, signal.SIGTERM):
+                self.before[number] = signal.signal(number, self._stop)
 
     def __exit__(self, *_: Any) -> None:
-        if self.before is not None:
-            signal.signal(signal.SIGINT, self.before)
+        for number, action in self.before.items():
+            signal.signal(number, action)
 
 
 def templates() -> list[str]:

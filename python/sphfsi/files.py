@@ -157,7 +157,7 @@ def make_names_differ(runs):
 
 
 def resolutions(folder):
-    """The folders of the runs of --refine, coarsest first; of a run, its own."""
+    """The folders of the runs of tools/refine.py, coarsest first; of a run, its own."""
     sized = []
     for found in Path(folder).glob("dp-*"):
         try:
@@ -170,7 +170,7 @@ def resolutions(folder):
 
 
 def make_runs(folders):
-    """Runs whose names differ. The folder of --refine stands for those of its resolutions."""
+    """Runs whose names differ. The folder of tools/refine.py stands for those of its resolutions."""
     runs = [Run(found) for folder in folders for found in resolutions(folder)]
     make_names_differ(runs)
     return runs

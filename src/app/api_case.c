@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a whole case. */
-#include "app/budget.h"
 #include "app/call.h"
 #include "app/explain.h"
 #include "base/files.h"
-#include "app/forecast.h"
 #include "app/inspect.h"
 #include "app/manual.h"
 #include "case/params.h"
 #include "app/preview.h"
-#include "app/refine.h"
 #include "app/run.h"
 
 #include <stdio.h>
@@ -41,14 +38,6 @@ enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
     return call_end(&c, e);
 }
 
-enum sphfsi_status sphfsi_refine(const struct sphfsi_options *options, int runs, double ratio)
-{
-    struct call c;
-    enum err e = call_begin(&c, "refine", options);
-    if (!e) e = refine_case(&c.options, runs, ratio, &c.diag);
-    return call_end(&c, e);
-}
-
 /* What is done with a session, by its name; `with` says what else it needs. */
 typedef enum err session_work(struct session *x, struct call *c, void *with);
 
@@ -61,33 +50,13 @@ static enum err with_session(struct call *c, const char *name, session_work *wor
     return e;
 }
 
-static enum err budget_work(struct session *x, struct call *c, void *seconds)
-{
-    int threads;
-    TRY(forecast_open(x, &c->options, &threads, &c->diag));
-    const enum err e = budget_session(x, threads, *(const double *)seconds, &c->options, &c->diag);
-    forecast_close(x, threads);
-    return e;
-}
-
-enum sphfsi_status sphfsi_budget(const struct sphfsi_options *options, double seconds)
-{
-    struct call c;
-    enum err e = call_begin(&c, "budget", options);
-    if (!e && !(seconds > 0 && seconds <= 1e9))
-        e = diag_fail(&c.diag, ERR_INPUT, "budget = %g s must be above 0 and at most 1e9", seconds);
-    if (!e) e = with_session(&c, "budget", budget_work, &seconds);
-    return call_end(&c, e);
-}
-
 /* As data if there are warnings to put into it. */
 static enum err explain_work(struct session *x, struct call *c, void *heard)
 {
-    int threads;
-    TRY(forecast_open(x, &c->options, &threads, &c->diag));
-    const enum err e = heard ? explain_data(x, threads, heard, &c->options, &c->diag)
-                             : explain_session(x, threads, &c->options, &c->diag);
-    forecast_close(x, threads);
+    TRY(session_open(x, &c->options, &c->diag));
+    const enum err e = heard ? explain_data(x, heard, &c->options, &c->diag)
+                             : explain_session(x, &c->options, &c->diag);
+    session_close(x);
     return e;
 }
 

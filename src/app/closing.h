@@ -10,10 +10,9 @@
 void closing_say(const struct sphfsi_options *o, const struct simulation *s,
                  const struct record *r);
 
-/* Prints the command that continues a stopped run: after a guard a fork of the checkpoint with steps
- * half as long, or, where these would stop it again, what it takes once the case is changed; else a
- * restart. */
-void closing_command(const struct sphfsi_options *o, const struct simulation *s, const char *folder,
-                     const char *checkpoint, bool guard);
+/* Prints how a stopped run continues: after a guard from the checkpoint with steps half as long, or, where
+ * these would stop it again, what it takes once the case is changed; else a restart. */
+void closing_say_next(const struct sphfsi_options *o, const struct simulation *s,
+                      const char *checkpoint, bool guard);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef SPHFSI_APP_EVIDENCE_H
 #define SPHFSI_APP_EVIDENCE_H
 
-#include "case/scene.h"
+#include "app/session.h"
 
 enum { EVIDENCE_TEXT = 96 };
 
@@ -18,5 +18,11 @@ struct evidence {
 /* The first row; then reads the row at `rest` and steps behind it: false at the end. */
 const char *evidence_first(void);
 bool evidence_next(const char **rest, struct evidence *row);
+
+/* Prints the error that the study (docs/accuracy.md) lets expect of each body at its resolution. */
+void evidence_say(const struct scene *scene, const struct sphfsi_options *o);
+
+/* The same, if the case names its `accuracy`. */
+void evidence_say_preset(const struct scene *scene, const struct sphfsi_options *o);
 
 #endif

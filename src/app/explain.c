@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "app/explain.h"
 
+#include "app/evidence.h"
 #include "app/forecast.h"
 #include "app/slow.h"
 #include "case/params.h"
@@ -220,18 +221,18 @@ static void text_of_bytes(double bytes, char text[32])
         snprintf(text, 32, "%.3g GB", 1e-9 * bytes);
 }
 
-/* Measured over forecast CPU time of one thread: 0.90 to 1.39 in 23 runs on a loaded machine, 13 of them
+/* Measured over forecast time: 0.90 to 1.39 in 23 runs on a loaded machine, 13 of them
  * violent dam breaks, impacts and jets; 18 below 1.2. In the shipped gate and sluice a step gets dearer as
  * the water spreads. */
 static const double least_of_forecast = 0.9, most_of_forecast = 1.4;
 
-static void say_cost(const struct simulation *s, const struct unit_costs *c, int threads,
+static void say_cost(const struct simulation *s, const struct unit_costs *c,
                      const struct sphfsi_options *o)
 {
-    const struct forecast f = forecast_run(c, s, threads, 1);
-    session_say(o, "cost with %d thread%s, %s", threads, threads == 1 ? "" : "s",
-                c->cached ? "from an earlier calibration on this machine"
-                          : "measured in one second of trial steps");
+    const struct forecast f = forecast_run(c, s);
+    const int threads = thread_count();
+    session_say(o, "cost with %d thread%s, measured in 0.3 s of trial steps", threads,
+                threads == 1 ? "" : "s");
     for (int k = 0; k < PHASE_COUNT; k++)
         if (k != PHASE_output && c->phase_fraction[k] > 0)
             session_say(o, "  %-7s %5.1f %% of a step  %s", phase_table[k].name,
@@ -255,20 +256,18 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c, int
         session_say(o, "  [relax] finds the state of rest before that; its time is not included");
 }
 
-static enum err say_trial(struct simulation *s, int threads, const struct sphfsi_options *o,
-                          struct diag *d)
+static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
 {
     struct unit_costs c;
-    TRY(forecast_calibrate(&c, s, d));
+    TRY(forecast_measure(&c, s, d));
     slow_warn(s, d);
     say_bounds(s, o);
-    say_cost(s, &c, threads, o);
-    forecast_say_errors(s->scene, o);
+    say_cost(s, &c, o);
+    evidence_say(s->scene, o);
     return ERR_OK;
 }
 
-enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
-                         struct diag *d)
+enum err explain_session(struct session *x, const struct sphfsi_options *o, struct diag *d)
 {
     struct simulation *s = &x->simulation;
     say_scene(x, o);
@@ -283,5 +282,5 @@ enum err explain_session(struct session *x, int threads, const struct sphfsi_opt
     session_say(o, "integrator %s, precision %s; compiled loops of the fluid: %s, of the solid: %s",
                 integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none",
                 s->solid.sweeps ? s->solid.sweeps->name : "none");
-    return say_trial(s, threads, o, d);
+    return say_trial(s, o, d);
 }

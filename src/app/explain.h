@@ -5,10 +5,9 @@
 
 #include "app/session.h"
 
-/* Prints them line by line, through the message callback. Takes some steps in memory to measure the cost;
- * writes no file but the cache of costs. */
-enum err explain_session(struct session *x, int threads, const struct sphfsi_options *o,
-                         struct diag *d) SPHFSI_CHECKED;
+/* Prints them line by line, through the message callback. Takes some steps in memory to measure the cost. */
+enum err explain_session(struct session *x, const struct sphfsi_options *o, struct diag *d)
+    SPHFSI_CHECKED;
 
 /* Warnings on their way to the caller, kept for explain_data, one a line. */
 struct heard {
@@ -21,7 +20,7 @@ struct heard {
 void heard_begin(struct heard *h, struct sphfsi_options *o);
 
 /* The same as one text in JSON, with the warnings that were heard. */
-enum err explain_data(struct session *x, int threads, const struct heard *h,
-                      const struct sphfsi_options *o, struct diag *d) SPHFSI_CHECKED;
+enum err explain_data(struct session *x, const struct heard *h, const struct sphfsi_options *o,
+                      struct diag *d) SPHFSI_CHECKED;
 
 #endif

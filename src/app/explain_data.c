@@ -83,16 +83,16 @@ static void write_bounds(struct json *j, const struct simulation *s)
     if (s->kind[KIND_SOLID].n > 0) json_number(j, "solid_time_step", s->dt_solid);
 }
 
-static void write_cost(struct json *j, const struct simulation *s, const struct unit_costs *c,
-                       int threads)
+static void write_cost(struct json *j, const struct simulation *s, const struct unit_costs *c)
 {
-    const struct forecast f = forecast_run(c, s, threads, 1);
+    const struct forecast f = forecast_run(c, s);
     json_open(j, "cost", '{');
-    json_integer(j, "threads", threads);
+    json_integer(j, "threads", thread_count());
     json_number(j, "time_step", f.dt);
     json_number(j, "steps", f.steps);
     json_number(j, "solid_substeps", f.substeps);
     json_number(j, "wall_seconds", f.seconds);
+    json_number(j, "row_seconds", c->rows);
     json_number(j, "memory_bytes", f.memory);
     json_number(j, "disk_bytes", f.disk);
     json_open(j, "phase_shares", '{');
@@ -103,8 +103,7 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_close(j, '}');
 }
 
-static enum err write_all(FILE *file, struct session *x, int threads, const struct heard *h,
-                          struct diag *d)
+static enum err write_all(FILE *file, struct session *x, const struct heard *h, struct diag *d)
 {
     struct json j = {.file = file};
     struct simulation *const s = &x->simulation;
@@ -113,10 +112,10 @@ static enum err write_all(FILE *file, struct session *x, int threads, const stru
     write_scene(&j, x);
     report_effects(&j, s);
     write_fields(&j, s);
-    TRY(forecast_calibrate(&c, s, d));
+    TRY(forecast_measure(&c, s, d));
     slow_warn(s, d);
     write_bounds(&j, s);
-    write_cost(&j, s, &c, threads);
+    write_cost(&j, s, &c);
     report_derived(&j, &x->scene);
     report_parameters(&j, &x->scene);
     write_warnings(&j, h);
@@ -124,14 +123,14 @@ static enum err write_all(FILE *file, struct session *x, int threads, const stru
     return ERR_OK;
 }
 
-enum err explain_data(struct session *x, int threads, const struct heard *h,
-                      const struct sphfsi_options *o, struct diag *d)
+enum err explain_data(struct session *x, const struct heard *h, const struct sphfsi_options *o,
+                      struct diag *d)
 {
     char *text = NULL;
     size_t size;
     FILE *const file = open_memstream(&text, &size);
     if (!file) return diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
-    enum err e = write_all(file, x, threads, h, d);
+    enum err e = write_all(file, x, h, d);
     if (fclose(file) != 0 && !e) e = diag_fail(d, ERR_MEMORY, "explain: no memory for its text");
     if (!e && o->message) o->message(o->context, SPHFSI_NOTE, text);
     free(text);

@@ -32,11 +32,6 @@ static const char usage[] =
     "  --explain         say what would be simulated and what it would cost\n"
     "  --effective       print the case in effect, every default spelled out\n"
     "  --cite            print the sources of the methods that the case uses\n"
-    "  --budget TIME     say which is the finest dp that runs within the time: 90s, 10min, 2h\n"
-    "  --refine N        run in N resolutions (3 to 6), coarsest first, and say what probes\n"
-    "                    and energies converge to, with order and error band; finished runs are\n"
-    "                    not repeated\n"
-    "                    (--ratio R: of neighbouring resolutions, 2)\n"
     "  --inspect FILE    say what a checkpoint holds, or the newest of a run's folder\n"
     "  --new NAME        print a commented case to start from; without a name, list them\n"
     "  --keys            print all sections and keys of a case file\n"
@@ -46,20 +41,7 @@ static const char usage[] =
     "SIGUSR1: write a checkpoint and continue\n";
 
 /* What the program does: RUN unless an option says otherwise. */
-enum mode {
-    RUN,
-    PREVIEW,
-    EXPLAIN,
-    EFFECTIVE,
-    CITE,
-    INSPECT,
-    NEW,
-    KEYS,
-    REFINE,
-    BUDGET,
-    VERSION,
-    HELP
-};
+enum mode { RUN, PREVIEW, EXPLAIN, EFFECTIVE, CITE, INSPECT, NEW, KEYS, VERSION, HELP };
 
 /* Whether an option takes an operand. */
 enum takes { NOTHING, OPERAND, MAYBE };
@@ -76,9 +58,8 @@ static const struct option {
     {"--explain", NOTHING, EXPLAIN}, {"--effective", NOTHING, EFFECTIVE},
     {"--cite", NOTHING, CITE},       {"--inspect", OPERAND, INSPECT},
     {"--new", MAYBE, NEW},           {"--keys", NOTHING, KEYS},
-    {"--refine", OPERAND, REFINE},   {"--ratio", OPERAND, RUN},
-    {"--budget", OPERAND, BUDGET},   {"--version", NOTHING, VERSION},
-    {"--help", NOTHING, HELP},       {"-h", NOTHING, HELP},
+    {"--version", NOTHING, VERSION}, {"--help", NOTHING, HELP},
+    {"-h", NOTHING, HELP},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
@@ -86,8 +67,6 @@ struct command {
     struct sphfsi_options options;
     enum mode mode;
     const char *operand; /* of the option that chose the mode */
-    double runs, ratio;  /* of --refine */
-    double budget;       /* of --budget, s */
     int quiet;
     int terminal, line_open; /* stderr is a terminal; it shows a progress line */
     double last_fraction, last_line;
@@ -180,41 +159,33 @@ static int complain(const char *format, const char *a, const char *b)
     return 1;
 }
 
-static int read_number(const char *option, const char *text, double low, double high, double *value)
+static int read_threads(const char *text, int *threads)
 {
     char *end;
-    *value = strtod(text, &end);
-    const int count = strcmp(option, "--threads") == 0 || strcmp(option, "--refine") == 0;
-    if (end != text && *end == '\0' && *value >= low && *value <= high &&
-        (!count || *value == floor(*value)))
-        return 0;
-    return complain(strcmp(option, "--threads") == 0
-                        ? "%s %s: give a whole number from 1 to 2147483647"
-                    : strcmp(option, "--refine") == 0 ? "%s %s: give a whole number from 3 to 6"
-                                                      : "%s %s: give a number from 1.1 to 4",
-                    option, text);
+    const double value = strtod(text, &end);
+    if (end == text || *end || !(value >= 1 && value <= INT_MAX) || value != floor(value))
+        return complain("%s %s: give a whole number from 1 to 2147483647", "--threads", text);
+    *threads = (int)value;
+    return 0;
 }
 
-/* A number followed by a unit of time, of 1e-300 to 1e9 s. Simulated times may go without: then it is s. */
-static int read_time(const char *option, const char *text, double *seconds)
+/* A simulated time, above 0 and at most 1e9 s; without a unit it is in s. */
+static int read_time(const char *text, double *seconds)
 {
     static const struct {
         const char *unit;
         double seconds;
     } units[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}, {"h", 3600}, {"", 1}};
-    const int wall = strcmp(option, "--budget") == 0;
     char *end;
     const double number = strtod(text, &end);
     while (end != text && *end == ' ') end++;
-    for (size_t k = 0; k < sizeof units / sizeof units[0] - (wall ? 1 : 0); k++)
+    for (size_t k = 0; k < sizeof units / sizeof units[0]; k++)
         if (end != text && strcmp(end, units[k].unit) == 0) {
             *seconds = number * units[k].seconds;
             if (*seconds >= 1e-300 && *seconds <= 1e9) return 0;
         }
-    return complain(
-        wall ? "%s %s: give a time such as 90s, 10min or 2h"
-             : "%s %s: give a time such as 0.5, 0.5s or 500ms, above 0 and at most 1e9 s",
-        option, text);
+    return complain("%s %s: give a time such as 0.5, 0.5s or 500ms, above 0 and at most 1e9 s",
+                    "--until", text);
 }
 
 static int apply(struct command *c, const struct option *option, const char *operand)
@@ -222,20 +193,15 @@ static int apply(struct command *c, const struct option *option, const char *ope
     struct sphfsi_options *o = &c->options;
     const char *const name = option->name;
     const char *const word = operand ? operand : ""; /* only --restart may go without */
-    double number = 0;
     if (option->mode != RUN) {
         c->mode = option->mode;
         c->operand = operand;
-        if (option->mode == BUDGET) return read_time(name, word, &c->budget);
-        if (option->mode == REFINE) return read_number(name, word, 3, 6, &c->runs);
     } else if (strcmp(name, "--out") == 0) {
         o->out = operand;
     } else if (strcmp(name, "--threads") == 0) {
-        if (read_number(name, word, 1, INT_MAX, &number)) return 1;
-        o->threads = (int)number;
+        return read_threads(word, &o->threads);
     } else if (strcmp(name, "--until") == 0) {
-        if (read_time(name, word, &number)) return 1;
-        o->until = number;
+        return read_time(word, &o->until);
     } else if (strcmp(name, "--set") == 0) {
         if (!strchr(word, '='))
             return complain("%s %s: give key=value or section.key=value", name, operand);
@@ -243,8 +209,6 @@ static int apply(struct command *c, const struct option *option, const char *ope
     } else if (strcmp(name, "--restart") == 0) {
         o->restart = 1;
         o->restart_file = operand;
-    } else if (strcmp(name, "--ratio") == 0) {
-        if (read_number(name, word, 1.1, 4, &c->ratio)) return 1;
     } else if (strcmp(name, "--fork") == 0) {
         o->fork = operand;
     } else {
@@ -264,8 +228,24 @@ static const struct option *find_option(const char *argument, const char **opera
     return NULL;
 }
 
+/* Options of earlier versions that are tools now. */
+static int names_a_tool(const char *argument)
+{
+    static const char *const moved[][2] = {
+        {"--refine", "tools/refine.py -n N CASE"},
+        {"--ratio", "tools/refine.py --ratio R CASE"},
+        {"--budget", "tools/budget.py TIME CASE"},
+    };
+    for (size_t k = 0; k < sizeof moved / sizeof moved[0]; k++)
+        if (strncmp(argument, moved[k][0], strcspn(argument, "=")) == 0 &&
+            strlen(moved[k][0]) == strcspn(argument, "="))
+            return complain("%s is a tool now: %s", moved[k][0], moved[k][1]);
+    return 0;
+}
+
 static int unknown_option(const char *argument)
 {
+    if (names_a_tool(argument)) return 1;
     const char *names[OPTION_COUNT];
     char word[64];
     for (int k = 0; k < OPTION_COUNT; k++)
@@ -344,8 +324,6 @@ static enum sphfsi_status carry_out(struct command *c)
     case CITE: return sphfsi_cite(o);
     case INSPECT: return sphfsi_inspect(c->operand, o);
     case NEW: return print_template(c);
-    case BUDGET: return sphfsi_budget(o, c->budget);
-    case REFINE: install_signals(); return sphfsi_refine(o, (int)c->runs, c->ratio);
     case KEYS: sphfsi_keys(o); break;
     case VERSION: puts(sphfsi_version()); break;
     case HELP: fputs(usage, stdout); break;
@@ -384,7 +362,7 @@ static int execute(struct command *c)
     const enum sphfsi_status status = carry_out(c);
     clear_line(c);
     if (status) print_errors();
-    const int run = c->mode == RUN || c->mode == REFINE;
+    const int run = c->mode == RUN;
     if (!status && !output_is_out(run) && !run) return 2;
     return sphfsi_exit_status(status, requests.stop);
 }
@@ -463,7 +441,6 @@ int main(int argc, char **argv)
     const char **sets = calloc((size_t)argc + 1, sizeof *sets);
     if (!sets) return complain("%s%s", "no memory", "");
     c.options.sets = sets;
-    c.ratio = 2;
     int status = parse(&c, argc, argv);
     if (!status && c.options.case_path) shorten_waits(&c, argv);
     if (!status) status = execute(&c);

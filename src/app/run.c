@@ -4,8 +4,7 @@
 #include "app/case_change.h"
 #include "app/closing.h"
 #include "app/due.h"
-#include "app/forecast.h"
-#include "app/plot_hint.h"
+#include "app/evidence.h"
 #include "base/run_dir.h"
 #include "output/checkpoint.h"
 #include "output/probes.h"
@@ -329,12 +328,13 @@ static void save_last_state(struct run *r, enum err why)
         session_say(r->options, "last valid state, for a restart: %s; state at the stop: %s",
                     r->checkpoint, r->snapshots.path);
     if (r->checkpoint[0] && (why == ERR_GUARD || why == ERR_INTERRUPT))
-        closing_command(r->options, r->s, r->folder.path, r->checkpoint, why == ERR_GUARD);
+        closing_say_next(r->options, r->s, r->checkpoint, why == ERR_GUARD);
 }
 
 /* --- start --- */
 
-enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES], struct diag *d)
+static enum err run_dir_of_case(const struct sphfsi_options *o, char path[PATH_BYTES],
+                                struct diag *d)
 {
     if (o->out) {
         if (o->out[0] && strlen(o->out) < PATH_BYTES - 300) {
@@ -486,7 +486,7 @@ static enum err begin(struct run *r)
     r->record.start_time = time;
     r->record.start_particle_steps = r->s->state.particle_steps;
     r->wall_start = r->wall_checkpoint = r->wall_progress = wall_clock();
-    forecast_say_preset(&r->session.scene, r->options);
+    evidence_say_preset(&r->session.scene, r->options);
     return ERR_OK;
 }
 
@@ -504,7 +504,8 @@ static enum err simulate(struct run *r)
                 r->folder.path, r->s->state.time, (long long)r->s->state.steps,
                 r->record.wall_seconds);
     closing_say(r->options, r->s, &r->record);
-    if (r->session.scene.n_probe > 0) say_plot_hint(r->folder.path, r->options);
+    if (r->session.scene.n_probe > 0)
+        session_say(r->options, "draw it with tools/plot_probes.py %s", r->folder.path);
     return ERR_OK;
 }
 

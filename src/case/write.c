@@ -213,8 +213,10 @@ enum err scene_write(const struct scene *s, const char *path, struct diag *d)
 {
     FILE *out = fopen(path, "w");
     if (!out) return diag_fail(d, ERR_IO, "%s: cannot be written: %s", path, strerror(errno));
-    fprintf(out, "# The case in effect, every default written out, in SI units; sphfsi %s.\n\n",
-            SPHFSI_VERSION);
+    fprintf(out, "# The case in effect, every default written out, in SI units; sphfsi %s.\n%s\n",
+            SPHFSI_VERSION,
+            s->off_lattice ? "# Bodies are off the lattice, so their sampled sizes depend on dp.\n"
+                           : "");
     write_section(out, s, SECTION_top, 0, path);
     write_constants(out, s);
     for (int id = SECTION_top + 1; id < SECTION_COUNT; id++)

@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Three resolutions: the runs, their resumption, and what does not fit.
 . tests/support/shell.sh
-run() { "$sphfsi" --refine 3 "$@" --threads 1 --quiet; }
+refine=("${PYTHON:-python3}" tools/refine.py)
+"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null || { echo "cffi or numpy is missing"; exit 77; }
+run() { "${refine[@]}" -n 3 "$@" --threads 1 --quiet; }
 case=(cases/cantilever.cfg --set ratio=8 --until 0.02 --out "$dir/r")
 
 # Stopped in the middle: the second folder has begun, the third has not.
@@ -41,7 +43,7 @@ grep -q young "$dir/error" || fail "the message does not name what differs: $(ca
 # A resolution in which a body vanishes is named before anything runs.
 run cases/cantilever.cfg --set ratio=2 --ratio 4 --out "$dir/none" 2>"$dir/error"
 [ $? = 1 ] || fail "a body without particles was accepted"
-grep -q 'refine: at dp = ' "$dir/error" || fail "$(cat "$dir/error")"
+grep -q 'refine: at dp = 0.16 m, 16 times the case.s: .*use a smaller --ratio' "$dir/error" || fail "$(cat "$dir/error")"
 [ ! -e "$dir/none" ] || fail "something was run all the same"
 
 # Probes with a rate of their own; without any the energies are left.
@@ -59,7 +61,28 @@ grep -q '"ledger"' "$dir/bare/refine.json" || fail "no energies"
 grep -q '"why_no_order": "[^"]' "$dir/bare/refine.json" || fail "it does not say why there is no order"
 
 # Two resolutions, a restart.
-"$sphfsi" --refine 2 cases/gate.cfg 2>"$dir/error" && fail "two resolutions were accepted"
-grep -q 'from 3 to 6' "$dir/error" || fail "$(cat "$dir/error")"
+for n in 2 7; do
+    "${refine[@]}" -n $n cases/gate.cfg 2>"$dir/error"
+    [ $? = 1 ] || fail "$n resolutions were accepted"
+    grep -q 'from 3 to 6' "$dir/error" || fail "$(cat "$dir/error")"
+done
+for ratio in 9 x 1 1.05 4.5; do
+    "${refine[@]}" --ratio "$ratio" cases/gate.cfg 2>"$dir/error"
+    [ $? = 1 ] || fail "--ratio $ratio was accepted"
+    grep -q 'give a number from 1.1 to 4' "$dir/error" || fail "$(cat "$dir/error")"
+done
+# Nothing is made of a case that cannot be read.
+printf 'dp = 1 cm\nend_time = 1\n[solid a]\nyuong = 1\n' >"$dir/wrong.cfg"
+"${refine[@]}" "$dir/wrong.cfg" --out "$dir/refined" 2>"$dir/error"
+[ $? = 1 ] || fail "a wrong case was accepted"
+grep -q yuong "$dir/error" || fail "$(cat "$dir/error")"
+grep -q -- --ratio "$dir/error" && fail "the ratio is blamed: $(cat "$dir/error")"
+[ ! -e "$dir/refined" ] || fail "something was made of a wrong case"
+# The program names the tools that its old options have become.
+for option in --refine --ratio=2 --budget; do
+    "$sphfsi" $option 3 cases/gate.cfg 2>"$dir/error"
+    [ $? = 1 ] && [ "$(wc -l <"$dir/error")" = 1 ] && grep -q 'is a tool now: tools/' "$dir/error" ||
+        fail "$option: $(cat "$dir/error")"
+done
 run "${case[@]}" --restart 2>"$dir/error" && fail "a restart was accepted"
 exit $((failures != 0))

@@ -184,34 +184,6 @@ static void lone_bodies_are_explained(void)
     }
 }
 
-/* Nothing is made of a case that cannot be read. */
-static void a_refinement_of_a_wrong_case(void)
-{
-    const struct sphfsi_options o = {
-        .case_text = "dp = 1 cm\nend_time = 1\n[solid a]\nyuong = 1\nshap = 3\n",
-        .threads = 1,
-        .out = tiny_path("refined")};
-    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_refine(&o, 3, 2));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "yuong"), sphfsi_error());
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_more_errors(), "shap"), sphfsi_error());
-    TEST_ASSERT_NULL_MESSAGE(strstr(sphfsi_error(), "--ratio"), sphfsi_error());
-    struct stat info;
-    TEST_ASSERT_NOT_EQUAL(0, stat(tiny_path("refined"), &info));
-}
-
-static void a_first_run_that_is_too_coarse(void)
-{
-    const struct sphfsi_options o = {.case_text = "dp = 1 cm\nend_time = 1\n[solid a]\n"
-                                                  "shape = box 0, 0, 0.04, 1\ndensity = 1000\n"
-                                                  "young = 1e6\npoisson = 0.3\n",
-                                     .threads = 1,
-                                     .out = tiny_path("refined")};
-    TEST_ASSERT_EQUAL_INT(SPHFSI_INPUT, sphfsi_refine(&o, 3, 2));
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "at dp = 0.04 m, 4 times the case's"),
-                                 sphfsi_error());
-    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(sphfsi_error(), "use a smaller --ratio"), sphfsi_error());
-}
-
 static void an_unknown_field_names_the_nearest(void)
 {
     struct sphfsi_view v;
@@ -429,8 +401,6 @@ int main(void)
     RUN_TEST(force_on_solids_is_the_present_one);
     RUN_TEST(what_is_not_there_has_no_nearest);
     RUN_TEST(lone_bodies_are_explained);
-    RUN_TEST(a_refinement_of_a_wrong_case);
-    RUN_TEST(a_first_run_that_is_too_coarse);
     RUN_TEST(an_unknown_field_names_the_nearest);
     RUN_TEST(wrong_input_makes_nothing);
     RUN_TEST(the_same_input_gives_the_same_bits);

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The command that a run ends with: after a guard a fork with half the step into a folder of its own, after
-# a signal a restart. It is right to the letter, and it runs.
+# How a run ends that is stopped: after a guard with a fork with half the step into another folder, after a
+# signal with a restart. The options are right to the letter, and they run.
 . tests/support/shell.sh
 export OMP_NUM_THREADS=1
 cp tests/fault/still.cfg "$dir/still water.cfg"
@@ -18,37 +18,36 @@ poisson = 0.3
 law = svk
 END
 
-# command STATUS ARGUMENTS...: the printed command of a run that ends so.
+# command STATUS ARGUMENTS...: what a run that ends so is to be given for going on.
 command() {
     local status=$1
     shift
     "$@" >out 2>err
     [ $? = "$status" ] || fail "$*: does not end with $status: $(cat out err)"
-    sed -n 's/^to go on: //p' out
+    sed -n 's/^to go on: the same command with //p' out
 }
-is() { [ "$1" = "$2" ] || fail "the command is '$1', not '$2'"; }
+is() { [ "$1" = "$2" ] || fail "the options are '$1', not '$2'"; }
 newest() { ls "$1"/*.ckpt | tail -n 1; }
 
 got=$(command 2 ./sphfsi "still water.cfg" --quiet --out a --set numerics.fixed_step=5ms)
-is "$got" "./sphfsi 'still water.cfg' --fork $(newest a) --set numerics.fixed_step=5ms \
---set numerics.fixed_step=0.0025 --out a-2"
+is "$got" "--fork $(newest a) --set numerics.fixed_step=0.0025 and another --out"
 grep -q 'last valid state' out && fail "--quiet hides no note"
 
-# In the folder below another program's, beside folders that are taken.
-mkdir below "b c-2"
-got=$(cd below && command 2 ../sphfsi "../still water.cfg" --out "../b c" --set numerics.cfl=1 --until 0.5 \
-    --threads 1)
-is "$got" "$dir/sphfsi '../still water.cfg' --fork '../$(newest "b c")' --set numerics.cfl=1 \
---set numerics.cfl=0.5 --until 0.5 --threads 1 --out '../b c-3'"
+mkdir below
+still=(../sphfsi "../still water.cfg" --set numerics.cfl=1 --until 0.5 --threads 1)
+got=$(cd below && command 2 "${still[@]}" --out "../b c")
+last=../$(newest "b c")
+is "$got" "--fork $last --set numerics.cfl=0.5 and another --out"
 grep -q "^last valid state, for a restart: .*b c/step-.*; state at the stop: .*b c/fields" below/out ||
     fail "where the last states are: $(cat below/out)"
 # With steps half as long the water stays at rest.
-(cd below && eval "$got" --quiet) >out 2>err || fail "$got: $(cat err)"
-grep -q '"exit_reason": "finished"' "b c-3/summary.json" || fail "the fork has not finished"
+(cd below && "${still[@]}" --fork "$last" --set numerics.cfl=0.5 --out "../b c-2" --quiet) \
+    >out 2>err || fail "$got: $(cat err)"
+grep -q '"exit_reason": "finished"' "b c-2/summary.json" || fail "the fork has not finished"
 
 # A lone solid has a key of its own.
 got=$(command 2 ./sphfsi thrown.cfg --quiet --out t)
-is "$got" "./sphfsi thrown.cfg --fork $(newest t) --set numerics.solid_safety=0.45 --out t-2"
+is "$got" "--fork $(newest t) --set numerics.solid_safety=0.45 and another --out"
 
 # Where shorter steps would stop it again: contact at its limit, a motion that is not finite at a time
 # between those that are checked before the run, and a speed that the case gives.
@@ -66,7 +65,7 @@ poisson = 0.3
 shape = box -0.1, -0.12, 0.2, -0.08
 END
 command 2 ./sphfsi met.cfg --quiet --out m >/dev/null
-is "$(others)" "go on: ./sphfsi met.cfg --fork $(newest m) --out m-2"
+is "$(others)" "go on: the same command with --fork $(newest m) and another --out"
 cat >moved.cfg <<'END'
 dp = 1 cm
 end_time = 0.5
@@ -84,17 +83,17 @@ probe_interval = 0.07003
 ledger_interval = 0.07003
 END
 command 2 ./sphfsi moved.cfg --quiet --out n >/dev/null
-is "$(others)" "go on: ./sphfsi moved.cfg --fork $(newest n) --out n-2"
+is "$(others)" "go on: the same command with --fork $(newest n) and another --out"
 grep -q '^sphfsi: moved.cfg:9: t = 0.07003 s: \[motion m\] gives \[wall side\]' err || fail "$(cat err)"
 sed 's/^x = .*/x = 9*t/
 s/^shape = box -0.04.*/&\nshape = box 0.1, 0, 0.14, 0.1\nshape = box -0.04, -0.04, 0.14, 0/' \
     moved.cfg >fast.cfg
 command 2 ./sphfsi fast.cfg --quiet --out f >/dev/null
-is "$(others)" "start again: ./sphfsi fast.cfg --out f-2"
+is "$(others)" "start again: the same command with another --out"
 grep -q 'the case gives the fluid up to 9 m/s, but its speed of sound is only 10 m/s' err ||
     fail "$(cat err)"
 
-# stop NAME ARGUMENTS...: the command of a run that a signal ends. There is nothing to mend: it restarts.
+# stop NAME ARGUMENTS...: the options of a run that a signal ends. There is nothing to mend: it restarts.
 stop() {
     local name=$1
     shift
@@ -105,13 +104,13 @@ stop() {
     wait $pid
     [ $? = 143 ] || fail "$*: SIGTERM does not end it with 143: $(cat err)"
     grep -q 'last valid state' out && fail "a run that is stopped has no other state"
-    sed -n 's/^to go on: //p' out
+    sed -n 's/^to go on: the same command with //p' out
 }
 got=$(stop r ./sphfsi "still water.cfg" --out r --set title=a)
-is "$got" "./sphfsi 'still water.cfg' --restart --set title=a --out r"
-eval "$got" --until 0.0001 2>err && fail "the end of a restart lies before its begin"
+is "$got" "--restart"
+./sphfsi "still water.cfg" --out r --set title=a --restart --until 0.0001 2>err &&
+    fail "the end of a restart lies before its begin"
 grep -q 'after the end' err || fail "the restart does not begin: $(cat err)"
-got=$(stop "runs/still water" ./sphfsi "still water.cfg")
-is "$got" "./sphfsi 'still water.cfg' --restart"
-
+got=$(stop g ./sphfsi "still water.cfg" --fork r --set title=b --out g)
+is "$got" "--restart instead of --fork"
 [ $failures = 0 ] || exit 1

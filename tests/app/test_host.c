@@ -396,10 +396,6 @@ static void null_is_refused(void)
     REFUSED(sphfsi_set_motion(a, NULL, NULL, NULL));
     REFUSED(sphfsi_run(NULL));
     REFUSED(sphfsi_run(&empty));
-    REFUSED(sphfsi_refine(NULL, 3, 2));
-    REFUSED(sphfsi_refine(&o, -1, 2));
-    REFUSED(sphfsi_budget(NULL, 1));
-    REFUSED(sphfsi_budget(&o, (double)NAN));
     REFUSED(sphfsi_explain(NULL));
     REFUSED(sphfsi_explain_json(NULL));
     REFUSED(sphfsi_effective(NULL, "/dev/null"));

@@ -6,7 +6,7 @@ program=$(realpath "$SPHFSI")
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 fail() { echo "$1"; exit 1; }
-export OMP_NUM_THREADS=1 XDG_CACHE_HOME=$work/cache
+export OMP_NUM_THREADS=1
 cp tests/fault/tiny.cfg "$work/tiny"
 cp tests/fault/tiny.cfg "$work/tank.cfg"
 cp "$program" "$work/sphfsi"
@@ -17,7 +17,7 @@ cd "$work" || exit 1
 [ -s runs/tiny/summary.json ] || fail "no runs/tiny"
 ./sphfsi tiny --quiet --set numerics.fixed_step=4ms --set output.probe_interval=20ms --set end_time=1 \
     --out far >said 2>&1 && fail "no guard"
-grep -q '^to go on: ./sphfsi tiny --fork far/step-[0-9]*.ckpt .* --out far-2' said || fail "$(cat said)"
+grep -q '^to go on: the same command with --fork far/step-[0-9]*.ckpt ' said || fail "$(cat said)"
 ./sphfsi tank.cfg --quiet --until 1e-4 >said 2>&1 || fail "$(cat said)"
 [ -s runs/tank/summary.json ] || fail "no runs/tank"
 ./sphfsi tank.cfg --quiet --until 1e-4 --fork runs/tiny --set gate.young=2e6 >said 2>&1 || fail "$(cat said)"
@@ -25,9 +25,6 @@ grep -q '^to go on: ./sphfsi tiny --fork far/step-[0-9]*.ckpt .* --out far-2' sa
 for case in tiny tank.cfg; do
     ./sphfsi --preview "$case" >said 2>&1 || fail "$(cat said)"
     [ -s "preview-${case%.cfg}.svg" ] || fail "no preview of $case"
-done
-for time in "90  s" "1 min"; do
-    ./sphfsi --budget "$time" tiny >said 2>&1 || fail "$(cat said)"
 done
 # A simulated time may have a unit; without one it is in seconds.
 for time in 1e-4 1e-4s "0.1 ms" 100us; do
@@ -38,10 +35,6 @@ done
 for time in 1mm 0 -1s inf nan 2e9 ms; do
     ./sphfsi tank.cfg --quiet --until "$time" >said 2>&1 && fail "--until $time was accepted"
     grep -q "^sphfsi: --until $time: give a time such as 0.5, 0.5s or 500ms" said || fail "$(cat said)"
-done
-for ratio in 9 x 1; do
-    ./sphfsi --refine 3 --ratio "$ratio" tiny >said 2>&1 && fail "--ratio $ratio was accepted"
-    grep -q 'give a number from 1.1 to 4' said || fail "$(cat said)"
 done
 sed -i '1i source = By hand, 2026' tiny
 ./sphfsi --cite tiny | grep -q '^The scene: By hand, 2026' || fail "no source"

@@ -1,22 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What --refine reports, computed again from the files of its runs; and what it leaves when they are lost."""
+"""What tools/refine.py reports, computed again from the files of its runs; and what it leaves when they are lost."""
 import csv
 import json
 import math
-import os
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-SPHFSI = os.environ.get("SPHFSI", "./sphfsi")
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from scripts import packages
+with packages():
+    import cffi  # noqa: F401  the package needs it
+    import numpy  # noqa: F401
+
 RATIO = 1.5
 PLATE = ["cases/cantilever.cfg", "--set", "ratio=8", "--until", "0.02"]
 
 
 def refine(out, *more, status=0):
-    done = subprocess.run([SPHFSI, "--refine", "3", "--ratio", str(RATIO), *PLATE, "--threads", "1",
+    done = subprocess.run([sys.executable, "tools/refine.py", "-n", "3", "--ratio", str(RATIO), *PLATE, "--threads", "1",
                            "--quiet", "--out", str(out), *more], capture_output=True, text=True)
     assert done.returncode == status, (done.returncode, done.stderr)
     return done

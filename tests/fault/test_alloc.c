@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The n-th allocation fails, for every n of a run from its first to its last one, and of a restart, a
- * fork, a refinement, the parts of a solid, --inspect, --explain and --preview: a sentence and a status each
+ * fork, the parts of a solid, --inspect, --explain and --preview: a sentence and a status each
  * time, nothing leaks, no lock is left, and what was good stays good. The linker puts these in between:
  * --wrap: malloc calloc realloc aligned_alloc free fopen fdopen opendir open_memstream
  * Those within HDF5, a shared library, are not: it says itself that it does not survive all of them; a
@@ -180,22 +180,6 @@ static enum sphfsi_status preview(void)
     return status;
 }
 
-/* Three runs of a beam of a few particles. */
-static enum sphfsi_status refine(void)
-{
-    static const char text[] =
-        "dp = 1 cm\nend_time = 1 s\n[solid a]\nshape = box 0, 0, 0.16, 0.08\n"
-        "clamp = box 0, 0, 0.08, 0.08\ndensity = 1000\nyoung = 1 MPa\n"
-        "poisson = 0.3\n[probe M]\nbody = a\npoint = 0.16, 0.04\n"
-        "[probe N]\nbody = a\npoint = 0.16, 0\ninterval = 1e-5\n"
-        "[output]\nsnapshot_interval = 0\ncheckpoint_interval = 0\n"
-        "probe_interval = 1e-5\nledger_interval = 1e-5\n";
-    static const char *const one[] = {"title=refined"};
-    const struct sphfsi_options o = {
-        .case_text = text, .sets = one, .n_sets = 1, .until = 2e-5, .threads = 1, .out = folder};
-    return sphfsi_refine(&o, 3, 2);
-}
-
 static void push(void *context, const struct sphfsi_particles *p, double *ax, double *ay)
 {
     (void)context;
@@ -327,8 +311,6 @@ static void of_explain_json(void) { every_one(explain_json, "json", 100); }
 
 static void of_preview(void) { every_one(preview, "preview", 50); }
 
-static void of_refine(void) { every_one(refine, "refine", 100); }
-
 static void of_a_library(void) { every_one(library, "library", 50); }
 
 int main(void)
@@ -344,7 +326,6 @@ int main(void)
     RUN_TEST(of_explain);
     RUN_TEST(of_explain_json);
     RUN_TEST(of_preview);
-    RUN_TEST(of_refine);
     RUN_TEST(of_a_library);
     printf("found: %ld failing allocations\n", failures);
     return UNITY_END();

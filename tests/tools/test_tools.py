@@ -200,7 +200,7 @@ def test_probes(tmp):
 
 
 def test_refinement(tmp):
-    """The folder of --refine: its resolutions, coarsest first; of one run, the finest."""
+    """The folder of tools/refine.py: its resolutions, coarsest first; of one run, the finest."""
     study = tmp / "study"
     for dp in ("0.0025", "0.01", "0.005"):
         shutil.copytree(write_run(tmp / "one"), study / f"dp-{dp}")

@@ -18,7 +18,7 @@ from study_metrics import KINDS
 SCENES = {"solid": "solid alone", "fluid": "fluid alone", "coupled": "fluid and structure"}
 # Sources that no run comes by: they look ahead, list, or hold what the study itself has measured. What
 # presets set stands in the effective case.
-ASIDE = re.compile(r"(evidence|presets|citations|template|embedded|explain|forecast|budget|refine|"
+ASIDE = re.compile(r"(evidence|presets|citations|template|embedded|explain|forecast|"
                    r"manual\w*|preview|inspect)\.\w+")
 
 

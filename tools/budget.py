@@ -1,0 +1,17 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Says which is the finest dp that runs within a wall time, and what a few round dp cost."""
+
+from casetool import Parser, make_case, run_tool, seconds
+
+
+def main():
+    parser = Parser(__doc__)
+    parser.add_argument("time", type=seconds, metavar="TIME", help="wall time: 90s, 10min, 2h")
+    parser.add_case()
+    args = parser.parse_args()
+    make_case(args).budget(args.time, until=args.until, threads=args.threads, notes=print)
+
+
+if __name__ == "__main__":
+    run_tool(main)
