@@ -333,6 +333,23 @@ void solid_stress(struct solid *s, struct particles *p)
     }
 }
 
+void solid_operator(struct solid *s, struct particles *p)
+{
+#pragma omp parallel num_threads(s->threads)
+    {
+        const struct chunk own = chunk_of(s, p);
+        pack_motion(&own);
+        stress_sweeps(&own);
+        sweep(&own, s->sweeps->forces);
+#pragma omp barrier
+#pragma omp for schedule(static)
+        for (int64_t i = 0; i < p->n; i++) {
+            p->sx[i] *= p->free[i];
+            p->sy[i] *= p->free[i];
+        }
+    }
+}
+
 void solid_forces(const struct solid *s, struct particles *p)
 {
 #pragma omp parallel num_threads(s->threads) if (!calls_program(s))

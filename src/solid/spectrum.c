@@ -65,15 +65,13 @@ static double apply_operator(struct solid *s, struct particles *p, double *const
          * the opposite field. */
         set_field(field, base, p->sx, p->sy, p->n, -factor);
         keep(other, p->sx, p->sy, p->n);
-        solid_stress(s, p);
-        solid_forces(s, p);
+        solid_operator(s, p);
         set_field(field, base, other[0], other[1], p->n, factor);
         keep(other, p->sx, p->sy, p->n);
     } else {
         set_field(field, base, p->sx, p->sy, p->n, factor);
     }
-    solid_stress(s, p);
-    solid_forces(s, p);
+    solid_operator(s, p);
     for (int64_t i = 0; i < p->n; i++) {
         p->sx[i] -= both_signs ? other[0][i] : rest[0][i];
         p->sy[i] -= both_signs ? other[1][i] : rest[1][i];
@@ -109,22 +107,8 @@ double solid_step_of(double omega2, double damping)
 
 double solid_stable_step(struct solid *s, struct particles *p, double *omega, double *damping)
 {
-    /* Without the fluid's force and gravity, which do not depend on the field, and without contact,
-     * which has its own bounds. */
     double *const rates[2] = {s->scratch[4], s->scratch[5]};
     keep(rates, p->sx, p->sy, p->n);
-    struct solid bare = *s;
-    struct solid_body body[s->n_bodies];
-    memcpy(body, s->body, sizeof body);
-    for (int k = 0; k < s->n_bodies; k++) body[k].gravity[0] = body[k].gravity[1] = 0;
-    bare.body = body;
-    bare.coupled = false;
-    bare.contact = NULL;
-    bare.loads = NULL;
-    bare.gravity = NULL;
-    bare.external[0] = bare.external[1] = NULL;
-    bare.mass_damped = false; /* its rate is known */
-
     const size_t bytes = (size_t)p->n * sizeof *p->vx;
     double *const u[2] = {p->ux, p->uy}, *const v[2] = {p->vx, p->vy};
     double *const base[2] = {s->scratch[0], s->scratch[1]};
@@ -136,23 +120,24 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     keep(kept, p->vx, p->vy, p->n);
     memset(p->vx, 0, bytes);
     memset(p->vy, 0, bytes);
-    solid_stress(&bare, p);
-    solid_forces(&bare, p);
+    solid_operator(s, p);
     keep(rest, p->sx, p->sy, p->n);
     keep(base, p->ux, p->uy, p->n);
-    *omega = sqrt(largest_factor(&bare, p, u, base, amplitude, false));
+    *omega = sqrt(largest_factor(s, p, u, base, amplitude, false));
     keep(u, base[0], base[1], p->n);
-    solid_stress(&bare, p);
     memset(base[0], 0, bytes);
     memset(base[1], 0, bytes);
     *damping = 0;
-    /* Linear damping acts on both signs. */
-    for (int k = 0; k < s->n_bodies; k++) body[k].damping_time *= 0.5;
-    for (int k = 0; k < s->n_bodies; k++)
-        if (s->body[k].viscosity + s->body[k].damping_time > 0 && *damping == 0)
-            *damping = largest_factor(&bare, p, v, base, amplitude * *omega, true);
-    double rate = 0;
-    for (int k = 0; k < s->n_bodies; k++) rate = max2(rate, s->body[k].mass_damping);
+    bool damped = false;
+    double rate = 0; /* of mass damping */
+    for (int k = 0; k < s->n_bodies; k++) {
+        damped |= s->body[k].viscosity + s->body[k].damping_time > 0;
+        rate = max2(rate, s->body[k].mass_damping);
+    }
+    /* Linear damping acts on both signs: half of it on each. */
+    for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 0.5;
+    if (damped) *damping = largest_factor(s, p, v, base, amplitude * *omega, true);
+    for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 2;
     *damping += rate;
     keep(v, kept[0], kept[1], p->n);
     /* Later readers get the fields of the body, not of a trial. */

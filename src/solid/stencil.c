@@ -4,11 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/point_grid.h"
 #include "particles/kernel.h"
 #include "solid/packed.h"
 #include "solid/stencil.h"
 
-/* Neighbours of one particle within 2h, from a grid of buckets over the reference configuration. */
+/* Neighbours of one particle within 2h. */
 enum { MAX_NEIGHBOURS = 96, MAX_LANES = LANES_FLOAT, MAX_SLOTS = MAX_NEIGHBOURS * MAX_LANES };
 
 /* W_X of a lane without such a neighbour: a divisor all the same, so it must not be zero. */
@@ -20,78 +21,34 @@ struct draft {
     int64_t offset;
 };
 
-struct bucket_grid {
-    double lower[2], side;
-    int nx, ny;
-    int32_t *first, *next; /* chains of particles by bucket, -1 ends */
-};
-
-static enum err buckets_create(struct bucket_grid *g, struct arena *a, const struct particles *p,
-                               double reach, struct diag *d)
-{
-    double upper[2] = {-INFINITY, -INFINITY};
-    g->lower[0] = g->lower[1] = INFINITY;
-    for (int64_t i = 0; i < p->n; i++) {
-        g->lower[0] = min2(g->lower[0], p->X[i]);
-        g->lower[1] = min2(g->lower[1], p->Y[i]);
-        upper[0] = max2(upper[0], p->X[i]);
-        upper[1] = max2(upper[1], p->Y[i]);
-    }
-    /* Few bodies far apart must not need a bucket for every cell between them. */
-    g->side = max2(reach, 1e-4 * max2(upper[0] - g->lower[0], upper[1] - g->lower[1]));
-    g->nx = (int)((upper[0] - g->lower[0]) / g->side) + 1;
-    g->ny = (int)((upper[1] - g->lower[1]) / g->side) + 1;
-    const size_t n_buckets = (size_t)g->nx * (size_t)g->ny;
-    g->first = arena_alloc(a, n_buckets, sizeof *g->first, "buckets of the solid", d);
-    g->next = arena_alloc(a, (size_t)p->n, sizeof *g->next, "buckets of the solid", d);
-    if (!g->first || !g->next) return ERR_MEMORY;
-    for (size_t k = 0; k < n_buckets; k++) g->first[k] = -1;
-    for (int64_t i = p->n - 1; i >= 0; i--) {
-        const int bx = (int)((p->X[i] - g->lower[0]) / g->side);
-        const int by = (int)((p->Y[i] - g->lower[1]) / g->side);
-        g->next[i] = g->first[by * g->nx + bx];
-        g->first[by * g->nx + bx] = (int32_t)i;
-    }
-    return ERR_OK;
-}
-
 /* X_a - X_b, rounded to 2^-30 dp: equal surroundings on a lattice become bitwise equal, so that
  * packs can use the same slots. */
 static double reference_distance(double a, double b, double dp)
 {
-    const double unit = ldexp(dp, -30);
+    const double unit = dp * 0x1p-30;
     return nearbyint((a - b) / unit) * unit;
-}
-
-static int compare_index(const void *a, const void *b)
-{
-    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
 }
 
 /* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near, are
  * not bonded to it. -1: too many. */
-static int neighbours_of(const struct solid *s, const struct bucket_grid *g,
+static int neighbours_of(const struct solid *s, const struct point_grid *g,
                          const struct particles *p, int64_t i, int32_t *found)
 {
     const struct solid_body *const own = &s->body[p->body[i]];
     const double reach = KERNEL_REACH * own->h, dp = own->dp;
-    const int bx = (int)((p->X[i] - g->lower[0]) / g->side),
-              by = (int)((p->Y[i] - g->lower[1]) / g->side);
     int n = 0;
-    for (int y = by > 0 ? by - 1 : 0; y <= by + 1 && y < g->ny; y++) {
-        for (int x = bx > 0 ? bx - 1 : 0; x <= bx + 1 && x < g->nx; x++) {
-            for (int32_t j = g->first[y * g->nx + x]; j >= 0; j = g->next[j]) {
-                if (j == i || s->body[p->body[j]].bond != own->bond) continue;
-                const double dx = reference_distance(p->X[i], p->X[j], dp);
-                const double dy = reference_distance(p->Y[i], p->Y[j], dp);
-                if (dx * dx + dy * dy >= reach * reach) continue;
-                if (n == MAX_NEIGHBOURS) return -1;
-                found[n++] = j;
-            }
-        }
+    struct point_visit v = point_grid_visit(g, p->X[i], p->Y[i], 1.001 * reach);
+    while (point_grid_next(g, &v)) {
+        const int32_t j = (int32_t)v.k;
+        if (j == i || s->body[p->body[j]].bond != own->bond) continue;
+        const double dx = reference_distance(p->X[i], p->X[j], dp);
+        const double dy = reference_distance(p->Y[i], p->Y[j], dp);
+        if (dx * dx + dy * dy >= reach * reach) continue;
+        if (n == MAX_NEIGHBOURS) return -1;
+        int at = n++;
+        for (; at > 0 && found[at - 1] > j; at--) found[at] = found[at - 1];
+        found[at] = j;
     }
-    qsort(found, (size_t)n, sizeof *found, compare_index);
     return n;
 }
 
@@ -218,7 +175,7 @@ static int compare_slot(const void *a, const void *b)
 
 /* The slots of one pack, in ascending order of neighbours; returns their number. */
 static int pack_slots(const struct solid *s, const struct particles *p,
-                      const struct bucket_grid *grid, const struct gradient_moments *moments,
+                      const struct point_grid *grid, const struct gradient_moments *moments,
                       const struct solid_pack *pack, struct draft *slots)
 {
     int32_t found[MAX_NEIGHBOURS];
@@ -233,10 +190,13 @@ static int pack_slots(const struct solid *s, const struct particles *p,
     return n;
 }
 
-/* Slots in the layout of the sweeps. */
-struct slots {
-    int64_t *offset;
+/* Slots in the layout of the sweeps, with the sets that are stored already by hash. */
+struct slot_sets {
+    int64_t *offset; /* [capacity] */
     char *weight;
+    int64_t capacity;
+    int32_t *pack; /* [size] a pack with this set, -1: free */
+    size_t size;   /* a power of two */
 };
 
 /* Bytes of the weights of a slot. */
@@ -245,72 +205,45 @@ static size_t slot_bytes(const struct solid *s)
     return SOLID_WEIGHTS * (size_t)s->sweeps->lanes * s->sweeps->size;
 }
 
-static enum err create_slots(struct slots *t, const struct solid *s, struct arena *a, int64_t n,
-                             struct diag *d)
+/* Moves the n slots of the sets to memory for `capacity`. */
+static enum err slots_move(struct slot_sets *sets, const struct solid *s, struct arena *a,
+                           int64_t n, int64_t capacity, struct diag *d)
 {
-    t->offset = arena_alloc(a, (size_t)n, sizeof *t->offset, "slots of the solid", d);
-    t->weight = arena_alloc(a, (size_t)n, slot_bytes(s), "slots of the solid", d);
-    return t->offset && t->weight ? ERR_OK : ERR_MEMORY;
-}
-
-static void copy_slots(struct slots *to, int64_t at, const struct slots *from, int64_t n,
-                       const struct solid *s)
-{
-    memcpy(&to->offset[at], from->offset, (size_t)n * sizeof *to->offset);
-    memcpy(&to->weight[(size_t)at * slot_bytes(s)], from->weight, (size_t)n * slot_bytes(s));
-}
-
-static void take_drafts(struct slots *to, const struct solid *s, const struct draft *drafts, int n)
-{
-    const int lanes = s->sweeps->lanes;
-    for (int m = 0; m < n; m++) {
-        to->offset[m] = drafts[m].offset;
-        for (int w = 0; w < SOLID_WEIGHTS; w++)
-            for (int l = 0; l < lanes; l++)
-                solid_set(s, to->weight, (m * SOLID_WEIGHTS + w) * lanes + l,
-                          drafts[m].weight[w][l]);
+    int64_t *const offset =
+        arena_alloc(a, (size_t)capacity, sizeof *offset, "slots of the solid", d);
+    char *const weight = arena_alloc(a, (size_t)capacity, slot_bytes(s), "slots of the solid", d);
+    if (!offset || !weight) return ERR_MEMORY;
+    if (n) {
+        memcpy(offset, sets->offset, (size_t)n * sizeof *offset);
+        memcpy(weight, sets->weight, (size_t)n * slot_bytes(s));
     }
+    sets->offset = offset;
+    sets->weight = weight;
+    sets->capacity = capacity;
+    return ERR_OK;
 }
 
-/* Sets of slots that were stored already, by hash. */
-struct slot_sets {
-    int32_t *pack; /* [size] a pack with this set, -1: free */
-    size_t size;   /* a power of two */
-    struct slots all;
-};
-
-static uint64_t slots_hash(const struct solid *s, const struct slots *t, int n)
-{
-    const uint64_t h = hash_bytes(HASH_START, t->offset, (size_t)n * sizeof *t->offset);
-    return hash_bytes(h, t->weight, (size_t)n * slot_bytes(s));
-}
-
-static bool equal_slots(const struct solid *s, const struct slots *all, int64_t at,
-                        const struct slots *t, int n)
-{
-    return memcmp(&all->offset[at], t->offset, (size_t)n * sizeof *t->offset) == 0 &&
-           memcmp(&all->weight[(size_t)at * slot_bytes(s)], t->weight, (size_t)n * slot_bytes(s)) ==
-               0;
-}
-
-/* Finds an equal set or stores this one. */
-static void reuse_slots(struct solid *s, struct slot_sets *sets, int32_t pack_index,
-                        const struct slots *slots, int n)
+/* Finds a set equal to the n slots behind those stored, or stores these. */
+static void reuse_slots(struct solid *s, const struct slot_sets *sets, int32_t pack_index, int n)
 {
     struct solid_pack *const pack = &s->pack[pack_index];
+    const int64_t *const offset = &sets->offset[s->n_slots];
+    const char *const weight = &sets->weight[(size_t)s->n_slots * slot_bytes(s)];
+    const size_t offsets = (size_t)n * sizeof *offset, weights = (size_t)n * slot_bytes(s);
     pack->n_slots = n;
-    size_t k = slots_hash(s, slots, n) & (sets->size - 1);
-    for (; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
+    size_t k = hash_bytes(hash_bytes(HASH_START, offset, offsets), weight, weights);
+    for (k &= sets->size - 1; sets->pack[k] >= 0; k = (k + 1) & (sets->size - 1)) {
         const struct solid_pack *const other = &s->pack[sets->pack[k]];
+        const size_t first = (size_t)other->first_slot;
         if (other->body == pack->body && other->n_slots == n &&
-            equal_slots(s, &sets->all, other->first_slot, slots, n)) {
+            memcmp(&sets->offset[first], offset, offsets) == 0 &&
+            memcmp(&sets->weight[first * slot_bytes(s)], weight, weights) == 0) {
             pack->first_slot = other->first_slot;
             return;
         }
     }
     sets->pack[k] = pack_index;
     pack->first_slot = (int32_t)s->n_slots;
-    copy_slots(&sets->all, s->n_slots, slots, n, s);
     s->n_slots += n;
 }
 
@@ -326,38 +259,40 @@ static void cut_packs(struct solid *s, const struct particles *p)
     }
 }
 
-/* Two rounds: the first counts the slots without common sets, the second stores them. */
 static enum err store_slots(struct solid *s, struct arena *a, struct arena *scratch,
-                            const struct particles *p, const struct bucket_grid *grid,
+                            const struct particles *p, const struct point_grid *grid,
                             const struct gradient_moments *moments, struct diag *d)
 {
     struct slot_sets sets = {.size = 1};
-    struct slots own, kept;
     while (sets.size < 2 * (size_t)s->n_packs) sets.size *= 2;
     sets.pack = arena_alloc(scratch, sets.size, sizeof *sets.pack, "slots of the solid", d);
-    struct draft *const work =
-        arena_alloc(scratch, MAX_SLOTS, sizeof *work, "slots of the solid", d);
-    if (!sets.pack || !work) return ERR_MEMORY;
-    int64_t total = 0;
-    for (int64_t k = 0; k < s->n_packs; k++)
-        total += pack_slots(s, p, grid, moments, &s->pack[k], work);
-    TRY(create_slots(&own, s, scratch, MAX_SLOTS, d));
-    TRY(create_slots(&sets.all, s, scratch, total, d));
+    struct draft *const drafts =
+        arena_alloc(scratch, MAX_SLOTS, sizeof *drafts, "slots of the solid", d);
+    if (!sets.pack || !drafts) return ERR_MEMORY;
     memset(sets.pack, 0xff, sets.size * sizeof *sets.pack);
+    const int lanes = s->sweeps->lanes;
     for (int64_t k = 0; k < s->n_packs; k++) {
-        const int n = pack_slots(s, p, grid, moments, &s->pack[k], work);
-        take_drafts(&own, s, work, n);
-        reuse_slots(s, &sets, (int32_t)k, &own, n);
+        const int n = pack_slots(s, p, grid, moments, &s->pack[k], drafts);
+        if (s->n_slots + n > sets.capacity)
+            TRY(slots_move(&sets, s, scratch, s->n_slots, 2 * (s->n_slots + n), d));
+        for (int m = 0; m < n; m++) {
+            const int64_t slot = s->n_slots + m;
+            sets.offset[slot] = drafts[m].offset;
+            for (int w = 0; w < SOLID_WEIGHTS; w++)
+                for (int l = 0; l < lanes; l++)
+                    solid_set(s, sets.weight, (slot * SOLID_WEIGHTS + w) * lanes + l,
+                              drafts[m].weight[w][l]);
+        }
+        reuse_slots(s, &sets, (int32_t)k, n);
     }
-    TRY(create_slots(&kept, s, a, s->n_slots, d));
-    copy_slots(&kept, 0, &sets.all, s->n_slots, s);
-    s->offset = kept.offset;
-    s->weight = kept.weight;
+    TRY(slots_move(&sets, s, a, s->n_slots, s->n_slots, d));
+    s->offset = sets.offset;
+    s->weight = sets.weight;
     return ERR_OK;
 }
 
 /* Moments of every particle; also checks the number of neighbours. */
-static enum err all_moments(struct solid *s, const struct bucket_grid *g, const struct particles *p,
+static enum err all_moments(struct solid *s, const struct point_grid *g, const struct particles *p,
                             struct gradient_moments *moments, struct diag *d)
 {
     int32_t found[MAX_NEIGHBOURS];
@@ -407,12 +342,14 @@ enum err solid_stencil_create(struct solid *s, struct arena *a, const struct par
     if (!s->pack) return ERR_MEMORY;
     cut_packs(s, p);
     struct arena scratch = {.limit = a->limit};
-    struct bucket_grid grid;
+    struct point_grid grid;
     double reach = 0;
     for (int k = 0; k < s->n_bodies; k++) reach = max2(reach, KERNEL_REACH * s->body[k].h);
     struct gradient_moments *const moments =
         arena_alloc(&scratch, (size_t)p->n, sizeof *moments, "gradient weights of the solid", d);
-    enum err e = moments ? buckets_create(&grid, &scratch, p, reach, d) : ERR_MEMORY;
+    enum err e =
+        moments ? point_grid_create(&grid, reach, p->n, p->X, p->Y, &scratch, d) : ERR_MEMORY;
+    for (int64_t i = 0; !e && i < p->n; i++) point_grid_insert(&grid, i);
     if (!e) e = all_moments(s, &grid, p, moments, d);
     if (!e) e = store_slots(s, a, &scratch, p, &grid, moments, d);
     arena_free(&scratch);

@@ -13,13 +13,29 @@ SPHFSI_INLINE void store_packed(const struct solid *s, int lane, const struct so
     vput((real *)s->lane[lane] + pack->i, value, pack->lanes);
 }
 
-SPHFSI_INLINE void keep_tensor(const struct solid *s, int lane, const struct solid_pack *pack,
-                               struct vtensor2 t)
+/* Four components from field `lane` on. The last pack of a body is stored in a function of its own, which
+ * leaves the registers of the others alone. */
+static __attribute__((noinline, cold)) void
+store_part(const struct solid *s, int lane, const struct solid_pack *pack, const struct vtensor2 *t)
 {
-    store_packed(s, lane, pack, t.xx);
-    store_packed(s, lane + 1, pack, t.xy);
-    store_packed(s, lane + 2, pack, t.yx);
-    store_packed(s, lane + 3, pack, t.yy);
+    store_packed(s, lane, pack, t->xx);
+    store_packed(s, lane + 1, pack, t->xy);
+    store_packed(s, lane + 2, pack, t->yx);
+    store_packed(s, lane + 3, pack, t->yy);
+}
+
+SPHFSI_INLINE void store_tensor(const struct solid *s, int lane, const struct solid_pack *pack,
+                                struct vtensor2 t)
+{
+    if (pack->lanes < LANES) {
+        const struct vtensor2 part = t;
+        store_part(s, lane, pack, &part);
+        return;
+    }
+    vstore((real *)s->lane[lane] + pack->i, t.xx);
+    vstore((real *)s->lane[lane + 1] + pack->i, t.xy);
+    vstore((real *)s->lane[lane + 2] + pack->i, t.yx);
+    vstore((real *)s->lane[lane + 3] + pack->i, t.yy);
 }
 
 /* Adds a part to the stress of a pack. */
@@ -27,9 +43,9 @@ SPHFSI_INLINE void add_stress(const struct solid *s, const struct solid_pack *pa
                               struct vtensor2 more)
 {
     const int64_t i = pack->i;
-    keep_tensor(s, S_PXX, pack,
-                (struct vtensor2){lane_of(s, S_PXX, i) + more.xx, lane_of(s, S_PXY, i) + more.xy,
-                                  lane_of(s, S_PYX, i) + more.yx, lane_of(s, S_PYY, i) + more.yy});
+    store_tensor(s, S_PXX, pack,
+                 (struct vtensor2){lane_of(s, S_PXX, i) + more.xx, lane_of(s, S_PXY, i) + more.xy,
+                                   lane_of(s, S_PYX, i) + more.yx, lane_of(s, S_PYY, i) + more.yy});
 }
 
 /* The slots of a pack: the weights of all slots in order, and the indices of its neighbours. */
@@ -81,8 +97,8 @@ static void stress(const struct solid *s, struct particles *p, int64_t first, in
         EACH_SLOT(s, pack, slot, j)
         add_gradient(&sum, slot, displacement_between(s, &a, j));
         const struct vtensor2 U = {-sum.xx, -sum.xy, -sum.yx, -sum.yy};
-        keep_tensor(s, S_UXX, pack, U);
-        if (!body->variational) keep_tensor(s, S_PXX, pack, material_pk1(body, U));
+        store_tensor(s, S_UXX, pack, U);
+        if (!body->variational) store_tensor(s, S_PXX, pack, material_pk1(body, U));
     }
 }
 
@@ -184,9 +200,9 @@ static void pairs_of_pack(const struct solid *s, const struct solid_pack *pack)
     store_packed(s, S_PAIRS_Y, pack, acc.y);
     const real half = (real)(0.5 * body->density);
     const struct vtensor2 P = material_pk1(body, a.U);
-    keep_tensor(s, S_PXX, pack,
-                (struct vtensor2){P.xx + sums.pull.xx * half, P.xy + sums.pull.xy * half,
-                                  P.yx + sums.pull.yx * half, P.yy + sums.pull.yy * half});
+    store_tensor(s, S_PXX, pack,
+                 (struct vtensor2){P.xx + sums.pull.xx * half, P.xy + sums.pull.xy * half,
+                                   P.yx + sums.pull.yx * half, P.yy + sums.pull.yy * half});
 }
 
 static void pairs(const struct solid *s, struct particles *p, int64_t first, int64_t last)
@@ -194,6 +210,34 @@ static void pairs(const struct solid *s, struct particles *p, int64_t first, int
     (void)p;
     for (int64_t k = first; k < last; k++)
         if (s->body[s->pack[k].body].variational) pairs_of_pack(s, &s->pack[k]);
+}
+
+/* Eq. 13a with the neighbours' part of the stress in `sums`. The particle's own part is P_a times the sum of
+ * G_ab, zero inside a lattice. */
+SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *s,
+                                                 const struct solid_pack *pack,
+                                                 const struct solid_sums *sums,
+                                                 struct vvector2 pairs)
+{
+    const int64_t i = pack->i;
+    const vreal Gx = lane_of(s, S_GX, i), Gy = lane_of(s, S_GY, i);
+    const vreal own_x = vfma(lane_of(s, S_PXX, i), Gx, lane_of(s, S_PXY, i) * Gy);
+    const vreal own_y = vfma(lane_of(s, S_PYX, i), Gx, lane_of(s, S_PYY, i) * Gy);
+    const real inv_density = (real)(1 / s->body[pack->body].density);
+    return (struct vvector2){(sums->stress_x + own_x) * inv_density + pairs.x,
+                             (sums->stress_y + own_y) * inv_density + pairs.y};
+}
+
+/* The same for a variational body, whose forces of pairs are known. */
+SPHFSI_INLINE struct vvector2 stress_acceleration(const struct solid *s,
+                                                  const struct solid_pack *pack)
+{
+    const vreal zero = vset(0);
+    struct solid_sums sums = {.stress_x = zero, .stress_y = zero};
+    EACH_SLOT(s, pack, slot, j) stress_force(s, slot, j, &sums);
+    return total_acceleration(s, pack, &sums,
+                              (struct vvector2){lane_of(s, S_PAIRS_X, pack->i),
+                                                lane_of(s, S_PAIRS_Y, pack->i)});
 }
 
 /* Acceleration by stress and the forces of pairs. */
@@ -205,34 +249,20 @@ SPHFSI_INLINE struct vvector2 own_acceleration(const struct solid *s, const stru
     struct slot_laws laws = pair_laws(body);
     laws.stress = true;
     struct solid_sums sums;
-    struct vvector2 acc;
-    if (laws.variational) {
-        sums = sum_slots(s, pack, &a, (struct slot_laws){.stress = true});
-        acc = (struct vvector2){lane_of(s, S_PAIRS_X, i), lane_of(s, S_PAIRS_Y, i)};
-    } else {
-        /* The paper's combination has a specialised loop. */
-        if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
-            sums =
-                sum_slots(s, pack, &a, (struct slot_laws){true, true, false, false, true, false});
-        else
-            sums = sum_slots(s, pack, &a, laws);
-        acc = pairs_acceleration(body, &a, &sums);
-    }
-    /* Eq. 13a: the particle's own part of the stress is P_a times the sum of G_ab, zero inside a
-     * lattice. */
-    const vreal Gx = lane_of(s, S_GX, i), Gy = lane_of(s, S_GY, i);
-    const vreal own_x = vfma(lane_of(s, S_PXX, i), Gx, lane_of(s, S_PXY, i) * Gy);
-    const vreal own_y = vfma(lane_of(s, S_PYX, i), Gx, lane_of(s, S_PYY, i) * Gy);
-    const real inv_density = (real)(1 / body->density);
-    return (struct vvector2){(sums.stress_x + own_x) * inv_density + acc.x,
-                             (sums.stress_y + own_y) * inv_density + acc.y};
+    /* The paper's combination has a specialised loop. */
+    if (laws.viscous && laws.hourglass && !laws.symmetric && !laws.mixed)
+        sums = sum_slots(s, pack, &a, (struct slot_laws){true, true, false, false, true, false});
+    else
+        sums = sum_slots(s, pack, &a, laws);
+    return total_acceleration(s, pack, &sums, pairs_acceleration(body, &a, &sums));
 }
 
 static void forces(const struct solid *s, struct particles *p, int64_t first, int64_t last)
 {
     for (int64_t k = first; k < last; k++) {
         const struct solid_pack *const pack = &s->pack[k];
-        const struct vvector2 acc = own_acceleration(s, pack);
+        const struct vvector2 acc = s->body[pack->body].variational ? stress_acceleration(s, pack)
+                                                                    : own_acceleration(s, pack);
         vwiden(&p->sx[pack->i], acc.x, pack->lanes);
         vwiden(&p->sy[pack->i], acc.y, pack->lanes);
     }
