@@ -53,6 +53,7 @@ _Static_assert(sizeof(struct file_header) == 144 && sizeof(struct block_header) 
 enum { MOVING = G_REFERENCE | G_RATE | G_FORCE };
 
 static const char magic[8] = "SPHFSICK", footer_magic[8] = "SPHFSIND";
+static const char carried_name[] = "probe_means";
 
 static uint64_t checksum(const void *bytes, size_t n) { return hash_bytes(HASH_START, bytes, n); }
 
@@ -89,55 +90,54 @@ static void put_block(struct image *m, const char *name, unsigned owner, enum it
     m->size += sizeof head + padded(bytes);
 }
 
-static size_t image_bytes(const struct simulation *s, size_t case_length)
+/* State of a run beside its particles: blocks of numbers, the means of probes last. */
+struct numbers {
+    const char *name;
+    enum item item;
+    void *data;
+    size_t count;
+};
+
+enum { MAX_NUMBERS = 64 };
+
+/* Lists them; returns how many. */
+static int list_numbers(struct simulation *sim, struct numbers list[MAX_NUMBERS])
 {
-    size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer);
-    bytes += sizeof(struct block_header) + padded(case_length);
+    struct state *const state = &sim->state;
+    struct open *const open = &sim->open;
+    int n = 0;
 #define STATE(type, name, low, high, unit, meaning) \
-    bytes += sizeof(struct block_header) + sizeof(type);
+    list[n++] = (struct numbers){#name, item_of(#type), &state->name, 1};
 #include "time/state.def"
 #undef STATE
-    bytes += 3 * sizeof(struct block_header) + sizeof s->state.bound_steps +
-             sizeof s->state.account + sizeof(int64_t);
-    bytes += 3 * sizeof(struct block_header) + sizeof s->open.next_id +
-             (size_t)s->open.n * (sizeof *s->open.sum + sizeof *s->open.count);
-    bytes += sizeof(struct block_header) + (size_t)s->carried.n * sizeof *s->carried.value;
+    list[n++] = (struct numbers){"bound_steps", ITEM_INT64, state->bound_steps, BOUND_COUNT};
+    list[n++] = (struct numbers){"account", ITEM_DOUBLE, &state->account, ACCOUNT_NUMBERS};
+    if (open->n > 0) {
+        const size_t boundaries = (size_t)open->n;
+        list[n++] = (struct numbers){"open_sum", ITEM_DOUBLE, open->sum, boundaries * OPEN_SUMS};
+        list[n++] =
+            (struct numbers){"open_count", ITEM_INT64, open->count, boundaries * OPEN_COUNTS};
+        list[n++] = (struct numbers){"open_next_id", ITEM_INT64, &open->next_id, 1};
+    }
+    if (sim->carried.n > 0)
+        list[n++] =
+            (struct numbers){carried_name, ITEM_DOUBLE, sim->carried.value, (size_t)sim->carried.n};
+    ASSERT(n <= MAX_NUMBERS);
+    return n;
+}
+
+/* The most bytes of an image: of every block, including those of fields that are not kept. */
+static size_t image_bytes(const struct simulation *sim, const struct numbers *list, int n,
+                          size_t case_length)
+{
+    size_t bytes = sizeof(struct file_header) + sizeof(struct file_footer) + padded(case_length) +
+                   sizeof(int64_t) + (size_t)(n + 2) * sizeof(struct block_header);
+    for (int k = 0; k < n; k++) bytes += padded(list[k].count * item_size[list[k].item]);
     for (int k = 0; k < KIND_COUNT; k++)
         for (int f = 0; f < field_count; f++)
             bytes +=
-                sizeof(struct block_header) + padded((size_t)s->kind[k].n * field_table[f].size);
+                sizeof(struct block_header) + padded((size_t)sim->kind[k].n * field_table[f].size);
     return bytes;
-}
-
-static uint32_t put_state(struct image *m, const struct state *st)
-{
-    uint32_t blocks = 2;
-#define STATE(type, name, low, high, unit, meaning)                 \
-    put_block(m, #name, OWNER_STATE, item_of(#type), &st->name, 1); \
-    blocks++;
-#include "time/state.def"
-#undef STATE
-    put_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, st->bound_steps, BOUND_COUNT);
-    put_block(m, "account", OWNER_STATE, ITEM_DOUBLE, &st->account, ACCOUNT_NUMBERS);
-    return blocks;
-}
-
-static uint32_t put_open(struct image *m, const struct open *o)
-{
-    if (o->n == 0) return 0;
-    put_block(m, "open_sum", OWNER_STATE, ITEM_DOUBLE, o->sum, (size_t)o->n * OPEN_SUMS);
-    put_block(m, "open_count", OWNER_STATE, ITEM_INT64, o->count, (size_t)o->n * OPEN_COUNTS);
-    put_block(m, "open_next_id", OWNER_STATE, ITEM_INT64, &o->next_id, 1);
-    return 3;
-}
-
-static const char carried_name[] = "probe_means";
-
-static uint32_t put_carried(struct image *m, const struct simulation *s)
-{
-    if (s->carried.n == 0) return 0;
-    put_block(m, carried_name, OWNER_STATE, ITEM_DOUBLE, s->carried.value, (size_t)s->carried.n);
-    return 1;
 }
 
 static uint32_t put_particles(struct image *m, const struct simulation *s)
@@ -154,11 +154,13 @@ static uint32_t put_particles(struct image *m, const struct simulation *s)
     return blocks;
 }
 
-enum err checkpoint_capture(struct image *m, const struct simulation *s, const char *case_text,
+enum err checkpoint_capture(struct image *m, struct simulation *s, const char *case_text,
                             const char *version, struct diag *d)
 {
+    struct numbers list[MAX_NUMBERS];
+    const int n = list_numbers(s, list);
     const size_t case_length = strlen(case_text) + 1; /* with its 0 */
-    TRY(reserve(m, image_bytes(s, case_length), d));
+    TRY(reserve(m, image_bytes(s, list, n, case_length), d));
     struct file_header head = {
         .format = FORMAT,
         .byte_order = BYTE_ORDER_MARK,
@@ -174,8 +176,9 @@ enum err checkpoint_capture(struct image *m, const struct simulation *s, const c
     m->size = sizeof head;
     put_block(m, "case", OWNER_CASE, ITEM_BYTE, case_text, case_length);
     put_block(m, "snapshots_missed", OWNER_STATE, ITEM_INT64, &m->snapshots_missed, 1);
-    head.blocks = 2 + put_state(m, &s->state) + put_open(m, &s->open) + put_carried(m, s) +
-                  put_particles(m, s);
+    for (int k = 0; k < n; k++)
+        put_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].data, list[k].count);
+    head.blocks = 2 + (uint32_t)n + put_particles(m, s);
     const struct file_footer foot = {.sum = 0};
     memcpy(m->bytes + m->size, &foot, sizeof foot);
     m->size += sizeof foot;
@@ -503,34 +506,18 @@ enum err checkpoint_check_cells(const struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-static enum err load_open(const struct image *m, struct simulation *s, struct diag *d)
-{
-    struct open *const o = &s->open;
-    const size_t n = (size_t)o->n;
-    if (n == 0) return ERR_OK;
-    TRY(load_block(m, "open_sum", OWNER_STATE, ITEM_DOUBLE, n * OPEN_SUMS, o->sum, d));
-    TRY(load_block(m, "open_count", OWNER_STATE, ITEM_INT64, n * OPEN_COUNTS, o->count, d));
-    return load_block(m, "open_next_id", OWNER_STATE, ITEM_INT64, 1, &o->next_id, d);
-}
-
 enum err checkpoint_load(const struct image *m, struct simulation *s, bool fork, struct diag *d)
 {
     const struct image_info info = checkpoint_info(m);
     for (int k = 0; k < KIND_COUNT; k++)
         TRY(load_particles(m, &s->kind[k], (enum kind)k, info.count[k], fork, d));
-    struct state *const st = &s->state;
-#define STATE(type, name, low, high, unit, meaning) \
-    TRY(load_block(m, #name, OWNER_STATE, item_of(#type), 1, &st->name, d));
-#include "time/state.def"
-#undef STATE
-    TRY(load_block(m, "account", OWNER_STATE, ITEM_DOUBLE, ACCOUNT_NUMBERS, &st->account, d));
-    TRY(load_block(m, "bound_steps", OWNER_STATE, ITEM_INT64, BOUND_COUNT, st->bound_steps, d));
-    TRY(load_open(m, s, d));
-    TRY(ranges_check(s, d));
-    /* The probes of a fork may be others: they begin anew. */
-    if (fork || s->carried.n == 0) return ERR_OK;
-    return load_block(m, carried_name, OWNER_STATE, ITEM_DOUBLE, (size_t)s->carried.n,
-                      s->carried.value, d);
+    struct numbers list[MAX_NUMBERS];
+    const int n = list_numbers(s, list);
+    for (int k = 0; k < n; k++) /* The probes of a fork may be others: they begin anew. */
+        if (!fork || list[k].name != carried_name)
+            TRY(load_block(m, list[k].name, OWNER_STATE, list[k].item, list[k].count, list[k].data,
+                           d));
+    return ranges_check(s, d);
 }
 
 enum err checkpoint_apply(const struct image *m, struct simulation *s, struct diag *d)

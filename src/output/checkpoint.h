@@ -25,7 +25,7 @@ struct image_info {
 };
 
 /* Copies the state into the image; its old contents are lost. */
-enum err checkpoint_capture(struct image *m, const struct simulation *s, const char *case_text,
+enum err checkpoint_capture(struct image *m, struct simulation *s, const char *case_text,
                             const char *version, struct diag *d) SPHFSI_CHECKED;
 
 /* Writes the image to the folder as step-NNNNNNNNN.ckpt, returned in `path`, and keeps only the two newest
