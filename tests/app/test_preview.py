@@ -137,8 +137,13 @@ def check(picture):
     texts = [text.text for text in picture.texts()]
     assert texts[0] == "a & b < c", texts[0]
     assert "gravity (0, -9.81) m/s^2, 1 s; domain (-0." in texts[1], texts[1]
-    labels = sorted(t.text for t in picture.texts() if t.get("class") == "label")
-    assert labels == sorted("water tank slope lid post kite tip rise through".split()), labels
+    # The legend numbers bodies and probes, and the number stands in the drawing where each is.
+    names = "tank slope lid water post kite tip rise through".split()
+    numbered = [t.text for t in picture.texts() if t.get("class") == "label"]
+    assert numbered == [str(k + 1) for k in range(len(names))], numbered
+    for kind, name in zip(["wall"] * 3 + ["fluid"] + ["solid"] * 2 + ["probe"] * 3, names):
+        at = texts.index(picture.listed(f"{kind} {name}"))
+        assert texts[at - 1] == str(names.index(name) + 1), (name, texts[at - 1])
     assert picture.listed("fluid water") == \
         "fluid water: 0.2 x 0.1 m, 200 particles; 1000 kg/m^3, c0 20 m/s"
     assert picture.listed("wall lid") == "wall lid: 0.1 x 0.04 m, 40 particles; moved by down"
@@ -159,12 +164,13 @@ def check(picture):
     assert len(lines) == 1
     ends = [picture.metres(*pair.split()) for pair in lines[0][1:].split("L")]
     near(ends[0] + ends[1], (0.1, 0, 0.15, 0.1), pixel)
-    # A name stands in the middle of a fluid, beside a particle of a body.
-    place = {t.text: picture.metres(t.get("x"), t.get("y"))
+    # Numbers stand in bodies and beside probes.
+    place = {names[int(t.text) - 1]: picture.metres(t.get("x"), t.get("y"))
              for t in picture.texts() if t.get("class") == "label"}
-    assert 0 < place["water"][0] < 0.2 and 0 < place["water"][1] < 0.1
-    assert 0.2 < place["post"][0] < 0.27 and abs(place["post"][1] - 0.055) < 0.015, place
-    assert 0.14 < place["lid"][0] < 0.2 and abs(place["lid"][1] - 0.32) < 0.015, place
+    assert 0 < place["water"][0] < 0.2 and 0 < place["water"][1] < 0.1, place
+    assert 0.2 < place["post"][0] < 0.24 and -0.04 < place["post"][1] < 0.15, place
+    assert 0.1 < place["lid"][0] < 0.2 and 0.29 < place["lid"][1] < 0.34, place
+    assert math.dist(place["rise"], (0.05, 0)) < 10 * pixel and math.dist(place["tip"], (0.22, 0.15)) < 10 * pixel
     height, width = float(picture.root.get("height")), float(picture.root.get("width"))
     assert all(0 <= float(t.get("x")) <= width and 0 <= float(t.get("y")) <= height for t in picture.texts())
 
