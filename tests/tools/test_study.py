@@ -15,7 +15,7 @@ with packages():
     import tomllib
     from study_metrics import measure
     from study_points import points_of
-    from study_order import convergence
+    from study_tables import convergence
     from runfiles import BadFile, np
 
 STUDY = """

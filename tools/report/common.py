@@ -144,10 +144,13 @@ def cell(value, limit):
     return number(value) if kept(value, limit) else f"({number(value)})"
 
 
+def fill(template, **values):
+    """The text of a report, which lies beside its tool, with its values."""
+    return (Path(__file__).parent / template).read_text(encoding="utf-8").format(**values)
+
+
 def write(path, template, **values):
-    """Fills the text of a report, which lies beside its tool."""
-    text = (Path(__file__).parent / template).read_text(encoding="utf-8").format(**values)
-    path.write_text(text.rstrip() + "\n", encoding="utf-8")
+    path.write_text(fill(template, **values).rstrip() + "\n", encoding="utf-8")
     print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")
 
 

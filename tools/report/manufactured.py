@@ -10,16 +10,10 @@ are cases/verify/manufactured_*.cfg; the method is that of Roache (2002) and, fo
 Ramachandran (2022, arXiv 2208.10848)."""
 import argparse
 import math
-import subprocess
-import sys
-from pathlib import Path
 
-import numpy as np
-
-import runfiles  # noqa: F401  finds the package of the clone
+from common import ROOT, np, program_version
 import sphfsi
 
-ROOT = Path(__file__).resolve().parents[2]
 REPORT = ROOT / "docs" / "manufactured.md"
 SCHEMES = {"paper": {"scheme": "paper"}, "standard": {"scheme": "standard"}}
 RATIOS = {"fluid": (25, 50, 100, 200), "wall": (25, 50, 100, 200), "solid": (10, 20, 40, 80)}
@@ -179,12 +173,11 @@ def report(studies):
             (met if found >= ASKED[scene] else missed).append(f"{scene}, {name} ({found:.2f})")
             lines.append(f"| {name} | " + " | ".join(f"{e:.3g}" for e in errors)
                          + f" | {found:.2f} | {ASKED[scene]} |")
-    version = subprocess.run([ROOT / "sphfsi", "--version"], capture_output=True, text=True, check=True)
     return "\n".join([
         "# Manufactured solutions", "",
         "**With which order does it converge?** " + (f"Met: {'; '.join(met)}. " if met else "")
         + (f"Missed: {'; '.join(missed)}." if missed else "All orders asked for are met."), "",
-        f"Written by `make verify-manufactured`; do not edit. {version.stdout.split()[-1]}. The order is",
+        f"Written by `make verify-manufactured`; do not edit. {program_version()}. The order is",
         "that between the two finest runs. Errors are RMS over the particles at the end: of the velocity",
         "over its scale U, of the pressure over rho U^2, of the displacement over its largest, of the stress",
         "over its RMS. The scenes are `cases/verify/manufactured_*.cfg`; see `tools/report/manufactured.py`.",
@@ -210,4 +203,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

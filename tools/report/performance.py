@@ -13,21 +13,15 @@ Example: tools/report/performance.py --bench
 
 import argparse
 import csv
-import json
 import os
 import re
 import subprocess
-import tempfile
 from pathlib import Path
 
-import numpy as np
-
+from common import (ROOT, BadFile, fill, in_scratch, np, program_version, runfiles, table)
 from performance_targets import bench_rows, run_rows
-from common import read_table, run_tool
 
-ROOT = Path(__file__).resolve().parents[2]
 # As the Makefile says where another build folder is measured (B=...).
-PROGRAM = Path(os.environ.get("SPHFSI") or ROOT / "sphfsi").resolve()
 BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
@@ -86,22 +80,13 @@ def compare(rows, path):
               f"{100 * (new / old - 1) if old else 0:+6.1f} %")
 
 
-def run_case(case, sets, threads=0, until=None):
-    """Runs a case in a folder that goes away; the summary, and M1's rows where there are any."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = [str(PROGRAM), str(ROOT / case), "--quiet", "--out", f"{folder}/run"]
-        for item in sets:
-            command += ["--set", item]
-        if threads:
-            command += ["--threads", str(threads)]
-        if until:
-            command += ["--until", until]
-        subprocess.run(command, capture_output=True, check=False)
-        try:
-            summary = json.loads(Path(folder, "run/summary.json").read_text())
-        except (OSError, ValueError):
-            return None, None
-        return summary, read_table(Path(folder, "run/probes.csv"))[0]
+def run_case(case, sets, *more, threads=0):
+    """The summary of a run, and M1's rows where there are any; of one without result None."""
+    try:
+        return in_scratch(lambda run: (run.summary, run.table()), ROOT / case, sets, *more,
+                          threads=threads)
+    except BadFile:
+        return None, None
 
 
 def step_study():
@@ -165,7 +150,7 @@ def shared_work(threads):
     seconds = {1: [], threads: []}
     for _ in range(5):
         for n, found in seconds.items():
-            summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], threads=n, until="0.02")
+            summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], "--until", "0.02", threads=n)
             if summary is None:
                 return "The gate with dp = 0.5 mm did not run.", {}
             phases = summary["phase_seconds"]
@@ -180,11 +165,6 @@ def shared_work(threads):
             f"The numbers "
             "are medians of five alternating runs.",
             {"with output": one / many, "steps alone": steps_one / steps_many})
-
-
-def table(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + " --- |" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
 
 
 def neighbour_words(rows):
@@ -347,56 +327,20 @@ def main():
     whole, numbers = work_runs(threads)
     shared, speed = shared_work(threads) if threads > 1 else ("", {})
     load = os.getloadavg()[0]
-    version = subprocess.run([str(PROGRAM), "--version"], capture_output=True, text=True,
-                             check=False).stdout.strip()
-    report = f"""# Speed and memory
-
-{summary(rows, numbers, speed)}
-
-`tools/report/performance.py` (`make performance`) writes this report. Program {version}.
-{notes[0]}; {notes[1]}; load {load:.1f} at the end.
-The numbers are medians of {args.reps} repetitions. All rows: [{path.name}](../bench/{path.name}).
-
-## Targets
-
-{target_words(rows, numbers, speed)}
-
-## Sweeps
-
-{bench_tables(rows)}
-
-## The longest stable step
-
-The water column of `cases/verify/dam_break_impact.cfg`, 40 particles high, hits the wall and falls back
-(0.8 s, one thread). If the step is too long, the extremes of the density grow long before the run
-fails.
-
-{table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"], steps)}
-
-The default `cfl` is 0.2 (symplectic and verlet, as in the paper) or 0.4 (leapfrog; 0.2 if a body has
-less than half of the fluid's density).
-
-## Whole runs
-
-The runs end at the end times of the case files. The paper's integrators take `cfl = 0.2`. The column of
-displacements has the largest displacement of the tip (M1 of the paper).
-
-{table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
-        "million particle steps a second", "displacement, mm", "share of phases, %"], whole)}
-
-{shared}
-
-## Other processors
-
-These are the committed results of the bench on other processors, with the program and the load of that
-day, on one thread and with the largest number of particles.
-
-{table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
-        "dam_break sweep, ns", "dam_break all, ns"], other_processors(path))}
-"""
+    version = program_version()
+    report = fill(
+        "performance.md", summary=summary(rows, numbers, speed), version=version, processor=notes[0],
+        note=notes[1], load=load, reps=args.reps, file=path.name, shared=shared,
+        targets=target_words(rows, numbers, speed), bench=bench_tables(rows),
+        steps=table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"],
+                    steps),
+        work=table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
+                    "million particle steps a second", "displacement, mm", "share of phases, %"], whole),
+        others=table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
+                      "dam_break sweep, ns", "dam_break all, ns"], other_processors(path)))
     (ROOT / "docs/performance.md").write_text(report)
     print("wrote docs/performance.md and", path.relative_to(ROOT))
 
 
 if __name__ == "__main__":
-    run_tool(main)
+    runfiles.run_tool(main)

@@ -21,9 +21,7 @@ import argparse
 import csv
 import hashlib
 import json
-import os
 import re
-import resource
 import shutil
 import subprocess
 import sys
@@ -31,9 +29,10 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-import stability_report
+import stability_map
+import stability_substeps
+from common import PROGRAM, ROOT, cpu_seconds, settings, table, write
 
-ROOT = Path(__file__).resolve().parents[2]
 SUITE = ROOT / "tests" / "stability"
 REPORT = ROOT / "docs" / "stability.md"
 
@@ -97,11 +96,6 @@ def measure(folder, log):
     }
 
 
-def cpu_seconds():
-    """User time of the runs so far: other load on the machine changes it little."""
-    return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-
-
 def run(command, folder, minutes):
     """The output of the program, and its user time. A run that takes longer is stopped."""
     begin = cpu_seconds()
@@ -122,10 +116,9 @@ class Run:
 
     def __init__(self, scene, form, top):
         self.folder = top / re.sub("[^a-z0-9]+", "-", f"{scene['name']} {form}".lower())
-        self.command = [os.environ.get("SPHFSI", str(ROOT / "sphfsi")), str(SUITE / scene["case"]),
-                        "--out", str(self.folder), "--quiet", "--threads", "1"]
-        for item in scene.get("set", []) + scene.get(form, []):
-            self.command += ["--set", item]
+        self.command = [str(PROGRAM), str(SUITE / scene["case"]),
+                        "--out", str(self.folder), "--quiet", "--threads", "1",
+                        *settings(scene.get("set", []) + scene.get(form, []))]
         self.record = top / (self.folder.name + ".json")
 
     def program(self):
@@ -213,6 +206,81 @@ def integrators(top):
     return rows
 
 
+FORM = {"quick": "quick (coarse and short, as in `make test`; `make stability` runs the long form)",
+        "long": "long",
+        "kept": "as each row says; `make test` runs the quick form, which is coarse and short; "
+                "`make stability` runs the long form of all"}
+
+
+def summary(rows):
+    """Sentences that say whether the hard cases are stable."""
+    holds = {row[0]["name"]: row[1] for row in rows}
+    scenes = [row[0] for row in rows if "settings" not in row[0] and "without" not in row[0]]
+    failed = [scene for scene in scenes if not holds[scene["name"]]]
+    cured = [scene for scene in failed if holds.get(scene.get("remedy"))]
+    odd = [row[0]["name"] for row in rows if not row[2]]
+    last = "No run deviates from what the suite expects." if not odd else \
+        f"{len(odd)} runs deviate from what the suite expects: {', '.join(odd)}."
+    passed = len(scenes) - len(failed)
+    return (f"**Do the hard cases stay stable?** Of {len(scenes)} scenes {passed} pass with defaults, "
+            f"{len(cured)} need a setting,\nand {len(failed) - len(cured)} have no remedy. "
+            f"{len(rows) - len(scenes)} more runs show settings, or what happens without a remedy\n"
+            f"that is on by default. {last}")
+
+
+# Parts of a criterion that say that a run is stable; the others compare its result with something.
+STABLE = re.compile(r"^(finished|gain|drift|dens|lowest_density)\b")
+
+
+def verdict_of(scene, found, stable):
+    """`yes` or `no` and the part of the criterion; a dash where it says nothing in this form."""
+    parts = [part for part in scene["criterion"].split(" and ") if bool(STABLE.match(part)) == stable]
+
+    def holds(part):
+        return bool(eval(part, {"__builtins__": {}}, found))  # the table is our own
+
+    said = [part for part in parts if not (part.startswith("(time") and holds(part.split(" or ")[0][1:]))]
+    if not said:
+        return "-"
+    text = " and ".join(said).replace("|", "\\|")
+    return f"{'yes' if all(map(holds, said)) else '**no**'}: `{text}`"
+
+
+def scene_row(row):
+    scene, holds, as_said, found, seconds, form = row
+    verdict = "passes" if holds else "expected failure"
+    if not as_said:
+        verdict = "**unexpected pass**" if holds else "**unexpected failure**"
+    elif not holds and scene["fails"] == form:
+        verdict += " in this form"
+    measured = f"gain {found['gain']:.1e}, density {found['dens']:.1e}"
+    if found["crossed"]:
+        measured += "; single particles entered a body"
+    if not found["finished"]:
+        by = "a guard" if found["guarded"] else "the limit of minutes"
+        measured = f"stopped by {by} at {found['time']:.3g} s; {measured}"
+    right = verdict_of(scene, found, False)
+    against = "-" if right == "-" else scene.get("against", "-")
+    return [scene["name"], f"{scene['about']} (`{scene['case']}`)", verdict_of(scene, found, True), right,
+            against, verdict, form, measured, f"{seconds:.1f}"]
+
+
+def write_report(rows, integrators, form, command):
+    scenes = [row[0] for row in rows]
+    limits = [f"* {scene['name']}: {scene['limit']}." for scene in scenes if "limit" in scene]
+    limits += [f"* {row[0]['name']}: unexpected; {row[3]['message'] or 'criterion'}"
+               for row in rows if not row[2]]
+    write(REPORT, "stability.md", summary=summary(rows), command=command, form=FORM[form],
+          version=rows[0][3]["version"], map=stability_map.report(stability_map.load()),
+          scenes=table(["scene", "what it is", "stable", "right", "against", "result", "form", "measured",
+                        "s"], map(scene_row, rows)),
+          settings="\n".join(f"* {scene['name']}: {scene['settings']}" for scene in scenes
+                             if "settings" in scene),
+          limits="\n".join(limits), **stability_substeps.values(),
+          integrators=table(["step over the limit", "symplectic", "Verlet", "leapfrog"],
+                            [[f"{factor:g}", *cells] for factor, cells in integrators]))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="coarse and short")
@@ -241,7 +309,7 @@ def work(scenes, form, top, args):
     if args.report:
         command = {"quick": "tools/report/stability.py --quick --report", "long": "make stability",
                    "kept": "tools/report/stability.py --kept --report"}[form]
-        stability_report.write(rows, integrators(top), REPORT, form, command)
+        write_report(rows, integrators(top), form, command)
     return 1 if bad and not args.report else 0
 
 

@@ -10,17 +10,14 @@ Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-mi
 import argparse
 import functools
 import itertools
-import json
 import math
 import os
 import random
-import subprocess
-import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+import common
+from common import ROOT, fill, plt, program_version, store_rows, summary_of, table
+
 CASE = ROOT / "tests/stability/thin.cfg"
 RESULTS = ROOT / "docs/stability_map.json"
 PICTURE = ROOT / "docs/img/stability_map.png"
@@ -76,64 +73,50 @@ def case_text(sides):
     return text
 
 
-def run(program, folder, scene, young, end):
+def run(scene, young, end):
     """The summary of a run."""
     density, across, sides, integrator, scheme = scene
-    case = Path(folder) / "scene.cfg"
-    case.write_text(case_text(sides), encoding="utf-8")
     settings = [f"scheme={scheme}", f"integrator={integrator}", f"across={across}", f"E={young:.9g}",
                 f"plate.density={density * WATER:.9g}", f"end_time={end}", "output.ledger_interval=1",
                 "output.probe_interval=1", "output.snapshot_interval=1"]
     settings += [f"right={RIGHT[sides]}"] if sides == 2 else []
-    command = [str(program), str(case), "--quiet", "--threads", "1", "--out", f"{folder}/run"]
-    for setting in settings:
-        command += ["--set", setting]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    summary = Path(folder) / "run/summary.json"
-    if done.returncode not in (0, 2) or not summary.exists():
-        sys.exit(f"stability_map: {' '.join(command)}: exit status {done.returncode}: {done.stderr}")
-    return json.loads(summary.read_text(encoding="utf-8"))
+    return summary_of(case_text(sides), settings)
 
 
 @functools.cache
-def stiffness(program, scene):
-    """Young's modulus at which the fluid's step is the limit of the solid's. The limit goes with the speed of
-    sound in the solid, so one short run with a stiff plate gives it."""
+def stiffness(scene):
+    """Young's modulus at which the fluid's step is the limit of the solid's. The limit goes with the
+    speed of sound in the solid, so one short run with a stiff plate gives it."""
     young = 4e6 * scene[0]
-    with tempfile.TemporaryDirectory() as folder:
-        step = run(program, folder, scene, young, 2e-3)["time_step"]
+    step = run(scene, young, 2e-3)["time_step"]
     return young * (step["solid"] / step["largest"])**2
 
 
-def result(program, point):
+def result(point):
     """A row of the table for one point of the grid."""
-    density, across, sides, integrator, scheme, substeps = point
-    scene = (density, across, sides, integrator, scheme)
-    young = substeps**2 * stiffness(program, scene)
+    *scene, substeps = point
+    young = substeps**2 * stiffness(tuple(scene))
     row = [*point, float(f"{young:.4g}")]
-    reason = statics(density, across, sides, young)
+    reason = statics(*scene[:3], young)
     if reason:
         return [*row, reason, 0, 0, "", 0]
-    with tempfile.TemporaryDirectory() as folder:
-        summary = run(program, folder, scene, young, END)
+    summary = run(scene, young, END)
     drift = summary["drift"]
-    terms = {name: drift["gains_by_term"][name].get("gain_over_available_energy") or 0 for name in TERMS}
+    terms = {name: drift["gains_by_term"][name].get("gain_over_available_energy") or 0
+             for name in TERMS}
     finished = summary["exit_reason"] == "finished"
     return [*row, "finished" if finished else "stopped", float(f"{summary['time']:.4g}"),
-            float(f"{drift['gain_over_available_energy']:.3g}"), max(terms, key=lambda name: terms[name]),
+            float(f"{drift['gain_over_available_energy']:.3g}"), max(terms, key=terms.get),
             float(f"{max(terms.values()):.3g}")]
 
 
-def save(program, rows):
-    version = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
-    before = json.loads(RESULTS.read_text(encoding="utf-8"))["versions"] if RESULTS.exists() else []
-    versions = [*before, *({version.strip()} - set(before))]  # all programs that rows are from
-    lines = ",\n".join(json.dumps(row) for row in sorted(rows))
-    head = f'"versions": {json.dumps(versions)}, "columns": {json.dumps(COLUMNS)}'
-    RESULTS.write_text(f'{{{head}, "rows": [\n{lines}\n]}}\n', encoding="utf-8")
+def save(rows):
+    before = common.load(RESULTS, {"versions": []})["versions"]
+    versions = [*before, *({program_version()} - set(before))]  # all programs that rows are from
+    store_rows(RESULTS, {"versions": versions, "columns": COLUMNS}, "rows", sorted(rows))
 
 
-def run_all(program, jobs, most):
+def run_all(jobs, most):
     """Runs the plates that no result is kept of: heavy ones first, since light ones take ten times as long,
     and else in an order that covers the grid at any time."""
     grid = list(itertools.product(DENSITIES, ACROSS, SIDES, INTEGRATORS, SCHEMES, SUBSTEPS))
@@ -142,18 +125,18 @@ def run_all(program, jobs, most):
     random.Random(1).shuffle(grid)
     grid = sorted((point for point in grid if point not in known), key=lambda point: point[0] < 0.3)[:most]
     with ThreadPoolExecutor(jobs) as pool:
-        for count, row in enumerate(pool.map(lambda point: result(program, point), grid), 1):
+        for count, row in enumerate(pool.map(result, grid), 1):
             rows.append(row)
             if row[7] == "stopped" or row[9] > LIMIT:
                 print(f"{count} of {len(grid)}: {row}", flush=True)
             if count % 20 == 0:
-                save(program, rows)
-    save(program, rows)
+                save(rows)
+    save(rows)
 
 
 def load():
     """The rows as dictionaries."""
-    kept = json.loads(RESULTS.read_text(encoding="utf-8"))
+    kept = common.load(RESULTS)
     return [dict(zip(kept["columns"], row)) for row in kept["rows"]]
 
 
@@ -170,48 +153,28 @@ def grid_size():
 
 def report(rows):
     """Section for docs/stability.md."""
-    versions = json.loads(RESULTS.read_text(encoding="utf-8"))["versions"]
     verdicts = [judge(row) for row in rows]
-    ran = len(rows) - verdicts.count("left out")
     gains = [row for row, verdict in zip(rows, verdicts) if verdict == "gains"]
     early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))
-    count = {d: sum(row["density"] == d for row in rows) for d in DENSITIES}
-    each = grid_size() // len(DENSITIES)
-    counts = ", ".join(f"{n} of {d:g}" for d, n in count.items())
     drawn = "" if len(rows) == grid_size() else (
-        f"The grid has {grid_size()} plates, {each} of each density. Here are {len(rows)} of them, drawn at "
-        f"random for each density:\n{counts} times that of water.\n")
-    reasons = {name: sum(row["result"] == name for row in rows)
-               for name in ("bends", "buckles", "is crushed")}
-    text = (f"![Stability map](img/stability_map.png)\n\n{drawn}"
-            f"Of {ran} plates **{verdicts.count('stopped')} were stopped, and {len(gains)} gained "
-            f"more than {100 * LIMIT:g} %** of the largest\nenergy in play. This is kinetic, elastic and "
-            "compression energy, and potential energy above its minimum\n(theory.md, T-46). "
-            f"{early} more gained {100 * LIMIT:g} % of what was in play until then, "
-            "at the start of the\nrun, where a sudden load moves a light plate "
-            "and little energy is in play.\n")
-    if gains:
-        text += ("\n| density | across | wet sides | integrator | scheme | sub-steps | gain | term |\n"
-                 "|---|---|---|---|---|---|---|---|\n")
-        for row in sorted(gains, key=lambda r: -r["in_run"]):
-            text += (f"| {row['density']:g} | {row['across']} | {row['sides']} | {row['integrator']} | "
-                     f"{row['scheme']} | {row['substeps']:g} | {100 * row['in_run']:.2g} % | "
-                     f"{row['term']} |\n")
-    return text + (
-        f"\n{verdicts.count('left out')} more cannot stand by statics and were not run. "
-        f"{reasons['bends']} bend by more than a tenth of their length under\nthe net pressure. "
-        f"{reasons['buckles']} buckle under their weight. {reasons['is crushed']} are compressed by more "
-        "than a tenth.\n(Beam theory and Greenhill's limit: `statics` in `tools/report/stability_map.py`.)\n\n"
-        f"Each plate is `tests/stability/thin.cfg` over {END:g} s with {HEIGHT:g} m of water on one side,\n"
-        f"and none or {RIGHT[2]:g} m on the other. "
-        "A cell has the three integrators from left to right,\nscheme `paper` below and `standard` above.\n"
-        f"Programs: {', '.join(versions)}; a result is of one of them.\n")
+        f"The grid has {grid_size()} plates, {grid_size() // len(DENSITIES)} of each density. Here are "
+        f"{len(rows)} of them, drawn at random for each density:\n" + ", ".join(
+            f"{sum(row['density'] == d for row in rows)} of {d:g}" for d in DENSITIES) +
+        " times that of water.\n")
+    gained = [[f"{row['density']:g}", row["across"], row["sides"], row["integrator"], row["scheme"],
+               f"{row['substeps']:g}", f"{100 * row['in_run']:.2g} %", row["term"]]
+              for row in sorted(gains, key=lambda row: -row["in_run"])]
+    head = ["density", "across", "wet sides", "integrator", "scheme", "sub-steps", "gain", "term"]
+    return fill("stability_map.md", drawn=drawn, plates=len(rows) - verdicts.count("left out"),
+                early=early, stopped=verdicts.count("stopped"), gains=len(gains), percent=100 * LIMIT,
+                gained="\n" + table(head, gained) + "\n" if gains else "",
+                left_out=verdicts.count("left out"), end=END, height=HEIGHT, right=RIGHT[2],
+                versions=", ".join(common.load(RESULTS)["versions"]),
+                **{name: sum(row["result"] == words for row in rows) for name, words in
+                   (("bend", "bends"), ("buckle", "buckles"), ("crushed", "is crushed"))})
 
 
 def draw(rows):
-    import matplotlib  # pylint: disable=import-outside-toplevel
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
     passes = plt.get_cmap("YlGn_r")
 
     def colour(row):
@@ -257,12 +220,11 @@ def main():
     args = parser.parse_args()
     if not args.draw:
         os.nice(10)
-        run_all(Path(os.environ.get("SPHFSI", str(ROOT / "sphfsi"))).resolve(), args.jobs, args.most)
+        run_all(args.jobs, args.most)
     rows = load()
     print(report(rows), end="")
     draw(rows)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -8,18 +8,13 @@ docs/stability.md.
 Example: tools/report/stability_substeps.py                   all rows (40 CPU-minutes)
          tools/report/stability_substeps.py --part obstacle   those of the obstacle, the others as they are kept"""
 import argparse
-import csv
 import json
 import math
 import os
-import resource
 import statistics
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[2]
+from common import ROOT, in_scratch, load, runfiles, table
+
 CASE = ROOT / "tests/stability/obstacle.cfg"
 RESULTS = ROOT / "docs/stability_substeps.json"
 ROWS = (  # name, settings
@@ -44,38 +39,26 @@ MOTIONS = (  # name, case, spacing and half of it, end, the direction in which M
 )
 
 
-def run(program, settings):
+def figures(run):
     """Result, largest hourglass and elastic energy, mean sub-steps, CPU seconds."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = [str(program), str(CASE), "--quiet", "--threads", "1", "--out", f"{folder}/run"]
-        for setting in settings:
-            command += ["--set", setting]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        subprocess.run(command, capture_output=True, check=False)
-        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        summary = json.loads(Path(folder, "run/summary.json").read_text(encoding="utf-8"))
-        with open(f"{folder}/run/ledger.csv", encoding="utf-8") as file:
-            ledger = list(csv.DictReader(file))
+    summary, ledger = run.summary, run.table("ledger.csv")
 
     def largest(name):
-        return float(f"{max(float(line[name + '_J_per_m']) for line in ledger):.4g}")
-
+        return float(f"{ledger[name + '_J_per_m'].max():.4g}")
     return {"finished": summary["exit_reason"] == "finished", "time": summary["time"],
             "hourglass": largest("hourglass"), "elastic": largest("elastic"),
-            "substeps": round(summary["solid_substeps"] / summary["steps"], 2), "seconds": round(seconds, 1),
+            "substeps": round(summary["solid_substeps"] / summary["steps"], 2),
+            "seconds": round(run.seconds, 1),
             "gain": float(f"{summary['drift']['gain_over_available_energy']:.2g}")}
 
 
-def motion(program, case, settings):
+def motion(case, settings):
     """Displacements of M1 at the times of its probe."""
-    with tempfile.TemporaryDirectory() as folder:
-        command = [str(program), str(ROOT / case), "--quiet", "--threads", "1", "--out", f"{folder}/run"]
-        for setting in settings:
-            command += ["--set", setting]
-        subprocess.run(command, capture_output=True, check=True)
-        with open(f"{folder}/run/probes.csv", encoding="utf-8") as file:
-            return {round(float(line["time_s"]), 7): (float(line["M1_dx_m"]), float(line["M1_dy_m"]))
-                    for line in csv.DictReader(file)}
+    def points(run):
+        rows = run.table()
+        return {round(t, 7): place for t, *place in
+                zip(rows["time_s"], rows["M1_dx_m"], rows["M1_dy_m"])}
+    return in_scratch(points, ROOT / case, settings)
 
 
 def difference(one, other):
@@ -84,91 +67,66 @@ def difference(one, other):
     return float(f"{math.sqrt(sum(math.dist(one[t], other[t])**2 for t in times) / len(times)):.3g}")
 
 
-def motions(program):
+def motions():
     """What the article's cases change by a single rate, by half of dp, and by a density off by 1e-6."""
     rows = []
     for name, case, (spacing, half), end, axis in MOTIONS:
         for integrator in INTEGRATORS:
             common = (f"integrator={integrator}", f"end_time={end}", f"dp={spacing}")
-            many = motion(program, case, common)
+            many = motion(case, common)
             column = 0 if axis == "dx" else 1
             body = "gate" if name == "gate" else "plate"
             rows.append({
                 "name": name, "dp": spacing, "integrator": integrator, "end": end,
                 "largest": max(abs(at[column]) for at in many.values()),
-                "single": difference(many, motion(program, case, (*common, SINGLE))),
-                "half": difference(many, motion(program, case, (*common[:2], f"dp={half}"))),
-                "density": difference(motion(program, case, (*common, f"{body}.density=1000")),
-                                      motion(program, case, (*common, f"{body}.density=1000.001")))})
+                "single": difference(many, motion(case, (*common, SINGLE))),
+                "half": difference(many, motion(case, (*common[:2], f"dp={half}"))),
+                "density": difference(motion(case, (*common, f"{body}.density=1000")),
+                                      motion(case, (*common, f"{body}.density=1000.001")))})
             print(rows[-1], flush=True)
     return rows
 
 
-def table():
-    """Section for docs/stability.md."""
-    kept = load()
-    rows = kept["obstacle"]
-    text = """## Sub-steps against a single rate
-
-A dam break on an elastic obstacle (`tests/stability/obstacle.cfg`, by `tools/report/stability_substeps.py`). One
-step of the fluid holds between one and two of the solid's limits. A count that alternates drives a
-checkerboard mode of the solid. Its mark is the hourglass energy, given here at its largest, in J/m. Means of
-three runs that differ in round-off alone, with their standard deviation; of the gain the largest.
-
-| setting | ends | sub-steps a step | gain | hourglass | single rate | ratio | elastic | CPU-s | single rate |
-|---|---|---|---|---|---|---|---|---|---|
-"""
-    for row in rows:
+def values():
+    """What the section of docs/stability.md says."""
+    kept = load(RESULTS)
+    rows, ratios = [], []
+    for row in kept["obstacle"]:
         many, one = row["many"], row["single"]
-        ends = "finished" if many["finished"] else f"stopped at {many['time']:.3g} s"
-        text += (f"| {row['name']} | {ends} | {many['substeps']:.2f} | {100 * many['gain']:.2g} % | "
-                 f"{many['hourglass']:.3g} ± {many['scatter']:.1g} | "
-                 f"{one['hourglass']:.3g} ± {one['scatter']:.1g} | "
-                 f"{many['hourglass'] / one['hourglass']:.2f} | {many['elastic']:.3g} | "
-                 f"{many['seconds']:.1f} | {one['seconds']:.1f} |\n")
-    ratios = [row["many"]["hourglass"] / row["single"]["hourglass"] for row in rows]
-    finished = sum(row["many"]["finished"] for row in rows)
-    text += (f"\n{finished} of {len(rows)} finish. The hourglass energy is {min(ratios):.2f} to "
-             f"{max(ratios):.2f} times that of a single rate.\n")
-    text += """
-Changes of the motion of M1 in the article's cases, root mean square, in um. The last columns are a single
-rate, half of dp, and a body of 1000.001 instead of 1000 kg/m^3, which is the density of water.
-
-| case | dp | integrator | until | largest displacement | single rate | half of dp | density |
-|---|---|---|---|---|---|---|---|
-"""
-    for row in kept["motions"]:
-        text += (f"| {row['name']} | {row['dp']} | {row['integrator']} | {row['end']} | "
-                 + " | ".join(f"{1e6 * row[key]:.3g}" for key in ("largest", "single", "half", "density"))
-                 + " |\n")
-    text += """
-The gate splashes by then, and spray amplifies the last digits of the start (dated note
-[2026-11-24](notes/2026-11-24-interface.md)). Without spray the change is below 1e-6 of the displacement
-(`tests/stability/test_density.py`).
-"""
-    return text
+        ratios.append(many["hourglass"] / one["hourglass"])
+        rows.append([row["name"], "finished" if many["finished"] else f"stopped at {many['time']:.3g} s",
+                     f"{many['substeps']:.2f}", f"{100 * many['gain']:.2g} %",
+                     *(f"{each['hourglass']:.3g} ± {each['scatter']:.1g}" for each in (many, one)),
+                     f"{ratios[-1]:.2f}", f"{many['elastic']:.3g}", f"{many['seconds']:.1f}",
+                     f"{one['seconds']:.1f}"])
+    changes = [[row["name"], row["dp"], row["integrator"], row["end"],
+                *(f"{1e6 * row[key]:.3g}" for key in ("largest", "single", "half", "density"))]
+               for row in kept["motions"]]
+    finished = sum(row["many"]["finished"] for row in kept["obstacle"])
+    return {"substeps": table(["setting", "ends", "sub-steps a step", "gain", "hourglass", "single rate",
+                               "ratio", "elastic", "CPU-s", "single rate"], rows),
+            "substeps_finish": f"{finished} of {len(rows)} finish. The hourglass energy is "
+                               f"{min(ratios):.2f} to {max(ratios):.2f} times that of a single rate.",
+            "motions": table(["case", "dp", "integrator", "until", "largest displacement", "single rate",
+                              "half of dp", "density"], changes)}
 
 
-def mean_of(program, settings):
+def mean_of(settings):
     """The runs of all skins as one: means, the scatter of the hourglass energy, the largest gain."""
-    runs = [run(program, (*settings, f"numerics.skin={skin}")) for skin in SKINS]
+    runs = [in_scratch(figures, CASE, (*settings, f"numerics.skin={skin}")) for skin in SKINS]
     mean = {key: float(f"{statistics.mean(each[key] for each in runs):.4g}") for key in runs[0]}
     return mean | {"finished": all(each["finished"] for each in runs),
                    "gain": max(each["gain"] for each in runs),
                    "scatter": float(f"{statistics.stdev(each['hourglass'] for each in runs):.2g}")}
 
 
-def obstacle(program):
+def obstacle():
     rows = []
     for name, settings in ROWS:
-        rows.append({"name": name, "many": mean_of(program, settings),
-                     "single": mean_of(program, (*settings, SINGLE))})
+        rows.append({"name": name, "many": mean_of(settings),
+                     "single": mean_of((*settings, SINGLE))})
         print(rows[-1], flush=True)
     return rows
-
-
-def load():
-    return json.loads(RESULTS.read_text(encoding="utf-8"))
 
 
 def save(kept):
@@ -182,14 +140,12 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--part", choices=("obstacle", "motions"), help="only this part (both)")
     args = parser.parse_args()
-    program = Path(os.environ.get("SPHFSI", str(ROOT / "sphfsi"))).resolve()
     os.nice(10)
     for part, measure in (("obstacle", obstacle), ("motions", motions)):
         if args.part in (None, part):
-            save(load() | {part: measure(program)})
-    print(table())
-    return 0
+            save(load(RESULTS) | {part: measure()})
+    print(*values().values(), sep="\n\n")
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    runfiles.run_tool(main)

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from matplotlib.ticker import LogFormatter
 
-from common import COLOURS, WIDTH, BadFile, np, plt, read_text, save
-from study_points import ROOT, SCENES
+from common import COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
+from study_points import SCENES
 from study_presets import fronts, preset_table, write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text, main_error,
                            percent)
@@ -91,126 +91,12 @@ def draw_case(study, case, path):
 
 # --- text ---
 
-TEXT = """# What accuracy costs in time
-
-{summary}
-
-`make accuracy` (`tools/report/accuracy.py`) writes this report from `{data}`. Nothing in it is edited by hand.
-
-{circumstances}
-
-How to read the tables and figures:
-
-* A *point* is one run: a case, a resolution and a setting. *Defaults* are the settings of the case file
-  with the program's defaults. Every other setting is named by its key in the case file.
-* Cost is CPU time, the least of a point's repeats. Points that cost more than {repeat_below:g} s were
-  run once.
-* An error is measured against an *exact* solution, against the *own finest run*, or against an
-  *experiment*. An error against an experiment includes the difference between the model and nature.
-* {crossing} marks a zero crossing. A finer run with the same setting has a larger error, so the error
-  changes its sign near this resolution. The small value is not an accuracy.
-* A dash (-) means that there is no value: no run is that exact, the run is its own reference, the error
-  does not fall with resolution, or the machine cannot measure it.
-* In the figures each setting has a line. The broad grey line is the Pareto front: the points that no
-  other point beats in both error and cost. Crosses at the top are points that did not finish. {note}
-
-## The cheapest run for an error
-
-Each cell has the CPU seconds, the setting and the particles across of the cheapest point whose main
-error is no larger.
-
-{aims}
-
-## Both schemes of the fluid
-
-CPU seconds of the cheapest run within an error, with `scheme = standard` and `scheme = paper`, and their
-ratio. A zero crossing is taken only where no other run is as exact. *Particle step* is the time of a step
-per particle with the standard scheme over that with the paper's, the median over all resolutions.
-
-{schemes}
-
-{cases}
-
-## Order of convergence
-
-The three finest runs with defaults give the observed order p and the extrapolated value. The band of
-the finest run is 1.25 |f1 - f2|/(r^p - 1), relative to it, with p at most 2. This is the grid
-convergence index (Roache 1994; Celik et al. 2008).
-
-Where the three runs do not converge monotonically, or p < 0.5, there is no order. The band is then
-three times their largest difference (Eça and Hoekstra 2014). The order one level coarser uses the next
-coarser run instead of the finest. If both orders differ much, neither is reliable. *Extrapolated*
-differs from *reference* if the model is in error, or if three grids are not enough for the order.
-
-{order}
-
-## To halve the error
-
-The slopes of the error over cost and over dp are fitted to all resolutions with defaults.
-
-{halving}
-
-## Which setting gives most accuracy per second
-
-Each column has error and cost over those of the defaults at the same resolution. *Gain* is how many
-times longer the defaults, refined, would take to the same error (geometric mean over the columns).
-Above 1 the setting saves time. A gain means little if an error crosses zero (z) or hardly depends on
-resolution. If the error does not fall with cost, there is no gain.
-
-{knobs}
-
-### Best by kind of scene
-
-Only settings with which every run finished are listed.
-
-{best}
-
-## Presets
-
-`accuracy = draft | standard | fine` at the top of a case file sets the keys that `src/case/presets.def`
-lists. `standard` is the program's defaults.
-
-{fronts}
-
-### Errors of the presets in the study
-
-{presets}
-
-## Forecast against measurement
-
-{forecast}
-
-## What failed
-
-{failures}
-
-## What is missing
-
-{holes}
-"""
-
-CASE = """## {title}
-
-{words} Main error: **{error}**, measured against: {against}.
-
-{references}
-
-![Error against cost](img/accuracy_{case}.png)
-
-{table}
-
-Pareto front, from cheap to exact:
-
-{front}
-"""
-
-
 def case_text(study, case):
     entry = study.cases[case]
     sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
                for e in entry["error"] if e.get("source")]
     front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
-    return CASE.format(title=entry.get("title", case), words=entry.get("words", ""), case=case,
+    return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""), case=case,
                        error=main_error(entry), against=against(entry["error"][0]),
                        references="\n".join(sources),
                        table=base_table(study, case), front=front or "no finished point")
@@ -293,7 +179,8 @@ def write(data, out, evidence=None):
     knobs = "\n\n".join(f"### {entry.get('title', case)}: {main_error(entry)}\n\n{knob_table(study, case)}"
                         for case, entry in study.cases.items())
     inside = data.resolve().is_relative_to(ROOT)
-    text = TEXT.format(
+    text = fill(
+        "accuracy.md",
         summary=summary(study), crossing=CROSSING,
         data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
         circumstances=circumstances(study), note=rules.get("note", ""),

@@ -3,24 +3,18 @@
 
 import json
 import os
-from pathlib import Path
 
+import common
 from common import BadFile, np, read_text
 
 
 def machine(root):
     """What the timings depend on besides the program."""
-    cpu = "unknown processor"
-    info = Path("/proc/cpuinfo")
-    for line in info.read_text().splitlines() if info.exists() else []:
-        if line.startswith("model name"):
-            cpu = line.split(":", 1)[1].strip()
-            break
     flags = root / "build" / "release" / "flags"
     words = flags.read_text().split() if flags.exists() else ["unknown compiler"]
     compiler = f"{words[0]} {words[-1]}" if len(words) > 1 else words[0]
     options = " ".join(w for w in words if w.startswith(("-O", "-march", "-mcpu")))
-    return {"cpu": cpu, "cores": os.cpu_count(), "compiler": f"{compiler} {options}".strip()}
+    return {"cpu": common.machine(), "cores": os.cpu_count(), "compiler": f"{compiler} {options}".strip()}
 
 
 def machine_text(m):

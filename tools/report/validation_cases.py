@@ -2,7 +2,7 @@
 """The sections of the validation report on the paper's five cases."""
 
 import metrics
-from common import COLOURS, WIDTH, BadFile, Reference, np, plt, read_table
+from common import COLOURS, WIDTH, BadFile, Reference, np, plt
 from sphfsi.draw_probes import peak
 from validation_measures import Missing, bore, contact, front_speed, pressed_in
 from validation_report import COST, cost, ledgers, series, starting

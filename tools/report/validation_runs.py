@@ -7,7 +7,6 @@ import subprocess
 import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 from common import ROOT, BadFile, Run, read_text, sentence
 from validation_measures import NotRun
