@@ -210,11 +210,6 @@ static void say_section(enum section_id id, const struct sphfsi_options *o)
 
 static void say_quantities(const struct sphfsi_options *o)
 {
-    static const char *const rows[][3] = {
-#define QUANTITY(NAME, name, target, columns, meaning) {#name, columns, meaning},
-#include "case/quantities.def"
-#undef QUANTITY
-    };
     static const char *const needs[] = {
         [TARGET_SOLID_POINT] = "`body` (solid), `point`",
         [TARGET_FLUID_POINT] = "`point`, optional `on`",
@@ -223,11 +218,6 @@ static void say_quantities(const struct sphfsi_options *o)
         [TARGET_BODY] = "`body` (solids or walls), optional `point` of the moment",
         [TARGET_FLUID] = "",
         [TARGET_FLUID_LINE] = "`point`, `to`",
-    };
-    static const enum probe_target targets[] = {
-#define QUANTITY(NAME, name, target, columns, meaning) TARGET_##target,
-#include "case/quantities.def"
-#undef QUANTITY
     };
     session_say(o, "%s", "");
     session_say(o, "### Quantities of a probe");
@@ -238,9 +228,11 @@ static void say_quantities(const struct sphfsi_options *o)
     session_say(o, "%s", "");
     session_say(o, "| quantity | keys | columns | meaning |");
     session_say(o, "|---|---|---|---|");
-    for (size_t k = 0; k < COUNT_OF(rows); k++)
-        session_say(o, "| `%s` | %s | `%s` | %s |", rows[k][0], needs[targets[k]], rows[k][1],
-                    rows[k][2]);
+    for (int k = 0; k < PROBE_QUANTITIES; k++) {
+        const struct quantity_info *const q = &quantity_table[k];
+        session_say(o, "| `%s` | %s | `%s` | %s |", q->name, needs[q->target], q->columns,
+                    q->meaning);
+    }
 }
 
 static void say_effects(const struct sphfsi_options *o)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Which effects require or exclude each other, from case/rules.def. */
+ * Which effects require or exclude each other. */
 #include "case/case.h"
 #include "case/effects.h"
 
@@ -7,28 +7,41 @@
 
 enum { NAME_TEXT = 2 * SCENE_NAME };
 
-struct rule {
-    enum effect effect, other;
-    bool excludes;
+/* What goes together and what does not: the one calls for the other, which the case must name, or not
+ * both. */
+static const struct rule {
+    enum effect effect;
+    enum { NEEDS, EXCLUDES } verb;
+    enum effect other;
     const char *reason;
+} rules[] = {
+    {EFFECT_NO_SLIP, NEEDS, EFFECT_LAMINAR, "fluid sticks to surfaces by its laminar viscosity"},
+    {EFFECT_CONTACT, EXCLUDES, EFFECT_PERIODIC, "contact is not computed through periodic sides"},
+    {EFFECT_PERIODIC, NEEDS, EFFECT_FLUID, "only fluid can pass through periodic sides"},
+    {EFFECT_LAMINAR, EXCLUDES, EFFECT_VERLET,
+     "two-step Verlet is unstable with laminar viscosity; use integrator = leapfrog or symplectic"},
+    {EFFECT_CONTACT, NEEDS, EFFECT_SOLID, "walls do not interact with each other"},
+    {EFFECT_INFLOW, NEEDS, EFFECT_FLUID, "fluid enters through it"},
+    {EFFECT_OUTFLOW, NEEDS, EFFECT_FLUID, "fluid leaves through it"},
+    {EFFECT_LOAD, NEEDS, EFFECT_SOLID, "a load acts on a body"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_INFLOW, "flow through a boundary is no state of rest"},
+    {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
 };
 
-static const struct rule rules[] = {
-#define NEEDS(effect, other, reason) {EFFECT_##effect, EFFECT_##other, false, reason},
-#define EXCLUDES(effect, other, reason) {EFFECT_##effect, EFFECT_##other, true, reason},
-#include "case/rules.def"
-};
-
-/* A key that belongs to an effect. */
-struct owned {
+/* A key that means nothing without its effect: refused where the effect is off and the key has a value
+ * other than its default. */
+static const struct owned {
     enum section_id section;
     const char *key;
     enum effect effect;
-};
-
-static const struct owned owned[] = {
-#define OWNED(section, key, effect) {SECTION_##section, #key, EFFECT_##effect},
-#include "case/rules.def"
+} owned[] = {
+    {SECTION_relax, "limit", EFFECT_RELAX},
+    {SECTION_fluid, "diffusion_form", EFFECT_DIFFUSION},
+    {SECTION_fluid, "diffusion_limiter", EFFECT_DIFFUSION},
+    {SECTION_fluid, "wall_damping", EFFECT_REPULSION},
+    {SECTION_fluid, "shifting_speed", EFFECT_SHIFTING},
+    {SECTION_solid, "hourglass_form", EFFECT_HOURGLASS},
+    {SECTION_solid, "viscosity_form", EFFECT_SOLID_VISCOSITY},
 };
 
 /* The line of the key that activates an effect; for a default, that of the start of the file. */
@@ -56,11 +69,11 @@ static enum err check_rule(struct reader *r, const struct rule *rule)
     const struct scene *const s = r->scene;
     struct effect_caller by, other;
     if (!effect_called(s, rule->effect, &by)) return ERR_OK;
-    if (effect_called(s, rule->other, &other) != rule->excludes) return ERR_OK;
+    if (effect_called(s, rule->other, &other) != (rule->verb == EXCLUDES)) return ERR_OK;
     char text[NAME_TEXT], its[NAME_TEXT];
     name_of(s, &by, text);
     const char *const name = effect_table[rule->effect].name;
-    if (!rule->excludes)
+    if (rule->verb == NEEDS)
         return bad_line(r, line_of(s, &by), "%s enables the effect %s, which needs %s (%s): %s",
                         text, name, effect_table[rule->other].name, effect_table[rule->other].key,
                         rule->reason);

@@ -12,7 +12,7 @@ const struct effect_info effect_table[EFFECT_COUNT] = {
 #undef EFFECT
 };
 
-/* --- conditions of effects: the words of case/effects.def --- */
+/* --- conditions of effects --- */
 
 /* Stores the place of the condition if `at` is one, and returns whether it is. */
 static bool called_by(struct effect_caller *by, enum section_id section, const char *key, int at)
@@ -22,22 +22,21 @@ static bool called_by(struct effect_caller *by, enum section_id section, const c
     return true;
 }
 
-#define SOME(section) called_by(by, SECTION_##section, "", s->n_##section > 0 ? 0 : -1)
-#define ONE(section, key, test) called_by(by, SECTION_##section, #key, s->section.key test ? 0 : -1)
-#define ANY(section, key, test)                                      \
-    called_by(by, SECTION_##section, #key, __extension__({           \
-                  int at = -1;                                       \
-                  for (int k = 0; k < s->n_##section && at < 0; k++) \
-                      if (s->section[k].key test) at = k;            \
-                  at;                                                \
-              }))
-#define LATER false
-#define MEETS meets(s, by, 0)
-#define MEETS_WALL meets(s, by, s->n_solid)
-#define HAS_GRAVITY                                                               \
-    called_by(by, SECTION_top, *s->top.gravity_file ? "gravity_file" : "gravity", \
-              has_gravity(s) ? 0 : -1)
-#define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
+/* Whether a section has a value above 0, a choice other than its first, or a text; with `choice` at
+ * least 0: that choice. */
+static bool has_set(const struct scene *s, struct effect_caller *by, enum section_id id,
+                    const char *key, int choice)
+{
+    const struct param *const p = param_find(id, key);
+    for (int k = 0; k < section_count(s, id); k++) {
+        const void *const value = (const char *)section_at(s, id, k) + p->offset;
+        const double set = p->type == PARAM_REAL   ? *(const double *)value
+                           : p->type == PARAM_TEXT ? *(const char *)value
+                                                   : *(const int *)value;
+        if (choice < 0 ? set > 0 : set == choice) return called_by(by, id, p->key, k);
+    }
+    return false;
+}
 
 /* The first two bodies in contact, the second from `first` on, walls after solids. */
 static bool meets(const struct scene *s, struct effect_caller *by, int first)
@@ -51,11 +50,12 @@ static bool meets(const struct scene *s, struct effect_caller *by, int first)
     return false;
 }
 
-static bool has_gravity(const struct scene *s)
+static bool has_gravity(const struct scene *s, struct effect_caller *by)
 {
     const struct scene_expr *const e = &s->top.gravity_in_time;
-    return s->top.gravity[0] != 0 || s->top.gravity[1] != 0 || e->e[0] || e->e[1] ||
-           *s->top.gravity_file;
+    const bool table = *s->top.gravity_file;
+    const bool acts = s->top.gravity[0] != 0 || s->top.gravity[1] != 0 || e->e[0] || e->e[1];
+    return called_by(by, SECTION_top, table ? "gravity_file" : "gravity", table || acts ? 0 : -1);
 }
 
 /* The first probe of the force on a wall; -1: none. */
@@ -69,23 +69,35 @@ static int first_wall_force(const struct scene *s)
     return -1;
 }
 
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning)           \
-    static bool calls_for_##name(const struct scene *s, struct effect_caller *by) \
-    {                                                                             \
-        (void)s, (void)by;                                                        \
-        return when;                                                              \
-    }
-#include "case/effects.def"
-#undef EFFECT
+static bool compressed_at_start(const struct scene *s, struct effect_caller *by)
+{
+    for (int k = 0; k < s->n_fluid; k++)
+        if (s->fluid[k].particle_mass == MASS_HYDROSTATIC &&
+            (!isnan(s->fluid[k].surface) || s->fluid[k].pressure.e[0]))
+            return called_by(by, SECTION_fluid, "particle_mass", k);
+    return false;
+}
 
 bool effect_called(const struct scene *s, enum effect effect, struct effect_caller *by)
 {
-    static bool (*const calls[EFFECT_COUNT])(const struct scene *, struct effect_caller *) = {
-#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) calls_for_##name,
+#define SOME(section) called_by(by, SECTION_##section, "", s->n_##section > 0 ? 0 : -1)
+#define SET(section, key) has_set(s, by, SECTION_##section, #key, -1)
+#define CHOSEN(section, key, choice) has_set(s, by, SECTION_##section, #key, choice)
+#define COMPRESSED_AT_START compressed_at_start(s, by)
+#define MEETS meets(s, by, 0)
+#define MEETS_WALL meets(s, by, s->n_solid)
+#define HAS_GRAVITY has_gravity(s, by)
+#define PROBES_WALL called_by(by, SECTION_probe, "quantity", first_wall_force(s))
+#define LATER false
+    switch (effect) {
+#define EFFECT(name, when, key, equation, groups, kind, pairs, meaning) \
+    case EFFECT_##name:                                                 \
+        return when;
 #include "case/effects.def"
 #undef EFFECT
-    };
-    return calls[effect](s, by);
+    case EFFECT_COUNT: break;
+    }
+    return false;
 }
 
 static const effect_set effect_bits[EFFECT_COUNT] = {
@@ -131,9 +143,18 @@ unsigned effects_groups(effect_set effects, enum kind kind)
 /* --- phases --- */
 
 const struct phase_info phase_table[PHASE_COUNT] = {
-#define PHASE(name, when, meaning) {#name, meaning, when},
-#include "case/phases.def"
-#undef PHASE
+    [PHASE_sort] = {"sort", "sorting particles into cells", FX_FLUID},
+    [PHASE_open] = {"open", "buffers of open boundaries", FX_OPEN},
+    [PHASE_packed] = {"packed", "equation of state and packed copies of the fields", FX_FLUID},
+    [PHASE_slope] = {"slope", "gradients of the density", FX_ANTUONO},
+    [PHASE_wall] = {"wall", "pressure and velocity of walls and structures for the fluid",
+                    FX_WALL | FX_COUPLING},
+    [PHASE_fluid] = {"fluid", "forces on fluid particles", FX_FLUID},
+    [PHASE_shift] = {"shift", "particle shifting", FX_SHIFTING},
+    [PHASE_solid] = {"solid", "deformation, stress and forces of the solid", FX_SOLID},
+    [PHASE_contact] = {"contact", "search for contact and contact forces", FX_CONTACT},
+    [PHASE_update] = {"update", "time integration, bounds, guards", FX_ALWAYS},
+    [PHASE_output] = {"output", "probes, ledger, snapshots, checkpoints", FX_ALWAYS},
 };
 
 const char *effect_left_out(const struct scene *s)

@@ -107,11 +107,19 @@ effect_set effects_of_scene(const struct scene *s);
 
 #define FX_ALWAYS (~(effect_set)0)
 
-/* The passes of a step, case/phases.def. */
+/* The timed parts of a step, in order. */
 enum phase {
-#define PHASE(name, when, meaning) PHASE_##name,
-#include "case/phases.def"
-#undef PHASE
+    PHASE_sort,
+    PHASE_open,
+    PHASE_packed,
+    PHASE_slope,
+    PHASE_wall,
+    PHASE_fluid,
+    PHASE_shift,
+    PHASE_solid,
+    PHASE_contact,
+    PHASE_update,
+    PHASE_output,
     PHASE_COUNT
 };
 struct phase_info {

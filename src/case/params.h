@@ -99,7 +99,7 @@ const struct expr *param_in_time(const struct param *p, const void *section, int
 /* Whether a section has the default value of a key. */
 bool param_is_default(const struct param *p, const void *section);
 
-/* Whether a scheme sets a key in a kind of scene, and its value (case/presets.def). */
+/* Whether a scheme sets a key in a kind of scene, and its value. */
 bool scheme_sets(enum scheme scheme, enum scene_kind kind, enum section_id section, const char *key,
                  double *value);
 

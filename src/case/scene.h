@@ -104,9 +104,20 @@ enum motion_kind {
     MOTION_EXPRESSION
 };
 enum probe_quantity {
-#define QUANTITY(NAME, name, target, columns, meaning) PROBE_##NAME,
-#include "case/quantities.def"
-#undef QUANTITY
+    PROBE_DISPLACEMENT,
+    PROBE_VELOCITY,
+    PROBE_PRESSURE,
+    PROBE_STRESS,
+    PROBE_LEVEL,
+    PROBE_FORCE,
+    PROBE_FRONT,
+    PROBE_ENERGY,
+    PROBE_FLUX,
+    PROBE_STRAIN,
+    PROBE_ACCELERATION,
+    PROBE_POSE,
+    PROBE_REACTION,
+    PROBE_SURFACE_PRESSURE,
     PROBE_QUANTITIES
 };
 /* Target of a quantity: a material point of a solid, a point in the fluid, either (depending on
@@ -120,6 +131,15 @@ enum probe_target {
     TARGET_FLUID,
     TARGET_FLUID_LINE
 };
+/* What a probe measures; in the order of probe.quantity in case/params.def. */
+struct quantity_info {
+    const char *name;
+    enum probe_target target;
+    const char *columns; /* their endings, each QUANTITY_UNIT, with commas between them */
+    const char *meaning;
+};
+extern const struct quantity_info quantity_table[PROBE_QUANTITIES];
+
 enum probe_direction { DIRECTION_RIGHT, DIRECTION_LEFT, DIRECTION_UP, DIRECTION_DOWN };
 
 /* Points sampled from the shapes of one kind. Solids: body after body, each in rows along its

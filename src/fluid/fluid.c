@@ -216,7 +216,7 @@ static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], cons
     f->sweeps->rates(f, kinds, c);
 }
 
-/* The passes of an evaluation, in order; case/phases.def says which scenes have them. */
+/* The passes of an evaluation, in order; phase_table says which scenes have them. */
 static const struct pass {
     enum phase phase;
     void (*run)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);

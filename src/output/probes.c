@@ -7,12 +7,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const endings[PROBE_QUANTITIES] = {
-#define QUANTITY(NAME, name, target, columns, meaning) columns,
-#include "case/quantities.def"
-#undef QUANTITY
-};
-
 /* Moments of the weights about a probe. */
 struct moment {
     double m00, m10, m01, m20, m11, m02;
@@ -104,7 +98,7 @@ static enum err attach(struct probe *pr, const struct scene_probe *sp, const str
 static int quantity_columns(int quantity)
 {
     int n = 1;
-    for (const char *c = endings[quantity]; *c; c++) n += *c == ',';
+    for (const char *c = quantity_table[quantity].columns; *c; c++) n += *c == ',';
     return n;
 }
 
@@ -194,7 +188,7 @@ static enum err create_means(struct probes *p, struct simulation *s, struct aren
 
 bool probe_column(const struct scene_probe *sp, int column, char *name, size_t size)
 {
-    const char *ending = endings[sp->quantity];
+    const char *ending = quantity_table[sp->quantity].columns;
     for (; column > 0 && *ending; column--) {
         ending += strcspn(ending, ",");
         ending += *ending == ',';

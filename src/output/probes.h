@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Probes: the quantities of case/quantities.def, at a point, of a body, or of the fluid. */
+ * Probes: the quantities of quantity_table, at a point, of a body, or of the fluid. */
 #ifndef SPHFSI_OUTPUT_PROBES_H
 #define SPHFSI_OUTPUT_PROBES_H
 

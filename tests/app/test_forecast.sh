@@ -79,7 +79,7 @@ for key in ledger_interval 'damping_time = 0.01' 'fixed_step limits'; do
     grep -q "^warning: --set: .*$key" "$work/said" || fail "no warning of $key: $(grep warning "$work/said")"
 done
 "$SPHFSI" --effective cases/cantilever.cfg --set accuracy=fine | grep -q '^h_over_dp = 1.8' ||
-    fail "fine is not what presets.def says"
+    fail "fine is not what presets.c says"
 "$SPHFSI" --effective cases/still_water.cfg --set accuracy=fast >/dev/null 2>"$work/error" &&
     fail "accuracy=fast"
 grep -q 'draft|standard|fine' "$work/error" || fail "$(cat "$work/error")"

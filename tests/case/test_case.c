@@ -193,7 +193,7 @@ static void test_default_cfl(void)
 
 #define WATER "[fluid w]\nshape = box 0, 30 mm, 10 mm, 40 mm\nsound_speed = 20\n"
 
-/* What case/presets.def sets, beside fluid alone and beside a solid. */
+/* What case/presets.c sets, beside fluid alone and beside a solid. */
 static void test_scheme(void)
 {
     parse(TOP WATER, 0, NULL);

@@ -488,20 +488,15 @@ static void an_interval_of_its_own_makes_a_file(void)
     TEST_ASSERT_NOT_NULL(strstr(probes.file[0].header, ",front_front_m"));
 }
 
-/* case/quantities.def and the choice in case/params.def are the same list. */
+/* quantity_table and the choice in case/params.def are the same list. */
 static void every_quantity_has_its_name(void)
 {
-    static const char *const names[] = {
-#define QUANTITY(NAME, name, target, columns, meaning) #name,
-#include "case/quantities.def"
-#undef QUANTITY
-    };
     const struct param *p = param_find(SECTION_probe, "quantity");
     char name[SCENE_NAME];
     size_t length = 0;
-    for (size_t k = 0; k < COUNT_OF(names); k++) {
-        param_choice_name(p, (int)k, name);
-        TEST_ASSERT_EQUAL_STRING(names[k], name);
+    for (int k = 0; k < PROBE_QUANTITIES; k++) {
+        param_choice_name(p, k, name);
+        TEST_ASSERT_EQUAL_STRING(quantity_table[k].name, name);
         length += strlen(name) + 1;
     }
     TEST_ASSERT_EQUAL_INT((int)length - 1, (int)strlen(p->choices));

@@ -195,7 +195,7 @@ def presets():
             point = sets[f"{name}/{level}/{scenes[case['scene']]}"]
             chosen = "scheme=paper" if preset == "paper" else f"accuracy={preset}"
             check(effective(case["file"], base + [chosen]) == effective(case["file"], point),
-                  f"{name}: `{preset}` of presets.def is not {scenes[case['scene']]} of study.toml")
+                  f"{name}: `{preset}` of presets.c is not {scenes[case['scene']]} of study.toml")
     for case in sorted((ROOT / "cases").glob("*.cfg")):
         check(effective(case, ["accuracy=standard"]) == effective(case, []),
               f"{case.name}: the defaults are not the preset standard")
