@@ -78,10 +78,11 @@ double coupling_advance(struct coupling *coupling, double dt, int n, double kick
     struct particles *const p = coupling->particles;
     const bool impedance = coupling->impedance > 0;
     if (impedance) impulse_return(coupling, kick);
-    if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt);
+    if (impedance && coupling->ahead == 0) impulse_set_time(coupling, dt); /* no predictor */
     if (coupling->substeps && p->mean_fx) extrapolate_force(coupling, 0.5 * (dt - dt / n), last);
     /* Over its sub-steps the structure gets exactly the impulse given to the fluid. */
     if (kick != dt) scale_force(p, kick / dt);
+        /* The state at the start gives the mean velocity and acceleration of the step. */
 #pragma omp parallel for simd schedule(static)
     for (int64_t i = 0; i < p->n; i++) {
         p->x0[i] = p->ux[i];

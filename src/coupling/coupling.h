@@ -33,15 +33,15 @@ struct coupling {
 void coupling_find_forces(const struct coupling *coupling, struct particles kinds[KIND_COUNT],
                           const struct cells *cells);
 
-/* Sub-steps or not, which follows from the bounds of the step; the exchange time begins with
- * the fluid's longest step. Also after a checkpoint has been loaded, which has the exchange
- * time of its run. */
+/* Sets whether there are sub-steps and an impedance; `effects` has what the bounds of the step
+ * have decided. The exchange time begins with the fluid's longest step, or with that of a
+ * checkpoint. */
 void coupling_set_rate(struct coupling *coupling, effect_set effects, double longest);
 
 /* --- a step of dt of the fluid --- */
 
-/* With a predictor, between two evaluations: the structure half a step ahead; `last` is the
- * step before. */
+/* With a predictor and sub-steps, before its evaluation: moves the structure ahead. `last` is
+ * the step before. */
 void coupling_predict(struct coupling *coupling, double dt, double last);
 
 /* After the evaluation, whose rates act on the fluid for `kick`: n sub-steps of the structure.
