@@ -280,7 +280,7 @@ enum err explain_session(struct session *x, const struct sphfsi_options *o, stru
     param_choice_name(param_find(SECTION_top, "precision"), s->scene->top.precision, precision);
     param_choice_name(param_find(SECTION_top, "integrator"), s->scene->top.integrator, integrator);
     session_say(o, "integrator %s, precision %s; compiled loops of the fluid: %s, of the solid: %s",
-                integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.sweeps->name : "none",
+                integrator, precision, s->kind[KIND_FLUID].n > 0 ? s->fluid.kernel->name : "none",
                 s->solid.sweeps ? s->solid.sweeps->name : "none");
     return say_trial(s, o, d);
 }

@@ -85,32 +85,26 @@ static enum err differ(struct reader *r, const struct scene_fluid *f, const char
         f->common.name, r->scene->fluid[0].common.name, key, mine_text, its_text);
 }
 
-/* Compares a fluid with the first one. */
+/* Compares a fluid with the first one: in all numbers but those of its place and of Eq. 3. */
 static enum err check_fluid(struct reader *r, const struct scene_fluid *f, double c0)
 {
-    const struct scene *s = r->scene;
-    const struct scene_fluid *const first = &s->fluid[0];
-    const struct {
-        const char *key;
-        double mine, its;
-    } same[] = {
-        {"density", f->density, first->density},
-        {"sound_speed", c0, s->c0},
-        {"artificial_viscosity", f->artificial_viscosity, first->artificial_viscosity},
-        {"tensile_control", f->tensile_control, first->tensile_control},
-        {"wall_repulsion", f->wall_repulsion, first->wall_repulsion},
-        {"wall_damping", f->wall_damping, first->wall_damping},
-        {"acoustic_damper", f->acoustic_damper, first->acoustic_damper},
-        {"shifting", f->shifting, first->shifting},
-        {"shifting_speed", f->shifting_speed, first->shifting_speed},
-        {"laminar_viscosity", f->laminar_viscosity, first->laminar_viscosity},
-        {"density_diffusion", f->density_diffusion, first->density_diffusion},
-        {"diffusion_form", f->diffusion_form, first->diffusion_form},
-        {"diffusion_limiter", f->diffusion_limiter, first->diffusion_limiter},
-    };
-    for (size_t j = 0; j < COUNT_OF(same); j++)
-        if (fabs(same[j].mine - same[j].its) > 1e-12 * fabs(same[j].its))
-            TRY(case_go_on(r, differ(r, f, same[j].key, same[j].mine, same[j].its)));
+    static const char own[] = " max_speed max_pressure particle_mass surface ";
+    const struct scene *const s = r->scene;
+    for (int k = 0; k < PARAM_COUNT; k++) {
+        const struct param *const p = &param_table[k];
+        const bool number = p->type == PARAM_REAL || p->type == PARAM_CHOICE;
+        char word[SCENE_NAME];
+        snprintf(word, sizeof word, " %s ", p->key);
+        if (p->section != SECTION_fluid || !number || strstr(own, word)) continue;
+        double value[2] = {c0, s->c0}; /* of sound_speed: that of Eq. 3 if it is not given */
+        for (int n = 0; n < 2 && strcmp(p->key, "sound_speed") != 0; n++) {
+            const char *const at = (const char *)(n ? &s->fluid[0] : f) + p->offset;
+            value[n] = p->type == PARAM_REAL ? *(const double *)(const void *)at
+                                             : *(const int *)(const void *)at;
+        }
+        if (fabs(value[0] - value[1]) > 1e-12 * fabs(value[1]))
+            TRY(case_go_on(r, differ(r, f, p->key, value[0], value[1])));
+    }
     return ERR_OK;
 }
 

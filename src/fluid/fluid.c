@@ -10,22 +10,15 @@ static struct fluid_constants constants_of(const struct scene *s)
 {
     const struct scene_fluid *fluid = &s->fluid[0];
     return (struct fluid_constants){
+        .model = fluid,
         .h = s->h,
         .c0 = s->c0,
         .rho0 = s->rho0,
         .mass = s->rho0 * square(s->top.dp),
-        .alpha = fluid->artificial_viscosity,
-        .tensile = fluid->tensile_control,
-        .repulsion = fluid->wall_repulsion,
         .dp = s->top.dp,
-        .shifting = fluid->shifting,
         .shifting_speed = fluid->shifting_speed == SHIFTING_LARGEST ? s->c0 / 10 : 0,
         .fills_domain =
             fluid->shifting_speed == SHIFTING_LARGEST || s->domain.periodic == PERIODIC_XY,
-        .nu = fluid->laminar_viscosity,
-        .delta = fluid->density_diffusion,
-        .damper = fluid->acoustic_damper,
-        .wall_damping = fluid->wall_damping,
         .gravity = {s->top.gravity[0], s->top.gravity[1]},
         .lowest_wall_pressure = s->numerics.suction == SUCTION_ON ? -(double)INFINITY : 0,
     };
@@ -92,10 +85,11 @@ enum err fluid_create(struct fluid *f, struct arena *a, const struct scene *s, e
     f->k = constants_of(s);
     f->effects = effects;
     f->never_skip = s->test.never_skip;
-    f->sweeps = s->top.precision == PRECISION_MIXED ? fluid_sweeps_mixed : fluid_sweeps_double;
-    while (f->sweeps->effects != ANY_EFFECTS &&
-           (s->test.generic_kernel || f->sweeps->effects != (effects & (effect_set)PAIR_EFFECTS)))
-        f->sweeps++;
+    f->sweeps = s->top.precision == PRECISION_MIXED ? &fluid_sweeps_mixed : &fluid_sweeps_double;
+    f->kernel = f->sweeps->kernels;
+    while (f->kernel->effects != ANY_EFFECTS &&
+           (s->test.generic_kernel || f->kernel->effects != (effects & (effect_set)PAIR_EFFECTS)))
+        f->kernel++;
     f->threads = thread_count();
     for (int k = 0; k < KIND_COUNT; k++) f->packed[k].n = packed_count((enum kind)k, effects);
     TRY(neighbour_scratch_create(f, a, cells_clusters(c, kinds[KIND_FLUID].capacity), d));
@@ -134,7 +128,7 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
                                  ? f->k.shifting_speed
                                  : sqrt(p->vx[i] * p->vx[i] + p->vy[i] * p->vy[i]);
         if (p->open && p->open[i]) continue; /* T-50: the motion of buffers is given */
-        const double size = -f->k.shifting * f->k.h * speed * dt * fade;
+        const double size = -f->k.model->shifting * f->k.h * speed * dt * fade;
         const double dx = size * p->grad_c_x[i], dy = size * p->grad_c_y[i];
         p->x[i] += dx;
         p->y[i] += dy;
@@ -148,7 +142,7 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt)
 /* T-9b by backward Euler. */
 void fluid_follow_density(const struct fluid *f, struct particles *p, double dt)
 {
-    const double share = dt / (dt + f->k.damper * f->k.h / f->k.c0);
+    const double share = dt / (dt + f->k.model->acoustic_damper * f->k.h / f->k.c0);
 #pragma omp parallel for simd schedule(static) num_threads(f->threads)
     for (int64_t i = 0; i < p->n; i++) p->dens_slow[i] += share * (p->dens[i] - p->dens_slow[i]);
 }
@@ -211,9 +205,24 @@ static void pass_wall(struct fluid *f, struct particles kinds[KIND_COUNT], const
     f->walls_placed = !(f->effects & FX_MOTION) && !f->never_skip;
 }
 
+/* The fluid's rates, chunk by chunk. */
 static void pass_fluid(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c)
 {
-    f->sweeps->rates(f, kinds, c);
+    const int32_t n_active = c->kind[KIND_FLUID].n_active, chunks = fluid_chunk_count(n_active);
+    double acceleration2 = 0, approach = 0;
+#pragma omp parallel for schedule(static) num_threads(f->threads) \
+    reduction(max                                                 \
+              : acceleration2, approach)
+    for (int32_t m = 0; m < chunks; m++) {
+        const int32_t first = fluid_chunk_start(n_active, m),
+                      end = fluid_chunk_start(n_active, m + 1);
+        if (first == end) continue;
+        struct fluid_extremes top = {acceleration2, approach};
+        f->kernel->rates(f, &kinds[KIND_FLUID], c, first, end, &top);
+        acceleration2 = top.acceleration2;
+        approach = top.approach;
+    }
+    f->extremes = (struct fluid_extremes){acceleration2, approach};
 }
 
 /* The passes of an evaluation, in order; phase_table says which scenes have them. */

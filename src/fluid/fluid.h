@@ -11,19 +11,12 @@
 
 /* Constants of the fluid, SI. */
 struct fluid_constants {
+    const struct scene_fluid *model; /* coefficients of the effects, as the case has them */
     double h, c0, rho0;
-    double mass;  /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
-    double alpha; /* Eq. 7 */
-    double tensile;        /* epsilon of Monaghan 2000 */
-    double repulsion;      /* beta of fx_repulsion */
-    double dp;             /* particle spacing, m */
-    double shifting;       /* A of Lind et al. 2012 */
+    double mass; /* of a fluid particle per depth, rho0 dp^2; also hydrodynamic mass of dummies */
+    double dp;   /* particle spacing, m */
     double shifting_speed; /* m/s, the same for all particles; 0: each particle's own speed */
-    bool fills_domain;   /* the fluid has no free surface: a shift takes the density along (L-9) */
-    double nu;           /* laminar viscosity, m^2/s */
-    double delta;        /* Eq. 6 */
-    double damper;       /* alpha_D of the acoustic damper */
-    double wall_damping; /* zeta of fx_wall_damping */
+    bool fills_domain; /* the fluid has no free surface: a shift takes the density along (L-9) */
     double gravity[2];
     double lowest_wall_pressure; /* Pa, least pressure of dummies; -INFINITY: no limit */
 };
@@ -75,11 +68,19 @@ struct packed_fields {
 
 struct fluid;
 
-/* The sweeps of one precision and set of effects. */
-struct fluid_sweeps {
+/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, for a set of pair effects,
+ * and their extremes. */
+struct fluid_kernel {
     const char *name;
-    effect_set effects;      /* pair effects of a specialised kernel; ANY_EFFECTS: generic */
-    size_t packed_item_size; /* of an item */
+    effect_set effects; /* ANY_EFFECTS: generic */
+    void (*rates)(const struct fluid *f, struct particles *p, const struct cells *c, int32_t first,
+                  int32_t end, struct fluid_extremes *top);
+};
+#define ANY_EFFECTS (~(effect_set)0)
+
+/* The sweeps of one precision. */
+struct fluid_sweeps {
+    size_t packed_item_size;
     /* Pressure by the equation of state, and packed fields of the fluid. */
     void (*packed)(const struct fluid *f, const struct particles kinds[KIND_COUNT],
                    const struct cells *c);
@@ -90,12 +91,9 @@ struct fluid_sweeps {
      * The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
-    /* Rates of the fluid (Eqs. 4, 6, 7, 21a) and their extremes. */
-    void (*rates)(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c);
+    const struct fluid_kernel *kernels; /* the generic one is the last */
 };
-#define ANY_EFFECTS (~(effect_set)0)
-
-extern const struct fluid_sweeps fluid_sweeps_mixed[], fluid_sweeps_double[];
+extern const struct fluid_sweeps fluid_sweeps_mixed, fluid_sweeps_double;
 
 /* The fluid's active cells are swept in chunks: a pair within one is computed once for both of its
  * particles. The limits are a number of cells per chunk and multiples of a number of chunks, so
@@ -137,7 +135,8 @@ struct fluid {
     effect_set effects;
     bool never_skip;                   /* visit dry walls, place resting ones; set by tests */
     double *volume[KIND_COUNT];        /* [sections] of a resting dummy over a fluid particle's */
-    const struct fluid_sweeps *sweeps; /* the kernel chosen for precision and effects */
+    const struct fluid_sweeps *sweeps; /* of the precision */
+    const struct fluid_kernel *kernel; /* for the effects */
     struct packed_fields packed[KIND_COUNT];
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */

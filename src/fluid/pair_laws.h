@@ -40,16 +40,16 @@ SPHFSI_INLINE struct vector_constants constants_of_sweep(const struct fluid *f)
     const struct fluid_constants *const fk = &f->k;
     const double per_c2 = fk->h / square(fk->c0);
     return (struct vector_constants){
-        .viscosity = vset((real)sqrt(2 * fk->alpha * fk->c0 * fk->rho0)),
-        .laminar = vset((real)(2 * fk->nu * fk->rho0 / fk->h)),
-        .tensile = vset((real)fk->tensile),
+        .viscosity = vset((real)sqrt(2 * fk->model->artificial_viscosity * fk->c0 * fk->rho0)),
+        .laminar = vset((real)(2 * fk->model->laminar_viscosity * fk->rho0 / fk->h)),
+        .tensile = vset((real)fk->model->tensile_control),
         .close = vset((real)(kernel_w(0, fk->h) / kernel_w(fk->dp, fk->h))),
-        .repulsion = vset((real)(fk->repulsion * fk->rho0 * square(fk->c0))),
-        .wall_damping = vset((real)(fk->wall_damping * fk->rho0 * fk->c0)),
+        .repulsion = vset((real)(fk->model->wall_repulsion * fk->rho0 * square(fk->c0))),
+        .wall_damping = vset((real)(fk->model->wall_damping * fk->rho0 * fk->c0)),
         .lowest = vset((real)fk->lowest_wall_pressure),
         .gx = vset((real)(fk->gravity[0] * per_c2)),
         .gy = vset((real)(fk->gravity[1] * per_c2)),
-        .diffusion = vset((real)(fk->delta * fk->c0)),
+        .diffusion = vset((real)(fk->model->density_diffusion * fk->c0)),
         .eta2 = vset((real)ETA2),
     };
 }

@@ -61,7 +61,7 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
 {
     const struct fluid_constants *const k = &f->k;
     const double volume = k->mass / k->rho0 / square(k->h), slope = PAIR_SLOPE / k->h / volume;
-    const double mix = PAIR_HAS(fx, LIMITER) ? 2 : 2 * k->delta * k->c0;
+    const double mix = PAIR_HAS(fx, LIMITER) ? 2 : 2 * k->model->density_diffusion * k->c0;
     four_double full = 1 + FOUR(p->dens, i), factor = slope / k->rho0 + 0 * full;
     four_double rate = full * (own_sum(s->rate) + take_deferred(DEFERRED(deferred, SUM_RATE)));
     if (PAIR_HAS(fx, MASSES)) { /* all sums contain the volume of the particle itself */
@@ -203,67 +203,31 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, co
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
 }
 
-/* A chunk of the active cells. Specialised outside of any parallel region: the compiler makes the
- * body of a region a separate function before it can see that fx is a constant. */
-typedef void SWEEP(chunk)(const struct fluid *f, struct particles *p, const struct cells *c,
-                          int32_t first, int32_t end, const struct vector_constants *k,
-                          struct fluid_extremes *top);
-
+/* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a separate
+ * function before it can see that fx is a constant. */
 #define VARIANT(variant, set)                                                             \
-    static void SWEEP(chunk_##variant)(const struct fluid *f, struct particles *p,        \
+    static void SWEEP(rates_##variant)(const struct fluid *f, struct particles *p,        \
                                        const struct cells *c, int32_t first, int32_t end, \
-                                       const struct vector_constants *k,                  \
                                        struct fluid_extremes *top)                        \
     {                                                                                     \
-        const struct vector_constants constants = *k;                                     \
-        rates_of_chunk(f, p, c, first, end, &constants, (struct pair_set){set}, top);     \
+        const struct vector_constants k = constants_of_sweep(f);                          \
+        rates_of_chunk(f, p, c, first, end, &k, (struct pair_set){set}, top);             \
     }
 #include "fluid/variants.def"
 VARIANT(any, f->effects &(effect_set)PAIR_EFFECTS)
 #undef VARIANT
 
-static void all_chunks(struct fluid *f, struct particles kinds[KIND_COUNT], const struct cells *c,
-                       SWEEP(chunk) * chunk)
-{
-    const int32_t n_active = c->kind[KIND_FLUID].n_active;
-    const int32_t shares = fluid_chunk_count(n_active);
-    const struct vector_constants k = constants_of_sweep(f);
-    double acceleration2 = 0, approach = 0;
-#pragma omp parallel for schedule(static) num_threads(f->threads) \
-    reduction(max                                                 \
-              : acceleration2, approach)
-    for (int32_t m = 0; m < shares; m++) {
-        const int32_t first = fluid_chunk_start(n_active, m),
-                      end = fluid_chunk_start(n_active, m + 1);
-        if (first == end) continue;
-        struct fluid_extremes top = {acceleration2, approach};
-        chunk(f, &kinds[KIND_FLUID], c, first, end, &k, &top);
-        acceleration2 = top.acceleration2;
-        approach = top.approach;
-    }
-    f->extremes = (struct fluid_extremes){acceleration2, approach};
-}
-
-#define VARIANT(variant, set)                                                                \
-    static void SWEEP(rates_##variant)(struct fluid * f, struct particles kinds[KIND_COUNT], \
-                                       const struct cells *c)                                \
-    {                                                                                        \
-        all_chunks(f, kinds, c, SWEEP(chunk_##variant));                                     \
-    }
+static const struct fluid_kernel SWEEP(kernels)[] = {
+#define VARIANT(variant, set) {#variant " (" SWEEP_LABEL ")", (set), SWEEP(rates_##variant)},
 #include "fluid/variants.def"
-VARIANT(any, ANY_EFFECTS)
+    VARIANT(any, ANY_EFFECTS)
 #undef VARIANT
-
-#define SWEEPS_ROW(variant, set)                                                          \
-    {                                                                                     \
-#variant " (" SWEEP_LABEL ")", (set), sizeof(real), SWEEP(packed), SWEEP(slopes), \
-            SWEEP(dummies), SWEEP(rates_##variant)                                        \
-    }
-
-/* The generic kernel is the last one. */
-const struct fluid_sweeps SWEEP(fluid_sweeps)[] = {
-#define VARIANT(variant, set) SWEEPS_ROW(variant, set),
-#include "fluid/variants.def"
-#undef VARIANT
-    SWEEPS_ROW(any, ANY_EFFECTS),
 };
+
+#define VARIANT(variant, set) \
+    _Static_assert(((set) & ~(effect_set)PAIR_EFFECTS) == 0, "pair effects: case/effects.def");
+#include "fluid/variants.def"
+#undef VARIANT
+
+const struct fluid_sweeps SWEEP(fluid_sweeps) = {sizeof(real), SWEEP(packed), SWEEP(slopes),
+                                                 SWEEP(dummies), SWEEP(kernels)};

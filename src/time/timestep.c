@@ -30,13 +30,14 @@ static double bound_decay(const struct simulation *s, double limit, double rate)
 static double bound_diffusion(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return bound_decay(s, s->integrator->density_decay, 6.5 * s->fluid.k.delta);
+    return bound_decay(s, s->integrator->density_decay, 6.5 * s->fluid.k.model->density_diffusion);
 }
 
 static double bound_artificial(const struct simulation *s, const struct fluid_extremes *now)
 {
     (void)now;
-    return bound_decay(s, s->integrator->velocity_decay, 2.3 * s->fluid.k.alpha);
+    return bound_decay(s, s->integrator->velocity_decay,
+                       2.3 * s->fluid.k.model->artificial_viscosity);
 }
 
 /* T-33c. */
@@ -51,7 +52,7 @@ static double bound_repulsion(const struct simulation *s, const struct fluid_ext
 {
     (void)now;
     const struct fluid_constants *const k = &s->fluid.k;
-    return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->repulsion) * k->c0);
+    return square(k->h / k->dp) * k->h / (8.1 * sqrt(k->model->wall_repulsion) * k->c0);
 }
 
 /* Morris et al. 1997, Eq. 21. L-6b gives pairs with a surface twice the weight. */
@@ -59,7 +60,8 @@ static double bound_viscous(const struct simulation *s, const struct fluid_extre
 {
     (void)now;
     const double weight = s->effects & FX_NO_SLIP && s->effects & FX_ONE_SIDED ? 2 : 1;
-    const double inside = 0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.nu);
+    const double inside =
+        0.125 * square(s->fluid.k.h) / (weight * s->fluid.k.model->laminar_viscosity);
     return s->effects & FX_COUPLING ? min2(inside, coupling_drag_step(&s->coupling)) : inside;
 }
 

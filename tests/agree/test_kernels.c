@@ -69,11 +69,11 @@ static void compare(const char *precision)
 {
     for (int k = 0; k < (int)COUNT_OF(sets); k++) {
         const uint64_t generic = run(k, precision, true);
-        TEST_ASSERT_EQUAL_HEX64(ANY_EFFECTS, rig.sim.fluid.sweeps->effects);
+        TEST_ASSERT_EQUAL_HEX64(ANY_EFFECTS, rig.sim.fluid.kernel->effects);
         const uint64_t stamped = run(k, precision, false);
-        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, rig.sim.fluid.sweeps->effects,
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, rig.sim.fluid.kernel->effects,
                                         sets[k].name);
-        TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.sweeps->name, sets[k].name,
+        TEST_ASSERT_EQUAL_INT(0, strncmp(rig.sim.fluid.kernel->name, sets[k].name,
                                          strlen(sets[k].name)));
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(generic, stamped, sets[k].name);
     }
@@ -86,14 +86,14 @@ static void test_double(void) { compare("precision=double"); }
 /* Every row of fluid/variants.def is in the table above, so that none goes untested. */
 static void test_every_variant_is_compared(void)
 {
-    const struct fluid_sweeps *row = fluid_sweeps_mixed;
+    const struct fluid_kernel *row = fluid_sweeps_mixed.kernels;
     for (; row->effects != ANY_EFFECTS; row++) {
         bool found = false;
         for (int k = 0; k < (int)COUNT_OF(sets); k++) found |= sets[k].effects == row->effects;
         TEST_ASSERT_TRUE_MESSAGE(found, row->name);
     }
     for (int k = 0; k + 1 < (int)COUNT_OF(sets); k++) {
-        const struct fluid_sweeps *other = fluid_sweeps_double;
+        const struct fluid_kernel *other = fluid_sweeps_double.kernels;
         while (other->effects != ANY_EFFECTS && other->effects != sets[k].effects) other++;
         TEST_ASSERT_EQUAL_HEX64_MESSAGE(sets[k].effects, other->effects, sets[k].name);
     }
