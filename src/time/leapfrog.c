@@ -27,7 +27,7 @@ struct step_sizes {
     double dt, kick, r, r_old;
 };
 
-static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+static void update_leapfrog_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
     const struct step_sizes *const step = by;
     const double dt = step->dt, kick = step->kick, half = 0.5 * dt, r = step->r,
@@ -54,7 +54,7 @@ static void update_fluid(struct simulation *s, double dt, double dt_old, double 
         memcpy(p->ddens_old, p->ddens, (size_t)p->n * sizeof *p->ddens);
         memcpy(p->ddens_older, p->ddens, (size_t)p->n * sizeof *p->ddens);
     }
-    advance_fluid(s, update_rows, &by);
+    advance_fluid(s, update_leapfrog_rows, &by);
     /* Swaps the arrays of old rates; the next evaluation overwrites the oldest. */
     double *const oldest = p->ddens_older;
     p->ddens_older = p->ddens_old;

@@ -134,7 +134,7 @@ static enum err check_fall(const struct simulation *s, struct diag *d)
     return ERR_OK;
 }
 
-/* Fluid that falls within the domain is never faster, on the mean, than after a fall through
+/* Fluid that falls within the domain is never faster, on average, than after a fall through
  * all of it. One that is faster falls through periodic sides for ever. */
 static enum err check_held_fluid(const struct simulation *s, struct diag *d)
 {
@@ -156,7 +156,7 @@ static enum err check_held_fluid(const struct simulation *s, struct diag *d)
     const double fall = (mean[0] * g[0] + mean[1] * g[1]) / (pull * (double)p->n);
     if (!(pull > 0 && fall > sqrt(2 * pull * high))) return ERR_OK;
     return diag_fail(d, ERR_GUARD,
-                     "%s: [relax]: the fluid falls with %.3g m/s on the mean, more than a fall "
+                     "%s: [relax]: the fluid falls with %.3g m/s on average, more than a fall "
                      "through the whole domain gives: nothing holds it, so there is no state of "
                      "rest; put a [wall] below it, or leave [relax] out",
                      place, fall);

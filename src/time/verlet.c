@@ -14,7 +14,7 @@ struct step_sizes {
     bool euler;
 };
 
-static void update_rows(struct particles *p, const void *by, int64_t from, int64_t end)
+static void update_verlet_rows(struct particles *p, const void *by, int64_t from, int64_t end)
 {
     const struct step_sizes *const step = by;
     const bool euler = step->euler;
@@ -43,7 +43,7 @@ static void verlet_step(struct simulation *s, double t_limit)
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
     book_step(s, dt);
     if (euler) book_restart(s);
-    advance_fluid(s, update_rows, &(struct step_sizes){dt, s->state.dt, euler});
+    advance_fluid(s, update_verlet_rows, &(struct step_sizes){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) advance_structure(s, dt, dt);
     clock = phase_add(s, PHASE_solid, clock);
