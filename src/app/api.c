@@ -5,6 +5,7 @@
 #include "output/probes.h"
 #include "time/relax.h"
 #include "app/session.h"
+#include "check/check.h"
 #include "output/point_data.h"
 #include "time/guards.h"
 
@@ -74,6 +75,7 @@ static enum err open_simulation(struct sphfsi_simulation *s, const struct sphfsi
 {
     TRY(session_open(&s->session, o, d));
     struct simulation *const sim = &s->session.simulation;
+    check_simulation(sim, d);
     const enum err e = probes_create(&s->probes, sim, &sim->arena, d);
     if (!e) probes_follow(&s->probes, sim);
     if (e) session_close(&s->session);

@@ -3,8 +3,8 @@
 
 #include "app/evidence.h"
 #include "app/forecast.h"
-#include "app/slow.h"
 #include "case/params.h"
+#include "check/check.h"
 #include "output/snapshot_file.h"
 
 #include <math.h>
@@ -259,8 +259,9 @@ static void say_cost(const struct simulation *s, const struct unit_costs *c,
 static enum err say_trial(struct simulation *s, const struct sphfsi_options *o, struct diag *d)
 {
     struct unit_costs c;
-    TRY(forecast_measure(&c, s, d));
-    slow_warn(s, d);
+    const enum err e = forecast_measure(&c, s, d);
+    check_simulation(s, d); /* bounds of the step are known now */
+    TRY(e);
     say_bounds(s, o);
     say_cost(s, &c, o);
     evidence_say(s->scene, o);

@@ -3,7 +3,7 @@
 #include "app/explain.h"
 
 #include "app/forecast.h"
-#include "app/slow.h"
+#include "check/check.h"
 #include "output/report.h"
 
 #include <math.h>
@@ -112,8 +112,9 @@ static enum err write_all(FILE *file, struct session *x, const struct heard *h, 
     write_scene(&j, x);
     report_effects(&j, s);
     write_fields(&j, s);
-    TRY(forecast_measure(&c, s, d));
-    slow_warn(s, d);
+    const enum err e = forecast_measure(&c, s, d);
+    check_simulation(s, d);
+    TRY(e);
     write_bounds(&j, s);
     write_cost(&j, s, &c);
     report_derived(&j, &x->scene);

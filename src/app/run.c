@@ -6,6 +6,7 @@
 #include "app/due.h"
 #include "app/evidence.h"
 #include "base/run_dir.h"
+#include "check/check.h"
 #include "output/checkpoint.h"
 #include "output/probes.h"
 #include "output/report.h"
@@ -568,6 +569,7 @@ enum err run_case(const struct sphfsi_options *o, struct diag *d)
     r->folder.lock = r->ledger_rows.fd = -1;
     enum err e = session_open(&r->session, o, d);
     if (!e) {
+        check_simulation(r->s, d);
         e = run_session(r, path, use);
         end(r);
         session_close(&r->session);

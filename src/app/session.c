@@ -2,6 +2,7 @@
 #include "app/session.h"
 #include "base/threads.h"
 #include "case/params.h"
+#include "check/check.h"
 #include "geometry/load.h"
 #include "time/timestep.h"
 
@@ -206,7 +207,8 @@ enum err session_read(struct session *x, const struct sphfsi_options *o, struct 
                             o->n_sets, o->sets, d));
     else
         TRY(scene_load(&x->scene, o->case_path, o->n_sets, o->sets, d));
-    const enum err e = settle_times(&x->scene, o->until, d);
+    enum err e = check_scene(&x->scene, d);
+    if (!e) e = settle_times(&x->scene, o->until, d);
     if (e) scene_free(&x->scene);
     return e;
 }

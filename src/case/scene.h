@@ -164,6 +164,7 @@ struct scene_lattice {
     bool fitted;       /* to edges that are not a whole number of dp apart */
     double area;       /* of the shapes of a solid where no clamp holds it, m^2 */
     double area_error; /* of the particles there, relative to it */
+    bool area_free;    /* clamps hold a part */
 };
 
 /* A position in the axes of a lattice; and the inverse. */

@@ -16,18 +16,6 @@ static const double max_lattice = 1e9, max_cells = 1e10;
 
 /* --- regions --- */
 
-static void bounding_box(struct region *region)
-{
-    for (int c = 0; c < 2; c++) {
-        region->low[c] = HUGE_VAL;
-        region->high[c] = -HUGE_VAL;
-        for (int k = 0; k < region->add.n; k++) {
-            region->low[c] = min2(region->low[c], region->add.item[k].low[c]);
-            region->high[c] = max2(region->high[c], region->add.item[k].high[c]);
-        }
-    }
-}
-
 static double piece_area(const struct outline *o)
 {
     if (!o->n) return PI * square(o->radius);
@@ -51,9 +39,9 @@ static enum err check_size(struct sampler *g)
             total += piece_area(&region->add.item[j]) / square(own);
         double wide[2];
         for (int c = 0; c < 2; c++) {
-            const double low = fabs(region->low[c] - region->lattice.origin[c]) / own;
-            const double high = fabs(region->high[c] - region->lattice.origin[c]) / own;
-            wide[c] = (region->high[c] - region->low[c]) / own + 3;
+            const double low = fabs(region->box.low[c] - region->lattice.origin[c]) / own;
+            const double high = fabs(region->box.high[c] - region->lattice.origin[c]) / own;
+            wide[c] = (region->box.high[c] - region->box.low[c]) / own + 3;
             if (low > max_lattice || high > max_lattice) cells = HUGE_VAL;
         }
         cells += wide[0] * wide[1];
@@ -80,27 +68,17 @@ static enum err add_region(struct sampler *g, enum kind kind, int body,
                            const struct shape_list *shape, const struct shape_list *minus)
 {
     struct region *region = &g->regions[g->n_regions++];
-    *region = (struct region){
-        .kind = kind, .body = body, .name = common->name, .line = common->line, .list = shape};
-    if (shape->n == 0) {
-        char place[LOCATION_TEXT];
-        scene_location(g->scene, common->line, place);
-        return diag_add(g->diag, ERR_INPUT, "%s: [%s %s] has no shape", place, kind_names[kind],
-                        common->name);
-    }
+    *region = (struct region){.kind = kind,
+                              .body = body,
+                              .name = common->name,
+                              .line = common->line,
+                              .list = shape,
+                              .minus_list = minus};
+    if (shape->n == 0)
+        return fail_at(g->diag, g->scene, common->line, "[%s %s] has no shape", kind_names[kind],
+                       common->name);
     TRY(outlines_of(&region->add, g->scene, shape, &g->temp, g->diag));
-    TRY(outlines_of(&region->minus, g->scene, minus, &g->temp, g->diag));
-    return ERR_OK;
-}
-
-/* Rotates shapes into the axes of their lattices. */
-static enum err turn_region(struct sampler *g, struct region *region)
-{
-    const double angle = region->lattice.angle;
-    TRY(outlines_turn(&region->add, angle, &g->temp, g->diag));
-    TRY(outlines_turn(&region->minus, angle, &g->temp, g->diag));
-    bounding_box(region);
-    return layers_find(g, region);
+    return outlines_of(&region->minus, g->scene, minus, &g->temp, g->diag);
 }
 
 static enum err list_regions(struct sampler *g)
@@ -117,9 +95,25 @@ static enum err list_regions(struct sampler *g)
     for (int k = 0; k < s->n_fluid; k++)
         TRY(add_region(g, KIND_FLUID, k, &s->fluid[k].common, &s->fluid[k].shape,
                        &s->fluid[k].minus));
-    TRY(geometry_choose_lattices(g));
-    for (int k = 0; k < n; k++) TRY(turn_region(g, &g->regions[k]));
-    return check_size(g);
+    return ERR_OK;
+}
+
+/* Rotates shapes into the axes of their lattices. */
+static enum err turn_regions(struct sampler *g)
+{
+    for (int k = 0; k < g->n_regions; k++) {
+        struct region *const region = &g->regions[k];
+        TRY(outlines_turn(&region->add, region->lattice.angle, &g->temp, g->diag));
+        TRY(outlines_turn(&region->minus, region->lattice.angle, &g->temp, g->diag));
+        region->box = box2_empty();
+        for (int j = 0; j < region->add.n; j++) {
+            const struct outline *const piece = &region->add.item[j];
+            box2_include(&region->box, piece->low[0], piece->low[1]);
+            box2_include(&region->box, piece->high[0], piece->high[1]);
+        }
+        TRY(layers_find(g, region));
+    }
+    return ERR_OK;
 }
 
 /* --- rows --- */
@@ -139,7 +133,7 @@ static double centre(const struct region *region, int c, int64_t index)
 /* x, limited to the region's left and right end. */
 static double inside(const struct region *region, double x)
 {
-    return min2(max2(x, region->low[0]), region->high[0]);
+    return min2(max2(x, region->box.low[0]), region->box.high[0]);
 }
 
 /* Marks a row's points inside a piece with `value`; returns their number. */
@@ -181,8 +175,8 @@ static enum err prepare_rows(struct sampler *g)
     for (int k = 0; k < g->n_regions; k++) {
         struct region *region = &g->regions[k];
         for (int c = 0; c < 2; c++) {
-            region->first[c] = index_from(region, c, region->low[c]) - 1;
-            region->count[c] = index_from(region, c, region->high[c]) + 1 - region->first[c];
+            region->first[c] = index_from(region, c, region->box.low[c]) - 1;
+            region->count[c] = index_from(region, c, region->box.high[c]) + 1 - region->first[c];
         }
         widest = region->count[0] > widest ? region->count[0] : widest;
         const int add = outlines_capacity(&region->add), minus = outlines_capacity(&region->minus);
@@ -300,6 +294,9 @@ static enum err append_points(struct sampler *g, const struct region *region, bo
 enum err geometry_sample(struct sampler *g, struct samples *p)
 {
     TRY(list_regions(g));
+    TRY(geometry_choose_lattices(g));
+    TRY(turn_regions(g));
+    TRY(check_size(g));
     TRY(prepare_rows(g));
     int64_t total = 0;
     for (int k = 0; k < g->n_regions; k++) {
@@ -322,13 +319,24 @@ enum err geometry_sample(struct sampler *g, struct samples *p)
     return ERR_OK;
 }
 
+enum err geometry_draw(struct sampler *g)
+{
+    TRY(list_regions(g));
+    for (int k = 0; k < g->n_regions; k++)
+        g->regions[k].lattice = g->regions[k].kind == KIND_SOLID
+                                    ? g->scene->solid_lattice[g->regions[k].body]
+                                    : g->scene->lattice;
+    TRY(turn_regions(g));
+    return prepare_rows(g);
+}
+
 enum err scene_sample(struct scene *s, struct diag *d)
 {
     struct sampler g = {.scene = s, .diag = d};
     struct samples points = {0};
     s->h = s->numerics.h_over_dp * s->top.dp;
     enum err err = geometry_sample(&g, &points);
-    if (!err) err = geometry_check_regions(&g);
+    if (!err) err = geometry_check_bodies(&g);
     if (!err) err = geometry_problems(&g);
     if (!err) err = geometry_merge(&g, &points);
     if (!err) err = geometry_pack(&g);
@@ -336,9 +344,6 @@ enum err scene_sample(struct scene *s, struct diag *d)
     if (!err) err = geometry_extent(&g);
     if (!err) err = geometry_check_joined(&g);
     if (!err) err = geometry_problems(&g);
-    if (!err) err = geometry_warn_of_gaps(&g);
-    if (!err) err = geometry_warn_of_doubts(&g);
-    if (!err) geometry_warn_of_speeds(&g);
     arena_free(&g.temp);
     return err;
 }

@@ -4,6 +4,7 @@
 #ifndef SPHFSI_GEOMETRY_SAMPLING_H
 #define SPHFSI_GEOMETRY_SAMPLING_H
 
+#include "base/box2.h"
 #include "case/case.h"
 #include "particles/particles.h"
 #include "geometry/outline.h"
@@ -19,10 +20,10 @@ struct region {
     int body; /* index of the section */
     const char *name;
     int line;
-    const struct shape_list *list;
+    const struct shape_list *list, *minus_list;
     struct outlines add, minus;
     struct scene_lattice lattice;
-    double low[2], high[2];     /* bounding box of the shapes */
+    struct box2 box;            /* of the shapes */
     int64_t first[2], count[2]; /* lattice points within the box */
     int64_t n, n_clamped;       /* points inside, and those that a clamp holds */
     int64_t n_hinged;           /* of the latter those in a hinge */
@@ -78,8 +79,15 @@ bool geometry_is_hinge(const struct shape *clamp, double dp);
 enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, struct samples *p)
     SPHFSI_CHECKED;
 
-/* Edges off the lattice, thin walls and bodies, gaps too narrow for a particle. */
-enum err geometry_check_regions(struct sampler *g) SPHFSI_CHECKED;
+/* Refuses bodies of one row of particles, and finds the area that a body's particles cover. */
+enum err geometry_check_bodies(struct sampler *g) SPHFSI_CHECKED;
+/* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates; the smallest number of them
+ * across a body. */
+double geometry_rows_between(const struct region *region, int c, double low, double high);
+double geometry_rows_across(const struct region *region);
+
+/* The regions of a scene that has been sampled, for questions about places. */
+enum err geometry_draw(struct sampler *g) SPHFSI_CHECKED;
 
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
@@ -92,9 +100,6 @@ enum err geometry_pack(struct sampler *g) SPHFSI_CHECKED;
 int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y);
 bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
 
-/* Warns of openings that sampling has closed or left one particle wide (geometry/gaps.c). */
-enum err geometry_warn_of_gaps(struct sampler *g) SPHFSI_CHECKED;
-
 /* Fills the buffers of open boundaries. */
 enum err geometry_open(struct sampler *g) SPHFSI_CHECKED;
 
@@ -103,21 +108,5 @@ enum err geometry_extent(struct sampler *g) SPHFSI_CHECKED;
 
 /* Bodies that are bonded touch (geometry/joined.c). */
 enum err geometry_check_joined(struct sampler *g) SPHFSI_CHECKED;
-
-/* Warns of speeds that the materials cannot follow (geometry/fast.c). */
-void geometry_warn_of_speeds(struct sampler *g);
-
-/* Warns of bodies that are probably a mistake (geometry/doubts_solid.c). */
-enum err geometry_warn_of_bodies(struct sampler *g) SPHFSI_CHECKED;
-
-/* Warns of open boundaries that are probably a mistake (geometry/doubts_open.c). */
-enum err geometry_warn_of_open(struct sampler *g) SPHFSI_CHECKED;
-
-/* Warns of fluid that begins beside what is to hold it, and of motions faster than sound
- * (geometry/doubts_start.c). */
-enum err geometry_warn_of_start(struct sampler *g) SPHFSI_CHECKED;
-
-/* Warns of scenes that can be simulated but are probably a mistake (geometry/doubts.c). */
-enum err geometry_warn_of_doubts(struct sampler *g) SPHFSI_CHECKED;
 
 #endif

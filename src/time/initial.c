@@ -10,7 +10,6 @@
 #include "time/evaluation.h"
 #include "time/sorting.h"
 #include "time/timestep.h"
-#include "time/warnings.h"
 
 static unsigned groups_of(const struct simulation *sim, enum kind kind)
 {
@@ -183,7 +182,6 @@ enum err initial_state(struct simulation *sim, struct diag *d)
     };
     TRY(choose_rate(sim, d));
     timestep_find_grid(sim);
-    simulation_warn_of_steps(sim, d);
     set_guards(sim);
     update_extremes(sim);
     find_speed(sim);

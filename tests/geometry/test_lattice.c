@@ -2,6 +2,7 @@
  * Bodies and walls at any angle: lattices turned with them and fitted to their edges, layers along walls. */
 #include "particles/particles.h"
 #include "case/scene.h"
+#include "check/check.h"
 #include "geometry/load.h"
 #include "unity.h"
 
@@ -25,7 +26,8 @@ static enum err read(const char *text, const char *set)
     scene_free(&scene);
     warnings[0] = '\0';
     diag = (struct diag){.warn = note};
-    return scene_load_text(&scene, text, "lattice.cfg", set != NULL, &set, &diag);
+    const enum err e = scene_load_text(&scene, text, "lattice.cfg", set != NULL, &set, &diag);
+    return e ? e : check_scene(&scene, &diag);
 }
 
 static void must_read(const char *text, const char *set)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "rig.h"
 
+#include "check/check.h"
 #include "fluid/eos.h"
 #include "geometry/load.h"
 #include "unity.h"
@@ -32,6 +33,8 @@ void rig_open(struct rig *r, const char *text, ...)
     enum err e = scene_load_text(&r->scene, text, "rig.cfg", n, sets, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->scene_open = true;
+    e = check_scene(&r->scene, &r->diag);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);
     r->scene.test = rig_switches;
     e = simulation_create(&r->sim, &r->scene, &r->diag);
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, e, r->diag.text);

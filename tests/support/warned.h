@@ -3,6 +3,7 @@
 #ifndef SPHFSI_TESTS_WARNED_H
 #define SPHFSI_TESTS_WARNED_H
 
+#include "check/check.h"
 #include "geometry/load.h"
 #include "unity.h"
 
@@ -27,6 +28,7 @@ static void read_as(const char *name, const char *text)
     warnings[0] = '\0';
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, scene_load_text(&scene, text, name, 0, NULL, &diag),
                                   diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, check_scene(&scene, &diag), diag.text);
 }
 
 #endif

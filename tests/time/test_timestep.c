@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The time step: its bounds by hand, output times hit exactly, sub-steps, and that the solid's
  * bound is the one that matters: stable below, unstable above. */
-#include "time/warnings.h"
+#include "check/check.h"
 #include "rig.h"
 #include "coupling/bounds.h"
 #include "time/timestep.h"
@@ -416,7 +416,7 @@ static void test_warning_of_a_fixed_step(void)
     for (int k = 0; k < 2; k++) {
         rig_open(&rig, k ? block : water, k ? "numerics.fixed_step=1" : NULL, NULL);
         warned = 0;
-        simulation_warn_of_steps(&rig.sim, &diag);
+        check_simulation(&rig.sim, &diag);
         TEST_ASSERT_EQUAL_INT(k, warned);
     }
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * Settings that make a run slow: said where they are, by how much, and not of settings that do not. */
-#include "app/slow.h"
+#include "check/check.h"
 #include "rig.h"
 #include "time/timestep.h"
 #include "unity.h"
@@ -35,7 +35,7 @@ static void warn_of(const char *text, const char *set)
     struct diag d = {.warn = note};
     said[0] = '\0';
     rig_steps(&rig, 1, 1);
-    slow_warn(&rig.sim, &d);
+    check_simulation(&rig.sim, &d);
 }
 
 /* Damping by eta = E t of modes of frequency w: a step of dt is stable to (w dt)^2 + 2 zeta w dt = 4, the

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ * The smallest box around points. */
+#ifndef SPHFSI_BASE_BOX2_H
+#define SPHFSI_BASE_BOX2_H
+
+#include "base/macros.h"
+
+#include <math.h>
+
+struct box2 {
+    double low[2], high[2];
+};
+
+/* A box around no point: low is above high. */
+SPHFSI_INLINE struct box2 box2_empty(void)
+{
+    return (struct box2){{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}};
+}
+
+SPHFSI_INLINE void box2_include(struct box2 *b, double x, double y)
+{
+    b->low[0] = min2(b->low[0], x);
+    b->low[1] = min2(b->low[1], y);
+    b->high[0] = max2(b->high[0], x);
+    b->high[1] = max2(b->high[1], y);
+}
+
+SPHFSI_INLINE void box2_corner(const struct box2 *b, int corner, double at[2])
+{
+    at[0] = corner & 1 ? b->high[0] : b->low[0];
+    at[1] = corner & 2 ? b->high[1] : b->low[1];
+}
+
+#endif

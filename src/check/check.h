@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT
+ * Judges a scene before it runs: what can be simulated but is probably a mistake, or costs more time
+ * than it needs. Each warning has the consequence and the remedy. What cannot be simulated is refused
+ * where it is read or sampled. */
+#ifndef SPHFSI_CHECK_CHECK_H
+#define SPHFSI_CHECK_CHECK_H
+
+#include "base/point_grid.h"
+#include "geometry/sampling.h"
+#include "time/simulation.h"
+
+/* Warns of a scene that has been sampled. Sets its off_lattice, full and given_speed. */
+enum err check_scene(struct scene *scene, struct diag *d) SPHFSI_CHECKED;
+
+/* Warns of steps that are unstable, or much shorter than they need be. Bounds of the step are known
+ * after a step only. */
+void check_simulation(const struct simulation *sim, struct diag *d);
+
+/* --- within this folder --- */
+
+/* Kinds of points, one bit each: fluid without that of buffers; walls and solids; buffers. */
+enum { POINT_FLUID = 1, POINT_BODY = 2, POINT_BUFFER = 4, POINT_ANY = 7 };
+
+/* All points of a scene by cell. */
+struct points {
+    struct point_grid grid;
+    int64_t n;
+    double *x, *y;
+    int32_t *section; /* of fluid, walls and solids, each from 0 */
+    uint8_t *kind;    /* enum kind */
+    uint8_t *bit;
+};
+
+struct check {
+    struct scene *scene;
+    struct diag *diag;
+    struct sampler shapes; /* as drawn; its arena holds all memory of the check */
+    struct points points;
+};
+
+enum err list_points(struct check *c) SPHFSI_CHECKED;
+/* Whether a region of walls or solids covers a place as drawn. */
+bool is_drawn(const struct check *c, double x, double y);
+/* The first point of these kinds within a distance of a place, through periodic sides too; -1: none. */
+int64_t point_at(const struct check *c, const double at[2], double within, int kinds);
+/* The point of these kinds that is next to point k in a direction, or -1. */
+int64_t point_beside(const struct check *c, int64_t k, const double toward[2], double within,
+                     int kinds);
+/* Extent of a section's points along a vector times its length, without those of buffers; 0: none. */
+double extent_along(const struct scene *scene, enum kind kind, int section, const double along[2]);
+/* The largest initial velocity of a section's points, m/s. */
+double start_speed(const struct scene *scene, enum kind kind, int section,
+                   const struct scene_expr *velocity);
+
+enum err warn_of_shapes(struct check *c) SPHFSI_CHECKED;
+enum err warn_of_fluid(struct check *c) SPHFSI_CHECKED;
+enum err warn_of_solids(struct check *c) SPHFSI_CHECKED;
+
+#endif

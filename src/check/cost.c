@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT
+ * Steps that are unstable, and settings that make a run slow. */
+#include "check/check.h"
+
+#include "case/params.h"
+#include "coupling/bounds.h"
+#include "time/timestep.h"
+
+#include <stdio.h>
+
+/* Up to its largest cfl, a falling column of water (tests/stability/column.cfg) was found stable with an
+ * integrator; for leapfrog the analysis of docs/theory.md gives the same. fixed_step is used unchanged,
+ * even if the run then becomes unstable. */
+static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    const double fixed = scene->numerics.fixed_step, limit = sim->integrator->largest_cfl;
+    const bool shared = sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE);
+    char given[64];
+    if (fixed > 0)
+        snprintf(given, sizeof given, "numerics.fixed_step = %g s (C_CFL = %.3g)", fixed,
+                 timestep_courant(sim));
+    else
+        snprintf(given, sizeof given, "numerics.cfl = %g", scene->numerics.cfl);
+    if (timestep_beyond(sim, limit))
+        diag_warn(d,
+                  "%s is above %g, the stability limit of this integrator, so the fluid may become "
+                  "unstable and a guard may stop the run; use a smaller value",
+                  given, limit);
+    if (shared && fixed > sim->solid.stable_step)
+        diag_warn(d,
+                  "numerics.fixed_step = %g s exceeds the solid's stable step of %.4g s, so the "
+                  "run will become unstable; use a smaller value, or 0 for automatic steps",
+                  fixed, sim->solid.stable_step);
+    if (!(sim->effects & FX_COUPLING) || !(fixed > 0)) return;
+    int lightest;
+    const double bound = coupling_added_mass_step(&sim->coupling, &lightest);
+    const struct scene_solid *const b = &scene->solid[lightest];
+    if (fixed > bound)
+        warn_at(d, scene, b->common.line,
+                "[solid %s], %.3g times as dense as the fluid, may gain energy with "
+                "numerics.fixed_step = %g s; use at most %.3g s, or 0 for automatic steps",
+                b->common.name, b->density / scene->rho0, fixed, bound);
+}
+
+/* T-34d. The first of the other intervals is named. */
+static void warn_of_uneven_steps(const struct simulation *sim, struct diag *d)
+{
+    struct output_interval own, other;
+    const struct scene *const scene = sim->scene;
+    if (!sim->uneven || !timestep_output(scene, sim->uneven - 1, &own)) return;
+    for (int k = 0; timestep_output(scene, k, &other) && !(other.interval > 0);) k++;
+    warn_at(d, scene, scene_line(scene, own.section, own.index, own.key),
+            "outputs with %s = %g s fall between those with %s = %g s and make the steps uneven. "
+            "So solids take steps half as long, and the energy account is less exact; intervals "
+            "that are multiples of each other avoid that",
+            own.key, own.interval, other.key, other.interval);
+}
+
+static void warn_of_interval(const struct simulation *sim, enum section_id section, int index,
+                             const char *key, double interval, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    const bool given = scene_given(scene, section, index, key) != NULL;
+    const double step = sim->effects & FX_FLUID ? timestep_fluid_limit(sim) : sim->dt_solid;
+    if (!(interval > 0 && interval < 0.5 * step)) return;
+    warn_at(d, scene, scene_line(scene, section, index, key),
+            "%s%s = %g s is shorter than the time step of %.3g s. Every output ends a step, so "
+            "the run needs about %.3g times as many steps; use a longer interval",
+            given ? "" : "the default of output.", key, interval, step, step / interval);
+}
+
+static void warn_of_intervals(const struct simulation *sim, struct diag *d)
+{
+    const struct scene *const scene = sim->scene;
+    const struct scene_output *const out = &scene->output;
+    if (scene->n_probe > 0)
+        warn_of_interval(sim, SECTION_output, 0, "probe_interval", out->probe_interval, d);
+    warn_of_interval(sim, SECTION_output, 0, "ledger_interval", out->ledger_interval, d);
+    warn_of_interval(sim, SECTION_output, 0, "snapshot_interval", out->snapshot_interval, d);
+    for (int k = 0; k < scene->n_probe; k++)
+        warn_of_interval(sim, SECTION_probe, k, "interval", scene->probe[k].interval, d);
+}
+
+static void warn_of_damping(const struct simulation *sim, struct diag *d)
+{
+    const double free = solid_step_of(square(sim->solid.omega_max), 0);
+    if (sim->kind[KIND_SOLID].n == 0 || !(sim->solid.stable_step < 0.5 * free)) return;
+    for (int k = 0; k < sim->scene->n_solid; k++) {
+        const struct scene_solid *const body = &sim->scene->solid[k];
+        if (!(body->damping_time > 0)) continue;
+        warn_at(d, sim->scene, scene_line(sim->scene, SECTION_solid, k, "damping_time"),
+                "[solid %s] damping_time = %g s makes the steps of the solid %.3g times "
+                "shorter; a shorter damping_time allows longer steps",
+                body->common.name, body->damping_time, free / sim->solid.stable_step);
+    }
+}
+
+/* Bounds below a tenth of the step that sound waves would allow: of the fluid's laws; a body that is light,
+ * or one that steps together with the fluid. */
+static void warn_of_bounds(const struct simulation *sim, struct diag *d)
+{
+    static const struct {
+        enum bound bound;
+        enum section_id section;
+        const char *key, *change;
+    } owner[] = {{BOUND_diffusion, SECTION_fluid, "density_diffusion", "smaller"},
+                 {BOUND_artificial, SECTION_fluid, "artificial_viscosity", "smaller"},
+                 {BOUND_repulsion, SECTION_fluid, "wall_repulsion", "smaller"},
+                 {BOUND_viscous, SECTION_fluid, "laminar_viscosity", "smaller"},
+                 {BOUND_fixed, SECTION_numerics, "fixed_step", "larger"}};
+    const struct scene *const scene = sim->scene;
+    const double acoustic = scene->numerics.cfl * sim->fluid.k.h / sim->fluid.k.c0;
+    for (size_t k = 0; k < COUNT_OF(owner); k++) {
+        const double bound = sim->dt_bound[owner[k].bound];
+        if (!(bound > 0 && bound < 0.1 * acoustic)) continue;
+        warn_at(d, scene, scene_line(scene, owner[k].section, 0, owner[k].key),
+                "%s limits the time step to %.3g s, while sound waves would allow %.3g times "
+                "as much. The run takes that many times longer; a %s %s may help",
+                owner[k].key, bound, acoustic / bound, owner[k].change, owner[k].key);
+    }
+    const double added = sim->dt_bound[BOUND_added_mass], solid = sim->dt_bound[BOUND_solid];
+    if (sim->effects & FX_COUPLING && added > 0 && added < 0.1 * acoustic) {
+        int lightest;
+        coupling_added_mass_step(&sim->coupling, &lightest);
+        const struct scene_solid *const body = &scene->solid[lightest];
+        warn_at(d, scene, scene_line(scene, SECTION_solid, lightest, "density"),
+                "[solid %s] is %.3g times as dense as the fluid. So light a body limits the "
+                "time step to %.3g s, while sound waves would allow %.3g times as much. The run "
+                "takes that many times longer; a denser body allows longer steps",
+                body->common.name, body->density / scene->rho0, added, acoustic / added);
+    }
+    if (sim->effects & FX_SOLID && !(sim->effects & FX_MULTIRATE) && solid > 0 &&
+        solid < 0.1 * acoustic && scene->numerics.multirate == MULTIRATE_OFF)
+        warn_at(d, scene, scene_line(scene, SECTION_numerics, 0, "multirate"),
+                "the solid limits the time step of the fluid to %.3g s, while sound waves would "
+                "allow %.3g times as much. The run takes up to that many times longer; "
+                "numerics.multirate = auto gives the solid steps of its own",
+                solid, acoustic / solid);
+}
+
+void check_simulation(const struct simulation *sim, struct diag *d)
+{
+    warn_of_unstable_step(sim, d);
+    warn_of_uneven_steps(sim, d);
+    warn_of_intervals(sim, d);
+    warn_of_damping(sim, d);
+    if (sim->effects & FX_FLUID) warn_of_bounds(sim, d);
+}
