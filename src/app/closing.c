@@ -25,8 +25,9 @@ static void say_losses(const struct sphfsi_options *o, const struct simulation *
 {
     const int64_t lost = s->state.lost, left = s->kind[KIND_FLUID].n;
     const bool bodies = s->effects & (FX_WALL | FX_COUPLING);
-    session_say(o, "energy gained: at most %.3g J/m, %.2g %% of the available energy",
-                s->state.gain, 100 * s->state.gain_share);
+    if (s->effects & FX_ENERGY_ACCOUNT)
+        session_say(o, "energy gained: at most %.3g J/m, %.2g %% of the available energy",
+                    s->state.gain, 100 * s->state.gain_share);
     if (!(s->effects & FX_FLUID)) return;
     if (bodies)
         session_say(o,

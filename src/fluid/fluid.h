@@ -5,6 +5,7 @@
 
 #include "particles/clusters.h"
 #include "case/effects.h"
+#include "fluid/eos.h"
 
 #define ETA2 0.01           /* (eta/h)^2 */
 #define REPULSION_REACH 0.8 /* r0 of fx_repulsion over the mean spacing of fluid and dummy */
@@ -20,6 +21,25 @@ struct fluid_constants {
     double gravity[2];
     double lowest_wall_pressure; /* Pa, least pressure of dummies; -INFINITY: no limit */
 };
+
+/* Mass of a fluid particle over that of most, and per depth, kg/m. */
+SPHFSI_INLINE double relative_mass(const struct particles *p, int64_t i)
+{
+    return p->m ? p->m[i] : 1;
+}
+SPHFSI_INLINE double particle_mass(const struct fluid_constants *k, const struct particles *p,
+                                   int64_t i)
+{
+    return k->mass * relative_mass(p, i);
+}
+
+/* Its kinetic energy, potential energy in gravity g and compression energy (T-5), J/m. */
+SPHFSI_INLINE double particle_energy(const struct fluid_constants *k, const double g[2],
+                                     const struct particles *p, int64_t i)
+{
+    return particle_mass(k, p, i) * (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] -
+                                     g[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
+}
 
 /* Largest values over all fluid particles of the last evaluation; order-free maxima. */
 struct fluid_extremes {
@@ -141,10 +161,10 @@ struct fluid {
     int32_t
         *near_fluid[KIND_COUNT]; /* walls and solids: cells with fluid within reach, Morton order */
     int32_t n_near_fluid[KIND_COUNT];
-    bool keeps_slopes;  /* L-5a: the gradients of dens are those of an earlier evaluation */
-    bool counts_touch;  /* the account reads the power of walls and structures of this evaluation */
-    bool walls_placed;  /* walls rest, and their packed positions are valid */
-    bool *near_dummies; /* [cells]: walls or structures in the nine cells around */
+    bool keeps_slopes;        /* L-5a: the gradients of dens are those of an earlier evaluation */
+    bool finds_body_power;    /* the energy account reads it after this evaluation */
+    bool walls_placed;        /* walls rest, and their packed positions are valid */
+    bool *near_dummies;       /* [cells]: walls or structures in the nine cells around */
     bool *sticks[KIND_COUNT]; /* by body: whether fluid sticks to it; NULL without FX_NO_SLIP */
     struct neighbour_scratch *neighbour_scratch; /* [threads] */
     size_t thread_bytes;                         /* memory of each thread */

@@ -261,26 +261,14 @@ static void find_flow(struct open *o, const struct fluid_constants *k, const str
     }
 }
 
-static double mass_of(const struct fluid_constants *k, const struct particles *p, int64_t i)
-{
-    return p->m ? k->mass * p->m[i] : k->mass;
-}
-
-static double energy_of(const struct fluid_constants *k, const struct particles *p, int64_t i)
-{
-    return mass_of(k, p, i) *
-           (0.5 * (square(p->vx[i]) + square(p->vy[i])) - k->gravity[0] * p->x[i] -
-            k->gravity[1] * p->y[i] + eos_energy(p->dens[i], k->c0));
-}
-
 /* Counts a particle that is created (sign 1) or removed (-1). */
 static void book_particle(struct open *o, const struct fluid_constants *k,
                           const struct particles *p, int64_t i, double sign)
 {
     double *const sum = o->sum[p->open[i] - 1];
-    sum[OPEN_MOMENTUM_X] += sign * mass_of(k, p, i) * p->vx[i];
-    sum[OPEN_MOMENTUM_Y] += sign * mass_of(k, p, i) * p->vy[i];
-    sum[OPEN_ENERGY] += sign * energy_of(k, p, i);
+    sum[OPEN_MOMENTUM_X] += sign * particle_mass(k, p, i) * p->vx[i];
+    sum[OPEN_MOMENTUM_Y] += sign * particle_mass(k, p, i) * p->vy[i];
+    sum[OPEN_ENERGY] += sign * particle_energy(k, k->gravity, p, i);
 }
 
 static void set_particle(struct open *o, int64_t m, const struct fluid_constants *k,
@@ -323,13 +311,13 @@ void open_set(struct open *o, const struct fluid_constants *k, struct particles 
     find_flow(o, k, p, c);
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
-        const double u = p->vx[i], v = p->vy[i], energy = energy_of(k, p, i);
+        const double u = p->vx[i], v = p->vy[i], energy = particle_energy(k, k->gravity, p, i);
         set_particle(o, m, k, p, time);
         if (!book) continue;
         double *const sum = o->sum[p->open[i] - 1];
-        sum[OPEN_MOMENTUM_X] += mass_of(k, p, i) * (p->vx[i] - u);
-        sum[OPEN_MOMENTUM_Y] += mass_of(k, p, i) * (p->vy[i] - v);
-        sum[OPEN_ENERGY] += energy_of(k, p, i) - energy;
+        sum[OPEN_MOMENTUM_X] += particle_mass(k, p, i) * (p->vx[i] - u);
+        sum[OPEN_MOMENTUM_Y] += particle_mass(k, p, i) * (p->vy[i] - v);
+        sum[OPEN_ENERGY] += particle_energy(k, k->gravity, p, i) - energy;
     }
 }
 
@@ -339,9 +327,9 @@ void open_hold(struct open *o, const struct fluid_constants *k, struct particles
     for (int64_t m = 0; m < o->n_members; m++) {
         const int32_t i = o->member[m];
         struct open_rate *const r = &o->rate[p->open[i] - 1];
-        r->force[0] -= mass_of(k, p, i) * p->ax[i];
-        r->force[1] -= mass_of(k, p, i) * p->ay[i];
-        r->power -= mass_of(k, p, i) * (p->ax[i] * p->vx[i] + p->ay[i] * p->vy[i]);
+        r->force[0] -= particle_mass(k, p, i) * p->ax[i];
+        r->force[1] -= particle_mass(k, p, i) * p->ay[i];
+        r->power -= particle_mass(k, p, i) * (p->ax[i] * p->vx[i] + p->ay[i] * p->vy[i]);
         p->ax[i] = p->ay[i] = 0;
     }
 }

@@ -12,23 +12,6 @@ struct cluster_sums {
     vreal approach; /* largest |v.xi|/(|xi|^2 + eta^2/h^2), m/s */
 };
 
-/* Those that walls and structures add to. */
-struct touch_sums {
-    of_cluster ax, ay, rate;
-};
-
-SPHFSI_INLINE struct touch_sums touch_sums_of(const struct cluster_sums *s)
-{
-    struct touch_sums t;
-    for (int row = 0; row < ROWS; row++)
-        for (int part = 0; part < PARTS; part++) {
-            t.ax[row][part] = s->ax[row][part];
-            t.ay[row][part] = s->ay[row][part];
-            t.rate[row][part] = s->rate[row][part];
-        }
-    return t;
-}
-
 SPHFSI_INLINE void add_concentration(struct cluster_sums *s, int row, int part,
                                      const struct exchange *e)
 {

@@ -91,18 +91,21 @@ SPHFSI_INLINE void rates_store(const struct fluid *f, struct particles *p, int32
     store_four(p->div_r + i, slope * k->h * full * div_r, count);
 }
 
-/* Power of walls and structures on `count` particles from i on: what their terms of T-6 and T-7 add
- * to kinetic and compression energy and to that of the damper. The deferred sums contain fluid only. */
-SPHFSI_INLINE void touch_store(const struct fluid *f, struct particles *p, int32_t i, int count,
-                               const struct touch_sums *with, const struct touch_sums *without)
+/* Sums with walls and structures, and their power on `count` particles from i on: what they add in
+ * T-6 and T-7 to kinetic and compression energy and to that of the damper. */
+SPHFSI_INLINE void find_body_power(const struct fluid *f, struct particles *p, int32_t i, int count,
+                                   const struct neighbours neighbours[KIND_COUNT],
+                                   const struct receiver a[ROWS], const struct vector_constants *k,
+                                   struct pair_set fx, struct cluster_sums *s)
 {
-    const struct fluid_constants *const k = &f->k;
+    const four_double ax = own_sum(s->ax), ay = own_sum(s->ay), rate = own_sum(s->rate);
     const four_double pressure = acting_pressure(f, p, i, f->effects);
-    const four_double ax = own_sum(with->ax) - own_sum(without->ax);
-    const four_double ay = own_sum(with->ay) - own_sum(without->ay);
-    const four_double rate = own_sum(with->rate) - own_sum(without->rate);
-    store_four(p->touch + i,
-               PAIR_SLOPE * k->h * (FOUR(p->vx, i) * ax + FOUR(p->vy, i) * ay - pressure * rate),
+    for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
+        if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, s);
+    store_four(p->body_power + i,
+               PAIR_SLOPE * f->k.h *
+                   (FOUR(p->vx, i) * (own_sum(s->ax) - ax) +
+                    FOUR(p->vy, i) * (own_sum(s->ay) - ay) - pressure * (own_sum(s->rate) - rate)),
                count);
 }
 
@@ -137,17 +140,14 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
-    const bool touched = neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n;
-    if (touched && f->counts_touch) {
-        const struct touch_sums without = touch_sums_of(&s);
-        for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
-            if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
-        const struct touch_sums with = touch_sums_of(&s);
-        touch_store(f, p, i, count, &with, &without);
+    if (!(neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n)) {
+        if (FX_ENERGY_ACCOUNT && p->body_power)
+            store_four(p->body_power + i, (four_double){0}, count);
+    } else if (FX_ENERGY_ACCOUNT && f->finds_body_power) {
+        find_body_power(f, p, i, count, neighbours, a, k, fx, &s);
     } else {
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
             if (neighbours[kind].n) sum_dummies(&neighbours[kind], a, k, fx, &s);
-        store_four(p->touch + i, (four_double){0}, count);
     }
     top->approach = s.approach;
     real *const deferred =

@@ -71,7 +71,7 @@ double wall_motion_speed2(const struct wall_motion *m, const struct particles *w
     return top;
 }
 
-double moving_body_power(const struct moving_wall *b, const struct particles *walls)
+double moving_wall_power(const struct moving_wall *b, const struct particles *walls)
 {
     double power = 0;
     for (int64_t i = b->first; i < b->end && !b->rests; i++)
@@ -82,11 +82,6 @@ double moving_body_power(const struct moving_wall *b, const struct particles *wa
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls)
 {
     double power = 0;
-    for (int k = 0; k < m->n; k++) {
-        const struct moving_wall *const b = &m->body[k];
-        if (b->rests) continue;
-        for (int64_t i = b->first; i < b->end; i++)
-            power -= walls->fx[i] * walls->vx[i] + walls->fy[i] * walls->vy[i];
-    }
+    for (int k = 0; k < m->n; k++) power += moving_wall_power(&m->body[k], walls);
     return power;
 }

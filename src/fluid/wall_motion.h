@@ -33,9 +33,9 @@ void wall_motion_apply(struct wall_motion *m, const struct scene *s, struct part
 /* Sorts the walls again if any has moved since the last sorting. */
 void wall_motion_sort(struct wall_motion *m, struct cells *c, struct particles *walls);
 
-/* Largest squared speed, and power of the walls on the fluid, W/m. */
+/* Largest squared speed, and power on the fluid of all walls and of one, W/m. */
 double wall_motion_speed2(const struct wall_motion *m, const struct particles *walls);
 double wall_motion_power(const struct wall_motion *m, const struct particles *walls);
-double moving_body_power(const struct moving_wall *b, const struct particles *walls);
+double moving_wall_power(const struct moving_wall *b, const struct particles *walls);
 
 #endif

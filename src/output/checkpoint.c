@@ -111,7 +111,7 @@ static int list_numbers(struct simulation *sim, struct numbers list[MAX_NUMBERS]
 #include "time/state.def"
 #undef STATE
     list[n++] = (struct numbers){"bound_steps", ITEM_INT64, state->bound_steps, BOUND_COUNT};
-    list[n++] = (struct numbers){"account", ITEM_DOUBLE, &state->account, ACCOUNT_NUMBERS};
+    list[n++] = (struct numbers){"energy", ITEM_DOUBLE, &state->energy, ENERGY_NUMBERS};
     if (open->n > 0) {
         const size_t boundaries = (size_t)open->n;
         list[n++] = (struct numbers){"open_sum", ITEM_DOUBLE, open->sum, boundaries * OPEN_SUMS};

@@ -209,7 +209,7 @@ double fluid_flux(const struct simulation *sim, const double a[2], const double 
         const double y = cells_minimum_image(&sim->cells, 1, p->y[i] - a[1]);
         const double bell = images_at_line(&line, reach, x, y);
         if (bell == 0) continue;
-        const double m = p->m ? p->m[i] : 1;
+        const double m = relative_mass(p, i);
         sum += bell * m * square(dp) / (1 + p->dens[i]) * (p->vx[i] * ty - p->vy[i] * tx);
     }
     return sum;

@@ -3,7 +3,6 @@
 #include "output/checkpoint.h"
 #include "base/elementary.h"
 #include "coupling/impulse.h"
-#include "time/account.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -127,8 +126,6 @@ enum err checkpoint_fork(const struct image *m, struct simulation *s, struct dia
     clear_interface_impulse(s);
     if ((s->effects & FX_FLUID) && !order_fits(s)) TRY(sort_again(s, d));
     TRY(simulation_resume(s, d));
-    const struct ledger now = simulation_ledger(s);
-    s->state.energy_start -= now.dissipated;
-    account_begin(s);
+    energy_begin(s);
     return ERR_OK;
 }

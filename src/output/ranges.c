@@ -29,16 +29,13 @@ static enum err check_state(const struct simulation *s, struct diag *d)
     return range_check("solid_slowing", st->solid_slowing, 1e-9, 1e9, d);
 }
 
-static enum err check_account(const struct account *a, struct diag *d)
+static enum err check_energy(const struct energy_account *account, struct diag *d)
 {
-    /* All of its numbers are doubles (ACCOUNT_NUMBERS). */
-    const double *const number = (const double *)(const void *)a;
-    for (size_t k = 0; k < ACCOUNT_NUMBERS; k++)
-        TRY(range_check("account", number[k], -FINITE, FINITE, d));
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++) {
-        TRY(range_check("account", a->step_work[k], 0, FINITE, d));
-        TRY(range_check("account", a->region[k], 0, FINITE, d));
-    }
+    const double *const number = (const double *)(const void *)account;
+    for (size_t k = 0; k < ENERGY_NUMBERS; k++)
+        TRY(range_check("energy", number[k], -FINITE, FINITE, d));
+    for (int k = 0; k < ENERGY_ENTRIES; k++)
+        TRY(range_check("energy", account->entry[k].work_change, 0, FINITE, d));
     return ERR_OK;
 }
 
@@ -93,5 +90,5 @@ enum err ranges_check(const struct simulation *s, struct diag *d)
     }
     TRY(check_open(&s->open, d));
     TRY(check_state(s, d));
-    return check_account(&s->state.account, d);
+    return check_energy(&s->state.energy, d);
 }

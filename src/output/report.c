@@ -67,7 +67,8 @@ static void write_section(struct json *j, enum section_id id, const void *sectio
             write_value(j, &param_table[k], (const char *)section + param_table[k].offset);
 }
 
-/* Keys of the top of the case first; then sections by word, and named ones by name below their word. */
+/* Keys of the top of the case first; then sections by word, and named ones by name below their
+ * word. */
 void report_parameters(struct json *j, const struct scene *scene)
 {
     json_open(j, "parameters", '{');
@@ -162,24 +163,29 @@ static double energy(const struct ledger *l)
 }
 
 /* The most that a region has gained by each term of the account (T-46). */
-static void write_gains(struct json *j, const struct account *a)
+static void write_gains(struct json *j, const struct simulation *s)
 {
-    static const char *const names[ACCOUNT_TERMS] = {
+    static const char *const names[ENERGY_TERMS] = {
         [TERM_FLUID] = "fluid", [TERM_DISSIPATION] = "dissipation", [TERM_INTERFACE] = "interface",
         [TERM_SOLID] = "solid", [TERM_RESTARTS] = "restarts",       [TERM_ALL] = "boundaries",
     };
+    const struct energy_account *const account = &s->state.energy;
+    const double available = account->largest_available;
+    const bool known = s->effects & FX_ENERGY_ACCOUNT;
+    number_if(j, known, "gain", s->state.gain);
+    number_if(j, known, "gain_over_available_energy", s->state.gain_share);
     json_open(j, "gains_by_term", '{');
-    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+    for (int t = 0; t < ENERGY_TERMS; t++) {
         json_open(j, names[t], '{');
-        json_number(j, "gain", a->most[t]);
-        number_if(j, a->top > 0, "gain_over_available_energy", a->most[t] / a->top);
+        number_if(j, known, "gain", account->most[t]);
+        number_if(j, available > 0, "gain_over_available_energy", account->most[t] / available);
         json_close(j, '}');
     }
     json_close(j, '}');
 }
 
-/* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the changes of the
- * others. */
+/* Changes over the run. `moved` is the energy that was converted: the kinetic energy and the
+ * changes of the others. */
 static void write_drift(struct json *j, const struct simulation *s, const struct record *r)
 {
     const struct ledger *a = &r->first, *b = &r->last;
@@ -191,9 +197,7 @@ static void write_drift(struct json *j, const struct simulation *s, const struct
     json_number(j, "wall_work", s->state.wall_work);
     json_number(j, "energy_lost_with_particles", s->state.lost_energy);
     json_number(j, "dissipated", b->dissipated);
-    json_number(j, "gain", s->state.gain);
-    json_number(j, "gain_over_available_energy", s->state.gain_share);
-    write_gains(j, &s->state.account);
+    write_gains(j, s);
     number_if(j, moved > 0, "dissipated_over_moved", b->dissipated / moved);
     json_number(j, "momentum_x", b->momentum_x - a->momentum_x);
     json_number(j, "momentum_y", b->momentum_y - a->momentum_y);
@@ -233,7 +237,8 @@ static void write_cost(struct json *j, const struct simulation *s, const struct 
     json_integer(j, "memory_bytes", (int64_t)s->arena.bytes);
 }
 
-/* Mass, momentum and energy that open boundaries have brought in, less what has left through them. */
+/* Mass, momentum and energy that open boundaries have brought in, less what has left through
+ * them. */
 static void write_open(struct json *j, const struct simulation *s)
 {
     const struct open *const o = &s->open;

@@ -3,14 +3,13 @@
 
 #include <math.h>
 
-#include "time/booking.h"
 #include "time/timestep.h"
 
 void advance_structure(struct simulation *sim, double dt, double kick)
 {
     const int n = timestep_substeps(sim, dt);
     sim->solid_max_move = coupling_advance(&sim->coupling, dt, n, kick, sim->state.dt);
-    book_solid(sim, dt, n, sim->coupling.centred);
+    energy_of_solid(sim, dt, n, sim->coupling.centred);
     sim->substeps = n;
     sim->state.solid_substeps += n;
     sim->state.solid_evaluations += n;

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "time/guards.h"
 #include "base/elementary.h"
-#include "time/account.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +9,8 @@
 #include "time/penetration.h"
 #include "time/timestep.h"
 
-/* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h. Steps over
- * the largest step of the fluid. */
+/* Fractions of the limits at which a warning is given, beside those of the fluid in case/scene.h.
+ * Steps over the largest step of the fluid. */
 #define DET_WARNING 0.2
 #define STEP_WARNING 100 /* times the limit */
 
@@ -288,7 +287,8 @@ static enum err check_motion(struct simulation *s, struct diag *d)
 enum { VOIDS_INTERVAL = 256 };
 #define VOIDS_SHARE 0.01
 
-/* In a full channel fluid is missing only where its pressure has fallen below zero, which opens voids. */
+/* In a full channel fluid is missing only where its pressure has fallen below zero, which opens
+ * voids. */
 static void check_voids(struct simulation *s, struct diag *d)
 {
     const struct scene *const scene = s->scene;
@@ -296,7 +296,7 @@ static void check_voids(struct simulation *s, struct diag *d)
     const double area = square(scene->top.dp);
     double volume = 0, margin = 0; /* a buffer has a row more or less */
     if (!scene->full || s->guard.warned_voids || s->state.steps % VOIDS_INTERVAL) return;
-    for (int64_t i = 0; i < p->n; i++) volume += area * (p->m ? p->m[i] : 1) / (1 + p->dens[i]);
+    for (int64_t i = 0; i < p->n; i++) volume += area * relative_mass(p, i) / (1 + p->dens[i]);
     for (int k = 0; k < scene_open_count(scene); k++)
         margin += scene->top.dp * scene_open_at(scene, k).length;
     const double start = area * (double)scene->points[KIND_FLUID].n, missing = start - volume;
@@ -311,20 +311,11 @@ static void check_voids(struct simulation *s, struct diag *d)
               0.5 * scene->rho0 * square(s->state.speed_high));
 }
 
-enum err guards_check(struct simulation *s, struct diag *d)
-{
-    if (s->effects & FX_MOTION) TRY(check_motion(s, d));
-    if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
-    if (!(s->effects & FX_MOTION)) check_voids(s, d);
-    if (s->effects & FX_SOLID) TRY(check_solid(s, d));
-    TRY(guards_energy(s, d));
-    return check_step(s, d);
-}
-
-/* Fraction of its available energy that a region may gain without a warning (T-46); the time for which a
- * gain below a tenth lasts before it counts, s: while a run starts, little energy is available. */
+/* Fraction of its available energy that a region may gain without a warning (T-46); the time for
+ * which a gain below a tenth lasts before it counts, s: while a run starts, little energy is
+ * available. */
 #define GAIN_WARNING 0.01
-#define GAIN_AT_ONCE 0.1
+#define GAIN_COUNTS_NOW 0.1
 #define GAIN_LASTS 2.5e-3
 /* An oscillation at the default solid_safety shows up to 1/(1 - 0.9^2) = 5.3 times its energy
  * and is stable; four fifths of what it shows count as gain. An unstable run exceeds any such
@@ -339,102 +330,175 @@ static bool lacks_potential(const struct simulation *s)
     return paper;
 }
 
-/* What makes the gain less. The work of dummies does not depend on the step: fluid that is resolved better
- * makes it less, also between bodies that meet. A step that no key of the case sets is named with its
- * value. */
-static void text_of_less(const struct simulation *s, const struct gain *g, char text[64])
+static bool bodies_are_near(const struct simulation *s)
 {
-    double half;
-    const char *const key = g->term == TERM_ALL ? "dp" : timestep_shorter(s, &half);
-    const bool given = s->scene->numerics.fixed_step > 0;
-    if (strcmp(key, "fixed_step") == 0 && !given)
+    return s->effects & FX_CONTACT && s->contact.near;
+}
+
+/* Without weight nothing holds fluid at a wall that moves back. */
+static bool fluid_may_leave_walls(const struct simulation *s)
+{
+    return !(s->effects & FX_GRAVITY) && s->scene->numerics.suction == SUCTION_OFF;
+}
+
+static bool substeps_chosen(const struct simulation *s)
+{
+    return s->effects & FX_COUPLING && s->effects & FX_MULTIRATE &&
+           !(s->scene->numerics.fixed_step > 0);
+}
+
+static bool always(const struct simulation *s)
+{
+    (void)s;
+    return true;
+}
+
+/* Where a gain comes from, and what may help beside a smaller step or dp: the first row of the term
+ * that applies. */
+static const struct attribution {
+    enum energy_term term;
+    bool (*applies)(const struct simulation *s);
+    const char *source, *remedy;
+} attributions[] = {
+    {TERM_FLUID, substeps_chosen, "the fluid's time integration", " or numerics.multirate = off"},
+    {TERM_FLUID, always, "the fluid's time integration", ""},
+    {TERM_DISSIPATION, substeps_chosen, "the fluid's dissipation", " or numerics.multirate = off"},
+    {TERM_DISSIPATION, always, "the fluid's dissipation", ""},
+    {TERM_INTERFACE, substeps_chosen, "the exchange between fluid and structure",
+     " or numerics.multirate = off"},
+    {TERM_INTERFACE, always, "the exchange between fluid and structure", ""},
+    {TERM_SOLID, lacks_potential,
+     "the solid's time integration or its stress, whose law paper has no potential",
+     ", or law = neo_hookean or svk,"},
+    {TERM_SOLID, substeps_chosen, "the solid's stress or time integration",
+     " or numerics.multirate = off"},
+    {TERM_SOLID, always, "the solid's stress or time integration", ""},
+    {TERM_RESTARTS, always, "the Euler steps of integrator = verlet", " or a larger verlet_reset"},
+    {TERM_ALL, bodies_are_near, "the boundaries of the fluid", " or a larger gap in [contact]"},
+    {TERM_ALL, fluid_may_leave_walls, "the boundaries of the fluid", " or numerics.suction = on"},
+    {TERM_ALL, always, "the boundaries of the fluid", ""},
+};
+
+static const struct attribution *attribution_of(const struct simulation *s,
+                                                const struct energy_gain *gain)
+{
+    const struct attribution *row = attributions;
+    while (row->term != gain->term || !row->applies(s)) row++;
+    return row;
+}
+
+/* The work of dummies does not depend on the step: fluid that is resolved better makes it less,
+ * also between bodies that meet. A step that no key of the case sets is named with its value. */
+static void write_step_remedy(const struct simulation *s, const struct energy_gain *gain,
+                              char text[64])
+{
+    double half = 0;
+    const char *const key = gain->term == TERM_ALL ? "dp" : timestep_shorter(s, &half);
+    if (strcmp(key, "fixed_step") == 0 && !(s->scene->numerics.fixed_step > 0))
         snprintf(text, 64, "numerics.fixed_step = %.3g s", half);
     else
         snprintf(text, 64, "a smaller %s", key);
 }
 
-static const char *remedy_of(const struct simulation *s, const struct gain *g)
+/* The names of a region's sections, "[solid plate], [fluid left]"; returns their number. */
+enum { REGION_NAME = 160 };
+static int write_region_name(const struct simulation *s, int region, char text[REGION_NAME])
 {
-    if (g->term == TERM_ALL && s->effects & FX_CONTACT && s->contact.near)
-        return " or a larger gap in [contact]";
-    /* Without weight nothing holds fluid at a wall that moves back. */
-    if (g->term == TERM_ALL && !(s->effects & FX_GRAVITY) &&
-        s->scene->numerics.suction == SUCTION_OFF)
-        return " or numerics.suction = on";
-    if (g->term == TERM_ALL) return "";
-    if (g->term == TERM_RESTARTS) return " or a larger verlet_reset";
-    if (g->term == TERM_SOLID && lacks_potential(s)) return ", or law = neo_hookean or svk,";
-    if (!(s->effects & FX_COUPLING)) return "";
-    if (s->scene->numerics.fixed_step > 0) return "";
-    return s->effects & FX_MULTIRATE ? " or numerics.multirate = off" : "";
+    int list[ENERGY_ENTRIES], names = 0;
+    const int n = energy_entries(s, list);
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < n && used < REGION_NAME; k++) {
+        const int kind = list[k] / SCENE_MAX_SECTIONS, section = list[k] % SCENE_MAX_SECTIONS;
+        static const enum section_id id[KIND_COUNT] = {SECTION_fluid, SECTION_wall, SECTION_solid};
+        const struct scene_section_common *const common = section_at(s->scene, id[kind], section);
+        if (energy_region(&s->state.energy, list[k]) != region) continue;
+        used += (size_t)snprintf(text + used, REGION_NAME - used, "%s[%s %s]", used ? ", " : "",
+                                 kind_names[kind], common->name);
+        names++;
+    }
+    return names;
 }
 
-/* Where most of a region's available energy is now. */
-static const char *most_of(const struct gain *g)
+/* The fastest particle of a region; false if none moves. */
+static bool find_fastest(const struct simulation *s, int region, double at[2])
 {
-    const double most = max2(max2(g->kinetic, g->internal), max2(g->elastic, g->hourglass));
-    if (g->kinetic == most) return "motion";
-    if (g->internal == most) return "compression of the fluid";
-    return g->elastic == most ? "strain" : "hourglass modes";
+    double top = 0;
+    at[0] = at[1] = 0;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const struct particles *const p = &s->kind[kind];
+        for (int64_t i = 0; i < p->n && kind != KIND_WALL; i++) {
+            const double speed2 = square(p->vx[i]) + square(p->vy[i]);
+            const int entry = energy_entry((enum kind)kind, p->body[i]);
+            if (!(speed2 > top) || energy_region(&s->state.energy, entry) != region) continue;
+            top = speed2;
+            at[0] = p->x[i];
+            at[1] = p->y[i];
+        }
+    }
+    return top > 0;
 }
 
-/* Where it comes from. */
-static const char *source_of(const struct simulation *s, const struct gain *g)
+static void write_gain(const struct simulation *s, const struct energy_gain *g, char text[400])
 {
-    static const char *const names[ACCOUNT_TERMS] = {
-        [TERM_FLUID] = "the fluid's time integration",
-        [TERM_DISSIPATION] = "the fluid's dissipation",
-        [TERM_INTERFACE] = "the exchange between fluid and structure",
-        [TERM_SOLID] = "the solid's stress or time integration",
-        [TERM_RESTARTS] = "the Euler steps of integrator = verlet",
-        [TERM_ALL] = "the boundaries of the fluid",
-    };
-    if (g->term == TERM_SOLID && lacks_potential(s))
-        return "the solid's time integration or its stress, whose law paper has no potential";
-    return names[g->term];
-}
-
-static void text_of_gain(const struct simulation *s, const struct gain *g, char text[400])
-{
-    char name[ACCOUNT_TEXT];
+    char name[REGION_NAME];
     double at[2];
-    const bool one = account_name(s, g->entry, name) == 1;
+    const bool one = write_region_name(s, g->entry, name) == 1;
+    const struct ledger *const now = &g->now;
+    const double most = max2(max2(now->kinetic, now->internal), max2(now->elastic, now->hourglass));
+    const char *const form = most == now->kinetic    ? "motion"
+                             : most == now->internal ? "compression of the fluid"
+                             : most == now->elastic  ? "strain"
+                                                     : "hourglass modes";
     const int used =
         snprintf(text, 400,
                  "%s: %s %s gained %.3g J/m of energy that nothing supplied (available: "
                  "%.3g J/m), in %s. Most of %s energy is in %s",
                  time_text(s).text, name, one ? "has" : "have", g->energy, g->available,
-                 source_of(s, g), one ? "its" : "their", most_of(g));
-    if (account_fastest(s, g->entry, at) && used > 0 && used < 400)
+                 attribution_of(s, g)->source, one ? "its" : "their", form);
+    if (find_fastest(s, g->entry, at) && used > 0 && used < 400)
         snprintf(text + used, 400 - (size_t)used, "; fastest at (%.4g, %.4g) m", at[0], at[1]);
 }
 
 enum err guards_energy(struct simulation *s, struct diag *d)
 {
-    const struct gain g = s->gain;
-    char text[400], less[64];
-    if (!s->checked) return ERR_OK;
-    s->checked = false;
-    if (g.entry < 0) s->state.gain_since = s->state.time;
+    const struct energy_gain g = s->gain;
+    const double time = s->state.time;
+    char text[400], step[64];
+    if (!s->gain_found) return ERR_OK;
+    s->gain_found = false;
+    const double share = g.entry < 0       ? 0
+                         : g.available > 0 ? g.energy / g.available
+                                           : (double)INFINITY;
+    if (share <= GAIN_WARNING) s->state.gain_since = time;
     if (g.entry < 0) return ERR_OK;
-    const double share = g.available > 0 ? g.energy / g.available : (double)INFINITY;
-    if (share <= GAIN_WARNING) s->state.gain_since = s->state.time;
-    const bool lasts = s->state.time - s->state.gain_since >= GAIN_LASTS;
-    if (share > GAIN_WARNING && share < GAIN_AT_ONCE && !lasts) return ERR_OK;
+    const bool lasts = time - s->state.gain_since >= GAIN_LASTS;
+    if (share > GAIN_WARNING && share < GAIN_COUNTS_NOW && !lasts) return ERR_OK;
     s->state.gain = max2(s->state.gain, g.energy);
     s->state.gain_share = max2(s->state.gain_share, share);
     if (share <= GAIN_WARNING) return ERR_OK;
-    text_of_gain(s, &g, text);
-    text_of_less(s, &g, less);
+    write_gain(s, &g, text);
+    write_step_remedy(s, &g, step);
+    const char *const remedy = attribution_of(s, &g)->remedy;
     /* A gain at the interface, or by the law of the fluid, may be less than what the rest loses. */
     const bool bounded = g.term == TERM_INTERFACE || g.term == TERM_DISSIPATION;
     if ((bounded ? g.all : share) > GAIN_LIMIT)
-        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s%s may help", text, less,
-                         remedy_of(s, &g));
-    if (s->guard.warned_energy) return ERR_OK;
+        return diag_fail(d, ERR_GUARD, "%s. The run is unstable; %s%s may help", text, step,
+                         remedy);
+    if (!s->guard.warned_energy)
+        diag_warn(d, "%s. The results may be invalid; %s%s may help", text, step, remedy);
     s->guard.warned_energy = true;
-    diag_warn(d, "%s. The results may be invalid; %s%s may help", text, less, remedy_of(s, &g));
     return ERR_OK;
+}
+
+enum err guards_check(struct simulation *s, struct diag *d)
+{
+    if (s->effects & FX_MOTION) TRY(check_motion(s, d));
+    if (s->effects & FX_FLUID) TRY(check_fluid(s, d));
+    if (!(s->effects & FX_MOTION)) check_voids(s, d);
+    if (s->effects & FX_SOLID) TRY(check_solid(s, d));
+    TRY(guards_energy(s, d));
+    return check_step(s, d);
 }
 
 void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d)

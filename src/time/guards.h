@@ -10,7 +10,7 @@
  * that time. */
 enum { CHECK_INTERVAL = 16 };
 
-/* Reads the gain of the last check of the account: warns once if a region has gained energy, and
+/* Reads the last test of the energy account: warns once if a region has gained energy, and
  * fails if the gain is nine tenths of its available energy. */
 enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
@@ -18,7 +18,8 @@ enum err guards_energy(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
  * there are more than stray particles. */
 enum err guards_penetration(struct simulation *s, struct diag *d) SPHFSI_CHECKED;
 
-/* Says that fluid has left the domain: the particles from `first` on, which are no longer in a cell. */
+/* Says that fluid has left the domain: the particles from `first` on, which are no longer in a
+ * cell. */
 void guards_warn_of_loss(const struct simulation *s, int64_t first, struct diag *d);
 
 /* Whether surfaces in contact are pressed harder than the modulus of contact. */

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "time/advance.h"
-#include "time/booking.h"
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
@@ -69,7 +68,7 @@ static void leapfrog_step(struct simulation *s, double t_limit)
     double clock = wall_clock();
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits), dt_old = st->dt;
-    book_step(s, dt);
+    energy_of_step(s, dt);
     update_fluid(s, dt, dt_old, st->dt_old);
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) advance_structure(s, dt, 0.5 * (dt_old + dt));

@@ -23,7 +23,7 @@ static double kinetic_energy(const struct simulation *s)
     const struct particles *const f = &s->kind[KIND_FLUID], *const p = &s->kind[KIND_SOLID];
     double fluid = 0, solid = 0;
     for (int64_t i = 0; i < f->n; i++)
-        fluid += (f->m ? f->m[i] : 1) * (square(f->vx[i]) + square(f->vy[i]));
+        fluid += relative_mass(f, i) * (square(f->vx[i]) + square(f->vy[i]));
     for (int64_t i = 0; i < p->n; i++)
         solid += s->solid.body[p->body[i]].mass * (square(p->vx[i]) + square(p->vy[i]));
     return 0.5 * (s->fluid.k.mass * fluid + solid);
@@ -71,7 +71,7 @@ static void begin_run(struct simulation *s)
     st->dens_low = st->dens_high = st->speed_high = 0;
     st->gain = st->gain_share = st->gain_since = 0;
     st->det_low = 1;
-    simulation_begin_account(s);
+    energy_begin(s);
 }
 
 /* T-78: judges the motion after a step of the search. */

@@ -61,8 +61,8 @@ void repulsion_energy(const struct simulation *sim, double of[SCENE_MAX_SECTIONS
                 cells_each_near(&sim->cells, at.kind, &sim->kind[kind],
                                 (double[]){p->x[i], p->y[i]}, reach, add_repulsion, &at);
             }
-            of[p->body[i]] += (p->m ? p->m[i] : 1) * k->mass / (1 + p->dens[i]) *
-                              k->model->wall_repulsion * square(k->c0) * at.sum;
+            of[p->body[i]] += particle_mass(k, p, i) / (1 + p->dens[i]) * k->model->wall_repulsion *
+                              square(k->c0) * at.sum;
         }
     }
 }

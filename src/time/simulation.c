@@ -5,9 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "time/account.h"
 #include "time/advance.h"
-#include "time/booking.h"
 #include "time/guards.h"
 #include "time/initial.h"
 #include "time/integrator.h"
@@ -22,14 +20,6 @@ static const struct integrator *const integrators[] = {
     [INTEGRATOR_LEAPFROG] = &integrator_leapfrog,
 };
 
-void simulation_begin_account(struct simulation *sim)
-{
-    const struct ledger start = simulation_ledger(sim);
-    sim->state.energy_start = start.kinetic + start.potential + start.internal + start.elastic +
-                              start.hourglass + start.contact;
-    account_begin(sim);
-}
-
 enum err simulation_create(struct simulation *sim, const struct scene *scene, struct diag *d)
 {
     memset(sim, 0, sizeof *sim);
@@ -41,9 +31,9 @@ enum err simulation_create(struct simulation *sim, const struct scene *scene, st
         simulation_free(sim);
         return e;
     }
-    simulation_begin_account(sim);
+    simulation_refresh(sim);
     open_forget(&sim->open); /* particles and velocities of the buffers belong to the start */
-    book_open(sim);
+    energy_begin(sim);
     sim->state.det_low = 1;
     sim->evaluated = false; /* the caller may add to the scene before the first step */
     return ERR_OK;
@@ -72,35 +62,11 @@ void simulation_free(struct simulation *sim) { arena_free(&sim->arena); }
 /* Moves fluid particles towards lower concentration. */
 static double shift_fluid(struct simulation *sim, double clock)
 {
-    const struct fluid_energy before = book_before(sim);
+    double energy[SCENE_MAX_SECTIONS];
+    energy_before_shift(sim, energy);
     sim->shifted = fluid_shift(&sim->fluid, &sim->kind[KIND_FLUID], sim->state.dt);
-    book_change(sim, &before);
+    energy_after_shift(sim, energy);
     return phase_add(sim, PHASE_shift, clock);
-}
-
-/* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
- * ledger has the potential energy of the value at t = 0. */
-static void add_gravity_work(struct simulation *sim)
-{
-    double g[2], px = 0, py = 0;
-    const double *const start = sim->scene->top.gravity;
-    scene_gravity_at(sim->scene, sim->state.time - 0.5 * sim->state.dt, g);
-    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const solid =
-                                                                      &sim->kind[KIND_SOLID];
-    for (int64_t i = 0; i < fluid->n; i++) {
-        px += sim->fluid.k.mass * fluid->vx[i];
-        py += sim->fluid.k.mass * fluid->vy[i];
-    }
-    for (int64_t i = 0; i < solid->n; i++) {
-        const double mass = sim->scene->solid[solid->body[i]].gravity * solid->free[i] *
-                            sim->solid.body[solid->body[i]].mass;
-        px += mass * solid->vx[i];
-        py += mass * solid->vy[i];
-        sim->state.account.put[account_entry(KIND_SOLID, solid->body[i])] +=
-            sim->state.dt * mass *
-            ((g[0] - start[0]) * solid->vx[i] + (g[1] - start[1]) * solid->vy[i]);
-    }
-    sim->state.wall_work += sim->state.dt * ((g[0] - start[0]) * px + (g[1] - start[1]) * py);
 }
 
 /* Magnitude of the impulse exchanged between fluid and structure in the last step. */
@@ -115,43 +81,23 @@ static void add_exchange(struct simulation *sim)
     sim->state.exchanged += sim->state.dt * sqrt(fx * fx + fy * fy);
 }
 
-/* What the last step has done to the solid from outside, and whether bodies have touched. */
-static void take_work(struct simulation *sim)
-{
-    sim->state.wall_work += sim->solid.work;
-    sim->solid.work = 0;
-    for (int k = 0; k < sim->solid.n_bodies; k++) {
-        account_work(&sim->state.account, SOURCE_OUTSIDE, KIND_SOLID, k, sim->solid.work_on[k]);
-        sim->solid.work_on[k] = 0;
-    }
-    account_touch(sim);
-}
-
-/* Work and impulse of the last step, for the ledger and the account. */
+/* Work and impulse of the last step. */
 static void count_work(struct simulation *sim)
 {
-    const double dt = sim->state.dt;
-    if (sim->effects & FX_MOTION && sim->effects & FX_FLUID)
-        sim->state.wall_work += dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
-    if (sim->effects & FX_OPEN) {
-        open_book(&sim->open, dt);
-        book_open(sim);
-    }
-    take_work(sim);
-    if (sim->gravity_varies) add_gravity_work(sim);
+    if (sim->effects & FX_OPEN) open_book(&sim->open, sim->state.dt);
+    energy_after_step(sim);
     if (sim->effects & FX_COUPLING) add_exchange(sim);
 }
 
 static enum err step_without_fluid(struct simulation *sim, double t_limit, struct diag *d)
 {
-    const int64_t steps = sim->state.steps;
     solid_only_step(sim, t_limit);
     count_work(sim);
     if (sim->effects & FX_MOTION) move_walls(sim, sim->state.time);
     find_speed(sim);
     if (guards_strain_due(sim)) solid_show(&sim->solid, &sim->kind[KIND_SOLID]);
     /* Before the guards, which judge what it finds: a checkpoint does not hold that. */
-    book_check_solid_only(sim, steps);
+    energy_test_due(sim);
     TRY(guards_check(sim, d));
     timestep_recheck_solid(sim);
     return ERR_OK;
@@ -190,7 +136,7 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
 
 enum err simulation_resume(struct simulation *sim, struct diag *d)
 {
-    TRY(account_check(&sim->state.account, d));
+    TRY(energy_check_saved(&sim->state.energy, d));
     sim->evaluated = false;
     if (sim->effects & FX_FLUID) {
         for (int kind = 0; kind < KIND_COUNT; kind++)
@@ -224,6 +170,8 @@ uint64_t simulation_hash(struct simulation *sim)
     simulation_refresh(sim);
     uint64_t h = HASH_START;
     for (int kind = 0; kind < KIND_COUNT; kind++) h = particles_hash(&sim->kind[kind], h);
-    h = hash_bytes(h, &sim->state, sizeof sim->state);
+    struct state state = sim->state;
+    state.energy_start = state.gain = state.gain_share = state.gain_since = 0;
+    h = hash_bytes(h, &state, offsetof(struct state, energy));
     return sim->effects & FX_OPEN ? open_hash(&sim->open, h) : h;
 }

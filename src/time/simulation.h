@@ -5,7 +5,6 @@
 #define SPHFSI_TIME_SIMULATION_H
 
 #include "time/evaluation.h"
-#include "time/ledger.h"
 #include "time/state.h"
 
 /* Registers `at`, which adds accelerations to the particles of a kind (fluid or solid) from the
@@ -28,10 +27,8 @@ enum err simulation_step(struct simulation *sim, double t_limit, struct diag *d)
  * rebuilds everything derived. The next step gives the same bits as in the uninterrupted run. */
 enum err simulation_resume(struct simulation *sim, struct diag *d) SPHFSI_CHECKED;
 
-/* The account of energy begins with the present state. */
-void simulation_begin_account(struct simulation *sim);
-
-/* Hash of every STATE field and state scalar; calls simulation_refresh. */
+/* Hash of every STATE field and state scalar but those of the energy account, which measures the
+ * run and does not act on it; calls simulation_refresh. */
 uint64_t simulation_hash(struct simulation *sim);
 
 #endif

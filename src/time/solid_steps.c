@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "time/account.h"
 #include "time/evaluation.h"
 #include "time/guards.h"
 #include "time/timestep.h"
@@ -89,14 +88,14 @@ static void book_lone(struct simulation *s, double dt, int n, enum bound binding
 }
 
 /* Adds the work of a program's accelerations on each body over dt, at the present velocities. */
-static void book_external(struct simulation *s, double dt)
+static void add_external_work(struct simulation *s, double dt)
 {
     const struct particles *const p = &s->kind[KIND_SOLID];
     const struct external *const external = &s->external[KIND_SOLID];
     for (int64_t i = 0; i < p->n; i++)
-        s->state.account.put[account_entry(KIND_SOLID, p->body[i])] +=
-            dt * s->solid.body[p->body[i]].mass * p->free[i] *
-            (external->ax[i] * p->vx[i] + external->ay[i] * p->vy[i]);
+        energy_supply(s, KIND_SOLID, p->body[i],
+                      dt * s->solid.body[p->body[i]].mass * p->free[i] *
+                          (external->ax[i] * p->vx[i] + external->ay[i] * p->vy[i]));
 }
 
 void solid_only_step(struct simulation *s, double t_limit)
@@ -118,12 +117,12 @@ void solid_only_step(struct simulation *s, double t_limit)
     if (cut) s->dt_bound[BOUND_output] = dt;
     if (external) external_for_step(s, dt);
     double advanced = 0;
-    if (external) book_external(s, 0.5 * dt);
+    if (external) add_external_work(s, 0.5 * dt);
     if (near)
         advanced = advance_near(s, dt, &n);
     else
         advance_lone(s, dt, n);
-    if (external) book_external(s, (advanced > 0 ? advanced : dt) - 0.5 * dt);
+    if (external) add_external_work(s, (advanced > 0 ? advanced : dt) - 0.5 * dt);
     solid_set_positions(&s->kind[KIND_SOLID]);
     phase_add(s, PHASE_solid, start);
     st->time = advanced > 0 ? st->time + advanced : hits ? t_limit : st->time + n * dt;

@@ -3,33 +3,20 @@
 
 #include <math.h>
 
-#include "fluid/eos.h"
 #include "particles/kernel.h"
-#include "time/account.h"
 #include "time/guards.h"
 #include "time/timestep.h"
 
-/* Energy that a fluid particle carries, J/m. */
-static double energy_of(const struct simulation *sim, const struct particles *p, int64_t i)
-{
-    const struct fluid_constants *const k = &sim->fluid.k;
-    const double *const g = sim->scene->top.gravity;
-    const double m = p->m ? p->m[i] : 1;
-    return m * k->mass *
-           (0.5 * (square(p->vx[i]) + square(p->vy[i])) - g[0] * p->x[i] - g[1] * p->y[i] +
-            eos_energy(p->dens[i], k->c0));
-}
-
 /* Energy that gravity adds to fluid that leaves through a periodic side and enters at the opposite
  * one. */
-static void book_crossings(struct simulation *sim)
+static void add_crossings(struct simulation *sim)
 {
     for (int axis = 0; axis < 2; axis++) {
         const double given = sim->fluid.k.mass * sim->scene->top.gravity[axis] *
                              (double)sim->cells.crossings[axis] *
                              (sim->scene->domain_upper[axis] - sim->scene->domain_lower[axis]);
         sim->state.periodic_energy += given;
-        sim->state.account.put[account_entry(KIND_FLUID, 0)] += given;
+        energy_supply(sim, KIND_FLUID, 0, given);
     }
 }
 
@@ -57,11 +44,11 @@ enum err sort_particles(struct simulation *sim, struct diag *d)
     const int64_t lost = cells_sort(&sim->cells, KIND_FLUID, fluid);
     if (lost && sim->state.lost == 0) guards_warn_of_loss(sim, fluid->n - lost, d);
     for (int64_t i = fluid->n - lost; i < fluid->n; i++) {
-        const double energy = energy_of(sim, fluid, i);
+        const double energy = particle_energy(&sim->fluid.k, sim->scene->top.gravity, fluid, i);
         sim->state.lost_energy += energy;
-        sim->state.account.put[account_entry(KIND_FLUID, fluid->body[i])] -= energy;
+        energy_supply(sim, KIND_FLUID, fluid->body[i], -energy);
     }
-    if (sim->effects & FX_PERIODIC) book_crossings(sim);
+    if (sim->effects & FX_PERIODIC) add_crossings(sim);
     fluid->n -= lost;
     sim->state.lost += lost;
     if (sim->effects & FX_OPEN) TRY(open_list(&sim->open, fluid, d));

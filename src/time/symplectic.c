@@ -4,7 +4,6 @@
  * sides over the whole step. */
 #include "coupling/motion.h"
 #include "time/advance.h"
-#include "time/booking.h"
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
@@ -87,7 +86,7 @@ static void symplectic_step(struct simulation *s, double t_limit)
 
     bool hits;
     const double dt = timestep_choose(s, t_limit, &hits);
-    book_check(s);
+    energy_test_due(s);
     predict_fluid(fluid, 0.5 * dt);
     if (coupled && multirate) coupling_predict(&s->coupling, dt, s->state.dt);
     if (coupled && !multirate) {
@@ -99,7 +98,7 @@ static void symplectic_step(struct simulation *s, double t_limit)
     phase_add(s, PHASE_update, clock);
 
     evaluate_fluid(s, time + 0.5 * dt);
-    book_midpoint(s, dt);
+    energy_of_midpoint(s, dt);
     clock = wall_clock();
     if (coupled && multirate) advance_structure(s, dt, dt);
     if (coupled && !multirate) rates_of_solid(s);
@@ -108,7 +107,7 @@ static void symplectic_step(struct simulation *s, double t_limit)
     advance_fluid(s, correct_rows, &dt);
     if (coupled && !multirate) {
         correct_solid(solid, dt);
-        book_solid(s, dt, 1, true);
+        energy_of_solid(s, dt, 1, true);
         solid_book_work(&s->solid, solid, solid->vx0, solid->vy0, dt);
         solid_place_clamps(&s->solid, solid, time + dt);
         motion_at_single_rate(&s->coupling, dt / (dt + averaging_time(&s->coupling)));

@@ -4,7 +4,6 @@
 #include <math.h>
 
 #include "particles/kernel.h"
-#include "time/booking.h"
 
 static void count(void *n, int64_t i, double x, double y, double r)
 {
@@ -36,7 +35,7 @@ void limit_isolated_tension(struct simulation *sim)
     const int most = (int)(PI / 3 * reach * reach);
     for (int64_t i = 0; i < p->n; i++) {
         if (!(p->dens[i] < lowest) || particles_near(sim, p->x[i], p->y[i]) > most) continue;
-        book_reset(sim, i);
+        energy_drop_density(sim, i);
         p->dens[i] = 0;
         if (p->dens_slow) p->dens_slow[i] = 0;
         if (p->dens_old) p->dens_old[i] = 0;

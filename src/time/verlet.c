@@ -2,7 +2,6 @@
  * Verlet for the fluid with an Euler step every N_s (Eqs. 25-26), semi-implicit Euler for the solid
  * (Eq. 27): one evaluation a step. */
 #include "time/advance.h"
-#include "time/booking.h"
 #include "time/evaluation.h"
 #include "time/integrator.h"
 #include "time/timestep.h"
@@ -41,8 +40,8 @@ static void verlet_step(struct simulation *s, double t_limit)
     const double dt = timestep_choose(s, t_limit, &hits);
     const bool euler = s->state.verlet_count == 0;
     s->state.verlet_count = (s->state.verlet_count + 1) % s->scene->numerics.verlet_reset;
-    book_step(s, dt);
-    if (euler) book_restart(s);
+    energy_of_step(s, dt);
+    if (euler) energy_of_restart(s);
     advance_fluid(s, update_verlet_rows, &(struct step_sizes){dt, s->state.dt, euler});
     clock = phase_add(s, PHASE_update, clock);
     if (s->effects & FX_COUPLING) advance_structure(s, dt, dt);

@@ -11,7 +11,9 @@ frees. Bytes are those of the run's arena.
   test_absence.py           all effects that no scene here uses, left out together (two programs), and
                             docs/absence.md, which must have a row for every effect
   test_absence.py --each    each effect by itself, a program for each: make absence, which writes
-                            docs/absence.md"""
+                            docs/absence.md
+  test_absence.py --each NAME ...
+                            these effects only; writes nothing"""
 import json
 import os
 import re
@@ -46,12 +48,13 @@ poisson = 0.4
 """
 OUTPUT = ("[output]\nprobe_interval = 1\nledger_interval = 1\nsnapshot_interval = 1\n"
           "checkpoint_minutes = 0\n")
+NO_ACCOUNT = "energy_account = off\n"
 GRAVITY = "gravity = 0, -9.81\n"
 SCENES = {
-    "fluid alone": TOP + FLUID + OUTPUT,
+    "fluid alone": TOP + FLUID + OUTPUT + NO_ACCOUNT,
     "dam break": GRAVITY + TOP + WATER + WALL + OUTPUT,
     "solid alone": TOP + SOLID + OUTPUT,
-    "gate": GRAVITY + TOP + WATER + WALL + SOLID + OUTPUT,
+    "gate": GRAVITY + TOP + WATER + WALL + SOLID + OUTPUT + NO_ACCOUNT,
     "standard gate": GRAVITY + ANY + STANDARD_WATER + WALL + SOLID + OUTPUT,
 }
 
@@ -176,7 +179,7 @@ def report(whole, effects, costs, far, version):
     REPORT.write_text("\n".join(lines))
 
 
-def each(effects, whole, far, version):
+def each(effects, whole, far, version, write):
     costs, failures = {}, 0
     for effect in effects:
         scenes = [name for name in SCENES if effect not in whole[name][3]]
@@ -188,7 +191,8 @@ def each(effects, whole, far, version):
         for scene in scenes:
             costs[effect, scene], good = compare([effect], program, scene, whole, ALLOWED_EACH)
             failures += not good
-    report(whole, effects, costs, far, version)
+    if write:
+        report(whole, effects, costs, far, version)
     return failures
 
 
@@ -221,7 +225,8 @@ def main():
     far = far_wall_is_free(reference)
     version = subprocess.run([reference, "--version"], capture_output=True, text=True,
                              check=True).stdout.strip()
-    return (each(effects, whole, far, version) if long else together(effects, whole)) + (not far[2]) > 0
+    named = sys.argv[2:]
+    return (each(named or effects, whole, far, version, not named) if long else together(effects, whole)) + (not far[2]) > 0
 
 
 if __name__ == "__main__":

@@ -112,6 +112,8 @@ static const struct {
          FX_IMPEDANCE,
      EFFECT_FORCE_EXTRAPOLATION, "line 3: integrator"},
     {TOP "integrator = leapfrog\n" FLUID, FX_FLUID, EFFECT_LEAPFROG, "line 3: integrator"},
+    {TOP FLUID "[output]\nenergy_account = on\n", FX_FLUID, EFFECT_ENERGY_ACCOUNT,
+     "line 7: [output] energy_account"},
 };
 
 static struct rig rig;
@@ -124,11 +126,11 @@ static void test_the_set_follows_from_the_case(void)
     effect_set tested = EFFECT_BIT(EFFECT_MULTIRATE); /* follows from the bounds: test_timestep.c */
     for (size_t k = 0; k < COUNT_OF(scenes); k++) {
         rig_open(&rig, scenes[k].text, NULL);
-        /* The default integrator is an effect of the fluid. */
+        /* The default integrator is an effect of the fluid, and the energy account is on. */
         const bool by_default = scenes[k].effects & FX_FLUID && !(scenes[k].effects & FX_VERLET);
-        const effect_set integrator = by_default ? FX_LEAPFROG : 0;
+        const effect_set always = (by_default ? FX_LEAPFROG : 0) | FX_ENERGY_ACCOUNT;
         tested |= EFFECT_BIT(scenes[k].effect);
-        TEST_ASSERT_EQUAL_HEX64_MESSAGE(scenes[k].effects | integrator,
+        TEST_ASSERT_EQUAL_HEX64_MESSAGE(scenes[k].effects | always,
                                         rig.sim.effects & ~(effect_set)FX_MULTIRATE,
                                         scenes[k].text);
         struct effect_caller by;

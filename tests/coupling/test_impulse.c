@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The impedance of the fluid within a structure's sub-steps, and the impulse (T-35a, T-35b). */
 #include "coupling/impulse.h"
-#include "time/account.h"
+#include "time/energy.h"
 #include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
@@ -409,13 +409,13 @@ static const char plate[] =
     "density = 300\nyoung = 320 kPa\npoisson = 0.3\n";
 
 /* Runs it, with its account. */
-static const struct account *run_plate(double time)
+static const struct energy_account *run_plate(double time)
 {
     TEST_ASSERT_TRUE(rig.sim.effects & FX_IMPEDANCE);
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     rig_run(&rig, time);
-    return &rig.sim.state.account;
+    return &rig.sim.state.energy;
 }
 
 /* Of 300 kg/m^3. When bodies took their impulse back, 2 % a step, their exchange gained 0.47 % of
@@ -426,9 +426,9 @@ static void test_exchange_gains_little(void)
                                               "integrator=verlet"};
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         rig_open(&rig, plate, integrators[k], NULL);
-        const struct account *const a = run_plate(0.1);
-        assert_at_most(1.5e-3, a->most[TERM_INTERFACE] / a->top, integrators[k]);
-        assert_at_most(1e-3, a->most[TERM_ALL] / a->top, integrators[k]);
+        const struct energy_account *const a = run_plate(0.1);
+        assert_at_most(1.5e-3, a->most[TERM_INTERFACE] / a->largest_available, integrators[k]);
+        assert_at_most(1e-3, a->most[TERM_ALL] / a->largest_available, integrators[k]);
         rig_close(&rig);
     }
     open(NULL, NULL);
@@ -441,9 +441,9 @@ static void test_verlet_stays_together(void)
 {
     rig_open(&rig, plate, "integrator=verlet", "across=2", "right=0.005", "plate.density=3000",
              "plate.young=19.62e9", NULL);
-    const struct account *const a = run_plate(0.05);
-    assert_at_most(1e-3, a->most[TERM_FLUID] / a->top, "fluid");
-    assert_at_most(1e-3, a->most[TERM_RESTARTS] / a->top, "restarts");
+    const struct energy_account *const a = run_plate(0.05);
+    assert_at_most(1e-3, a->most[TERM_FLUID] / a->largest_available, "fluid");
+    assert_at_most(1e-3, a->most[TERM_RESTARTS] / a->largest_available, "restarts");
 }
 
 /* Water that leaves a light wall takes nothing along: a dry particle takes its impulse back, and

@@ -76,8 +76,8 @@ static void test_a_sudden_inflow_is_no_gain(void)
     const double start = simulation_ledger(&rig.sim).kinetic;
     TEST_ASSERT_TRUE(start > 50);
     rig_run(&rig, 0.05);
-    const struct account *const a = &rig.sim.state.account;
-    for (int t = 0; t < ACCOUNT_TERMS; t++) TEST_ASSERT_TRUE(a->most[t] < 0.05 * start);
+    const struct energy_account *const a = &rig.sim.state.energy;
+    for (int t = 0; t < ENERGY_TERMS; t++) TEST_ASSERT_TRUE(a->most[t] < 0.05 * start);
 }
 
 /* Between plates that do not hold it an inviscid stream goes on as it is, and needs no work. */

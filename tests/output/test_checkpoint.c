@@ -196,12 +196,12 @@ static void numbers_that_no_run_has_are_refused(void)
     REFUSES(energy_start, (double)NAN, "energy_start = nan");
     REFUSES(steps, INT64_MAX, "steps = 9.22337e+18");
     REFUSES(bound_steps[2], INT64_MAX - 1, "bound_steps = ");
-    REFUSES(account.put[1], (double)NAN, "account = nan");
+    REFUSES(energy.entry[1].supplied, (double)NAN, "energy = nan");
     first.kind[KIND_FLUID].ax[7] = (double)NAN;
     refuses("block ax holds nan for fluid particle 7");
     first.kind[KIND_FLUID].ax[7] = 0;
-    REFUSES(account.step_work[1], -1, "account = -1");
-    REFUSES(account.region[0], -2, "account = -2");
+    REFUSES(energy.entry[1].work_change, -1, "energy = -1");
+    REFUSES(energy.entry[0].region, -2, "section 0 refers to region -2");
     first.kind[KIND_SOLID].body[5] = 1;
     refuses("solid particle 5 belongs to section 1, but the case has sections 0 to 0");
     first.kind[KIND_SOLID].body[5] = -1;

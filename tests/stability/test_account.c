@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The account of energy by regions (T-46): gains are found after losses and beside other scenes, and work on
  * what is at rest is no gain. */
-#include "time/account.h"
+#include "time/energy.h"
 #include "time/guards.h"
 #include "rig.h"
 #include "unity.h"
@@ -52,7 +52,7 @@ static enum err run(const char *text, const char *set, double end)
 {
     rig_open(&rig, text, set, NULL);
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     rig.diag = (struct diag){.warn = note};
     warnings = 0;
     return go_on(end);
@@ -60,7 +60,7 @@ static enum err run(const char *text, const char *set, double end)
 
 static double region(enum kind kind, int section)
 {
-    return rig.sim.state.account.region[account_entry(kind, section)];
+    return rig.sim.state.energy.entry[energy_entry(kind, section)].region;
 }
 
 /* Energy put into the plate after the column has lost much of its own: the plate's region is named, the
@@ -91,17 +91,17 @@ static void test_regions_that_meet(void)
         "shape = box 0.1, 0, 0.15, 0.05\nvelocity = 0, 0\n[domain]\nlower = -1, -1\nupper = 2, 2\n";
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(jets, NULL, 0.02));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) != region(KIND_FLUID, 1));
-    struct account *const a = &rig.sim.state.account;
-    const int other = account_entry(KIND_FLUID, 1);
-    const double lost = a->low[TERM_ALL][0] + a->low[TERM_ALL][other];
-    a->spent[0] -= 1; /* a loss of one that the other does not know */
+    struct energy_account *const a = &rig.sim.state.energy;
+    const int other = energy_entry(KIND_FLUID, 1);
+    const double lost = a->entry[0].lowest[TERM_ALL] + a->entry[other].lowest[TERM_ALL];
+    a->entry[0].dissipated -= 1; /* a loss of one that the other does not know */
     TEST_ASSERT_EQUAL_INT(ERR_OK, go_on(0.1));
     TEST_ASSERT_TRUE(region(KIND_FLUID, 0) == region(KIND_FLUID, 1));
     TEST_ASSERT_EQUAL_INT(0, warnings);
-    account_gain(&rig.sim);
-    assert_at_most(lost - 1, a->low[TERM_ALL][0], "lowest of both");
-    assert_near(1e-12, a->spent[0] + a->spent[other], a->low[TERM_DISSIPATION][0],
-                "lowest dissipation");
+    energy_find_gain(&rig.sim);
+    assert_at_most(lost - 1, a->entry[0].lowest[TERM_ALL], "lowest of both");
+    assert_near(1e-12, a->entry[0].dissipated + a->entry[other].dissipated,
+                a->entry[0].lowest[TERM_DISSIPATION], "lowest dissipation");
 }
 
 /* Whether fluid b, of 3 x 3 particles, is in the region of fluid a, of 10 x 10 in 0 to 0.05 m, when its box
@@ -115,7 +115,7 @@ static bool meets(double x, double y)
              "shape = box %g, %g, %g, %g\n[domain]\nlower = -1, -1\nupper = 2, 2\n",
              x, y, x + 0.015, y + 0.015);
     TEST_ASSERT_EQUAL_INT(ERR_OK, run(text, NULL, 1e-3));
-    account_gain(&rig.sim);
+    energy_find_gain(&rig.sim);
     return region(KIND_FLUID, 0) == region(KIND_FLUID, 1);
 }
 
@@ -145,7 +145,7 @@ static void test_bodies_in_contact_are_one_region(void)
     for (int64_t i = 0; i < p->n; i++)
         if (p->body[i]) p->ux[i] = -0.012;
     contact_forget(&rig.sim.contact, &rig.sim.kind[KIND_WALL]);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 1));
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) == region(KIND_SOLID, 2));
 }
@@ -191,7 +191,7 @@ static void test_work_on_what_rests(void)
 }
 
 /* A body at rest in which particles have moved at random, by a fraction of their spacing. */
-static struct gain gain_of_noise(double fraction)
+static struct energy_gain gain_of_noise(double fraction)
 {
     static const char rest[] =
         "dp = 5 mm\nend_time = 1\n[solid block]\nshape = box 0, 0, 0.06, 0.06\n"
@@ -201,14 +201,14 @@ static struct gain gain_of_noise(double fraction)
     uint64_t seed = 1;
     for (int64_t i = 0; i < p->n; i++) p->ux[i] += 5e-3 * fraction * noise(&seed);
     solid_stress(&rig.sim.solid, p);
-    return account_gain(&rig.sim);
+    return energy_find_gain(&rig.sim);
 }
 
 /* Round-off of positions, as of two bodies in contact that begin at rest without gravity, is no gain. */
 static void test_round_off_is_no_gain(void)
 {
     TEST_ASSERT_EQUAL_INT(-1, gain_of_noise(1e-14).entry);
-    TEST_ASSERT_EQUAL_INT(account_entry(KIND_SOLID, 0), gain_of_noise(1e-6).entry);
+    TEST_ASSERT_EQUAL_INT(energy_entry(KIND_SOLID, 0), gain_of_noise(1e-6).entry);
 }
 
 /* Work, losses and energies of the regions add up to the ledger's. */
@@ -224,7 +224,8 @@ static void test_regions_add_up(void)
     TEST_ASSERT_TRUE(region(KIND_SOLID, 0) != region(KIND_SOLID, 1));
     const struct ledger row = simulation_ledger(&rig.sim);
     double put = 0;
-    for (int k = 0; k < 2; k++) put += rig.sim.state.account.put[account_entry(KIND_SOLID, k)];
+    for (int k = 0; k < 2; k++)
+        put += rig.sim.state.energy.entry[energy_entry(KIND_SOLID, k)].supplied;
     assert_near(1e-12 * fabs(put), rig.sim.state.energy_start + rig.sim.state.wall_work, put,
                 "put");
     TEST_ASSERT_TRUE(fabs(row.dissipated) < 1);

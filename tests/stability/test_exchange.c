@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "rig.h"
-#include "time/account.h"
+#include "time/energy.h"
 #include "coupling/motion.h"
 #include "coupling/bounds.h"
 #include "time/timestep.h"
@@ -105,12 +105,12 @@ static double gain_of_exchange(const char *step, double rows)
 {
     rig_open(&rig, shaken, step, NULL);
     rig_ignore_gains(&rig);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     for (int k = 1; k <= round(6e-3 / rows); k++) rig_run(&rig, k * rows);
     simulation_refresh(&rig.sim);
-    account_gain(&rig.sim);
-    const struct account *const a = &rig.sim.state.account;
-    return a->most[TERM_INTERFACE] / a->top;
+    energy_find_gain(&rig.sim);
+    const struct energy_account *const a = &rig.sim.state.energy;
+    return a->most[TERM_INTERFACE] / a->largest_available;
 }
 
 /* It falls by 3 with half of the step. It is the same whether the case or outputs set the step (T-35e): with

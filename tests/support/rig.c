@@ -131,5 +131,5 @@ void assert_at_most(double limit, double value, const char *what)
 void rig_ignore_gains(struct rig *r)
 {
     /* The rounding of such a sum is above any gain. */
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++) r->sim.state.account.put[k] = 1e30;
+    for (int k = 0; k < ENERGY_ENTRIES; k++) r->sim.state.energy.entry[k].supplied = 1e30;
 }

@@ -56,7 +56,7 @@ void assert_near(double tolerance, double expected, double actual, const char *w
 void assert_at_most(double limit, double value, const char *what);
 
 /* Tests put energy into the state: no gain of energy stops a run that a rig has opened, unless the
- * account begins again (account_begin). */
+ * account begins again (energy_begin). */
 void rig_ignore_gains(struct rig *r);
 
 #endif

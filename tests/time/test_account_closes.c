@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  * The account of energy (T-46a to T-46d): what does not close is the error of the time integration,
  * which falls with the step, and a run that becomes unstable is named as soon as it does. */
-#include "time/account.h"
+#include "time/energy.h"
 #include "time/guards.h"
 #include "time/repulsion.h"
 #include "rig.h"
@@ -49,7 +49,7 @@ static void begin(const char *text, const char *set, const char *another, const 
 {
     rig_open(&rig, text, set, another, third, NULL);
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     rig.diag = (struct diag){.warn = note};
     named = 0;
 }
@@ -63,25 +63,26 @@ static void go_on(double end)
 
 /* The largest size of a term at the checks of a run, over the available energy, with a step
  * that is a fraction of the stable one. */
-static double remainder_of(const char *text, const char *integrator, enum account_term term,
+static double remainder_of(const char *text, const char *integrator, enum energy_term term,
                            const char *key, double fraction, double end)
 {
     char step[64];
     snprintf(step, sizeof step, "%s=%g", key, fraction);
     begin(text, integrator, step, NULL);
-    const struct account *const a = &rig.sim.state.account;
+    const struct energy_account *const a = &rig.sim.state.energy;
     double available = 0, most = 0;
     while (rig.sim.state.time < end) {
         go_on(fmin(end, rig.sim.state.time + 1e-3));
         most = fmax(most, fabs(a->now[term]));
     }
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++) available = fmax(available, a->available[term][k]);
+    for (int k = 0; k < ENERGY_ENTRIES; k++)
+        available = fmax(available, a->entry[k].available[term]);
     TEST_ASSERT_TRUE(available > 1e-3);
     TEST_ASSERT_TRUE_MESSAGE(named == 0, warning);
     return most / available;
 }
 
-static void falls(const char *text, enum account_term term, const char *key, double coarse,
+static void falls(const char *text, enum energy_term term, const char *key, double coarse,
                   double end, double most)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
@@ -115,10 +116,11 @@ static void test_the_terms_add_up(void)
         const struct ledger first = simulation_ledger(&rig.sim);
         go_on(0.02);
         const struct ledger last = simulation_ledger(&rig.sim);
-        account_gain(&rig.sim);
-        const struct account *const a = &rig.sim.state.account;
+        energy_find_gain(&rig.sim);
+        const struct energy_account *const a = &rig.sim.state.energy;
         double lost = 0;
-        for (int e = 0; e < ACCOUNT_ENTRIES; e++) lost += a->spent[e] + a->dummies[e];
+        for (int e = 0; e < ENERGY_ENTRIES; e++)
+            lost += a->entry[e].dissipated + a->entry[e].dummies;
         const double available = first.internal + last.kinetic + last.elastic;
         assert_near(0.01 * available, last.dissipated - first.dissipated, -lost, integrators[k]);
         rig_close(&rig);
@@ -138,7 +140,7 @@ static void test_repulsion_is_counted(void)
 {
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         begin(drop, integrators[k], "scheme=standard", "drop.max_speed=10");
-        const struct account *const a = &rig.sim.state.account;
+        const struct energy_account *const a = &rig.sim.state.energy;
         double held[SCENE_MAX_SECTIONS], most = 0;
         while (rig.sim.state.time < 0.035) {
             go_on(rig.sim.state.time + 1e-3);
@@ -146,10 +148,10 @@ static void test_repulsion_is_counted(void)
             most = fmax(most, held[0]);
         }
         printf("%s: held %.3f, gained %.2e, of the available energy\n", integrators[k],
-               most / a->top, a->most[TERM_ALL] / a->top);
-        TEST_ASSERT_TRUE(most > 0.02 * a->top);
-        assert_at_most(1e-3 * a->top, a->most[TERM_ALL], integrators[k]);
-        assert_at_most(1e-3 * a->top, a->most[TERM_FLUID], integrators[k]);
+               most / a->largest_available, a->most[TERM_ALL] / a->largest_available);
+        TEST_ASSERT_TRUE(most > 0.02 * a->largest_available);
+        assert_at_most(1e-3 * a->largest_available, a->most[TERM_ALL], integrators[k]);
+        assert_at_most(1e-3 * a->largest_available, a->most[TERM_FLUID], integrators[k]);
         rig_close(&rig);
     }
 }
@@ -191,11 +193,11 @@ static void test_restarts_of_verlet(void)
         begin(plain_drop, "integrator=verlet", "drop.max_speed=6",
               k ? "numerics.verlet_reset=160" : "numerics.verlet_reset=40");
         go_on(0.03);
-        const struct account *const a = &rig.sim.state.account;
-        gained[k] = a->restarts[account_entry(KIND_FLUID, 0)] / a->top;
+        const struct energy_account *const a = &rig.sim.state.energy;
+        gained[k] = a->entry[energy_entry(KIND_FLUID, 0)].restarts / a->largest_available;
         printf("verlet_reset %d: restarts %.2e, the fluid's term %.2e\n", k ? 160 : 40, gained[k],
-               a->most[TERM_FLUID] / a->top);
-        assert_at_most(3e-4 * a->top, a->most[TERM_FLUID], "fluid");
+               a->most[TERM_FLUID] / a->largest_available);
+        assert_at_most(3e-4 * a->largest_available, a->most[TERM_FLUID], "fluid");
         rig_close(&rig);
     }
     TEST_ASSERT_TRUE(gained[0] > 1e-3);
@@ -209,8 +211,8 @@ static void test_the_damper_dissipates(void)
     for (size_t k = 0; k < COUNT_OF(integrators); k++) {
         begin(drop, integrators[k], NULL, NULL);
         go_on(0.02);
-        const struct account *const a = &rig.sim.state.account;
-        assert_at_most(1e-4 * a->top, a->most[TERM_DISSIPATION], integrators[k]);
+        const struct energy_account *const a = &rig.sim.state.energy;
+        assert_at_most(1e-4 * a->largest_available, a->most[TERM_DISSIPATION], integrators[k]);
         rig_close(&rig);
     }
 }
@@ -226,10 +228,10 @@ static void test_what_the_damper_holds(void)
     double held = 0;
     for (int64_t i = 0; i < p->n; i++)
         held += 0.5 * k->mass * square(k->c0 * (p->dens[i] - p->dens_slow[i]));
-    account_gain(&rig.sim);
-    const struct account *const a = &rig.sim.state.account;
+    energy_find_gain(&rig.sim);
+    const struct energy_account *const a = &rig.sim.state.energy;
     TEST_ASSERT_TRUE(held > 1e-4);
-    assert_near(1e-9 * held, a->spent[account_entry(KIND_FLUID, 0)] + held,
+    assert_near(1e-9 * held, a->entry[energy_entry(KIND_FLUID, 0)].dissipated + held,
                 a->now[TERM_DISSIPATION], "dissipation");
 }
 
@@ -238,15 +240,15 @@ static void test_energies_beside_a_gain(void)
 {
     begin(beam, "beam.hourglass=50", NULL, NULL);
     go_on(0.03);
-    rig.sim.state.account.low[TERM_SOLID][account_entry(KIND_SOLID, 0)] -= 1;
+    rig.sim.state.energy.entry[energy_entry(KIND_SOLID, 0)].lowest[TERM_SOLID] -= 1;
     const struct ledger now = simulation_ledger(&rig.sim);
-    const struct gain g = account_gain(&rig.sim);
-    TEST_ASSERT_EQUAL_INT(account_entry(KIND_SOLID, 0), g.entry);
+    const struct energy_gain g = energy_find_gain(&rig.sim);
+    TEST_ASSERT_EQUAL_INT(energy_entry(KIND_SOLID, 0), g.entry);
     TEST_ASSERT_TRUE(now.hourglass > 1e-6 * now.elastic);
-    assert_near(1e-9 * now.kinetic, now.kinetic, g.kinetic, "kinetic");
-    assert_near(1e-9 * now.elastic, now.elastic, g.elastic, "elastic");
-    assert_near(1e-9 * now.hourglass, now.hourglass, g.hourglass, "hourglass");
-    assert_near(0, 0, g.internal, "internal");
+    assert_near(1e-9 * now.kinetic, now.kinetic, g.now.kinetic, "kinetic");
+    assert_near(1e-9 * now.elastic, now.elastic, g.now.elastic, "elastic");
+    assert_near(1e-9 * now.hourglass, now.hourglass, g.now.hourglass, "hourglass");
+    assert_near(0, 0, g.now.internal, "internal");
 }
 
 /* A solid whose bound is forgotten: named within 5 ms and before a tenth of the available energy is
@@ -281,12 +283,12 @@ static void test_a_gain_at_the_interface_is_named(void)
     begin(tanks, "integrator=leapfrog", NULL, NULL);
     go_on(0.03);
     TEST_ASSERT_TRUE(named == 0);
-    struct account *const a = &rig.sim.state.account;
+    struct energy_account *const a = &rig.sim.state.energy;
     const double start = rig.sim.state.time;
     double available = 0;
-    for (int k = 0; k < ACCOUNT_ENTRIES; k++)
-        available = fmax(available, a->available[TERM_INTERFACE][k]);
-    a->exchange[account_entry(KIND_SOLID, 0)] += 0.02 * available;
+    for (int k = 0; k < ENERGY_ENTRIES; k++)
+        available = fmax(available, a->entry[k].available[TERM_INTERFACE]);
+    a->entry[energy_entry(KIND_SOLID, 0)].interface += 0.02 * available;
     go_on(start + 6e-3);
     TEST_ASSERT_TRUE(named > 0);
     assert_at_most(5e-3, named - start, "time until it is named");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * The guards: a state that is not sound is found, and the sentence names particle, place, quantity. */
-#include "time/account.h"
+#include "time/energy.h"
 #include "time/guards.h"
 
 #include "time/advance.h"
@@ -243,22 +243,22 @@ static void test_fluid_inside_of_bodies(void)
 
 static int only_region(void)
 {
-    return (int)rig.sim.state.account.region[account_entry(KIND_SOLID, 0)];
+    return (int)rig.sim.state.energy.entry[energy_entry(KIND_SOLID, 0)].region;
 }
 
 /* Checks the account after lowering what a term of the only region has been at least by a share of
  * its available energy; without what dummies could return. */
-static enum err check_with_gain(enum account_term term, double share)
+static enum err check_with_gain(enum energy_term term, double share)
 {
-    struct account *const a = &rig.sim.state.account;
+    struct energy_account *const a = &rig.sim.state.energy;
     simulation_refresh(&rig.sim);
-    account_gain(&rig.sim);
-    if (term == TERM_ALL) a->low[term][only_region()] = a->spent[0];
-    a->low[term][only_region()] -= share * a->available[term][only_region()];
-    rig.sim.gain = account_gain(&rig.sim);
-    rig.sim.checked = true;
+    energy_find_gain(&rig.sim);
+    if (term == TERM_ALL) a->entry[only_region()].lowest[term] = a->entry[0].dissipated;
+    a->entry[only_region()].lowest[term] -= share * a->entry[only_region()].available[term];
+    rig.sim.gain = energy_find_gain(&rig.sim);
+    rig.sim.gain_found = true;
     rig.sim.state.gain_since = rig.sim.state.time - 3e-3;
-    return guards_energy(&rig.sim, &rig.diag);
+    return energy_guard(&rig.sim, &rig.diag);
 }
 
 /* A gain of a hundredth is a warning, once; nine tenths are the end, but not at the
@@ -266,7 +266,7 @@ static enum err check_with_gain(enum account_term term, double share)
 static void test_energy_that_is_gained(void)
 {
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.009));
     TEST_ASSERT_EQUAL_INT(0, warnings);
     TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain(TERM_INTERFACE, 0.002));
@@ -294,16 +294,16 @@ static void test_a_gain_that_lasts(void)
     for (size_t k = 0; k < COUNT_OF(seen); k++) {
         warnings = 0;
         rig.sim.guard.warned_energy = false;
-        rig.sim.gain = (struct gain){.entry = 0, .energy = seen[k].share, .available = 1};
-        rig.sim.checked = true;
+        rig.sim.gain = (struct energy_gain){.entry = 0, .energy = seen[k].share, .available = 1};
+        rig.sim.gain_found = true;
         rig.sim.state.gain_since = rig.sim.state.time - seen[k].since;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
         TEST_ASSERT_EQUAL_INT(seen[k].warned, warnings);
     }
     rig.sim.gain.energy = 0.005;
-    rig.sim.checked = true;
+    rig.sim.gain_found = true;
     rig.sim.state.gain_since = 0;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_TRUE(rig.sim.state.gain_since == rig.sim.state.time);
 }
 
@@ -316,12 +316,12 @@ static void test_terms_apart(void)
                                         [TERM_SOLID] = "the solid's",
                                         [TERM_RESTARTS] = "Euler steps",
                                         [TERM_ALL] = "boundaries"};
-    for (int t = 0; t < ACCOUNT_TERMS; t++) {
+    for (int t = 0; t < ENERGY_TERMS; t++) {
         simulation_refresh(&rig.sim);
-        account_begin(&rig.sim);
+        energy_begin(&rig.sim);
         rig.sim.guard.warned_energy = false;
-        rig.sim.state.account.spent[0] -= 3;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain((enum account_term)t, 0.02));
+        rig.sim.state.energy.entry[0].dissipated -= 3;
+        TEST_ASSERT_EQUAL_INT(ERR_OK, check_with_gain((enum energy_term)t, 0.02));
         TEST_ASSERT_EQUAL_INT(t + 1, warnings);
         TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning, names[t]), warning);
         TEST_ASSERT_TRUE(!strstr(warning, "; a smaller dp ") == (t != TERM_ALL));
@@ -336,9 +336,9 @@ static void test_a_gain_between_bodies(void)
         rig.sim.guard.warned_energy = false;
         rig.sim.effects |= FX_CONTACT;
         rig.sim.contact.near = near;
-        rig.sim.gain = (struct gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
-        rig.sim.checked = true;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+        rig.sim.gain = (struct energy_gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
+        rig.sim.gain_found = true;
+        TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(
             strstr(warning, near ? "; a smaller dp or a larger gap in [contact] may help"
                                  : "; a smaller dp may help"),
@@ -346,10 +346,10 @@ static void test_a_gain_between_bodies(void)
     }
     rig.sim.guard.warned_energy = false;
     rig.sim.effects &= ~(effect_set)FX_GRAVITY;
-    rig.sim.gain = (struct gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
+    rig.sim.gain = (struct energy_gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
     rig.sim.contact.near = false;
-    rig.sim.checked = true;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
+    rig.sim.gain_found = true;
+    TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning,
                                         "; a smaller dp or numerics.suction = on may help"),
                                  warning);
@@ -361,13 +361,13 @@ static void advises(const char *text, const char *what, const char *set, const c
     rig_steps(&rig, 1, 1);
     rig_steps(&rig, 1, rig.sim.state.time + 1e-9); /* a short step before an output says nothing */
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
     rig.sim.kind[rig.sim.effects & FX_FLUID ? KIND_FLUID : KIND_SOLID].vx[0] = 5;
     rig.diag = (struct diag){.warn = note};
     simulation_refresh(&rig.sim);
-    rig.sim.gain = account_gain(&rig.sim);
-    rig.sim.checked = true;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_energy(&rig.sim, &rig.diag));
+    rig.sim.gain = energy_find_gain(&rig.sim);
+    rig.sim.gain_found = true;
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, energy_guard(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
 }
 

@@ -3,7 +3,7 @@
 #include "time/tension.h"
 
 #include "output/checkpoint.h"
-#include "time/account.h"
+#include "time/energy.h"
 #include "time/advance.h"
 #include "rig.h"
 #include "unity.h"
@@ -137,7 +137,7 @@ static void open_drop(const char *integrator, const char *cfl)
         fluid->dens[i] = -0.08;
     }
     simulation_refresh(&rig.sim);
-    account_begin(&rig.sim);
+    energy_begin(&rig.sim);
 }
 
 /* What the fluid's term of the account has after the resets, over the energy lost. */
@@ -145,10 +145,10 @@ static double off_account(const char *integrator, const char *cfl)
 {
     open_drop(integrator, cfl);
     while (rig.sim.state.tension_limited < 3) rig_steps(&rig, 1, 1);
-    const double *const now = rig.sim.state.account.now;
+    const double *const now = rig.sim.state.energy.now;
     rig_steps(&rig, 4, 1);
     simulation_refresh(&rig.sim);
-    account_gain(&rig.sim);
+    energy_find_gain(&rig.sim);
     const double off = fabs(now[TERM_FLUID] / now[TERM_DISSIPATION]);
     printf("%s, %s: %.2e of the energy lost\n", integrator, cfl, off);
     return off;
@@ -189,8 +189,8 @@ static void assert_same_after_restart(const char *integrator, int cut)
     }
     const struct ledger whole = simulation_ledger(&rig.sim), later = simulation_ledger(&again);
     TEST_ASSERT_TRUE(rig.sim.state.tension_limited >= 3);
-    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&rig.sim.state.account, &again.state.account,
-                                     sizeof again.state.account, integrator);
+    TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&rig.sim.state.energy, &again.state.energy,
+                                     sizeof again.state.energy, integrator);
     TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&whole, &later, sizeof later, integrator);
     TEST_ASSERT_TRUE_MESSAGE(simulation_hash(&rig.sim) == simulation_hash(&again), integrator);
     simulation_free(&again);

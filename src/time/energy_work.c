@@ -1,0 +1,324 @@
+/* SPDX-License-Identifier: MIT
+ * What each step adds to the account of energy: the work of all rates as the integrator applies
+ * them (T-46a to T-46c). */
+#include <math.h>
+#include <string.h>
+
+#include "fluid/eos.h"
+#include "time/energy.h"
+#include "time/state.h"
+
+static struct energy_entry *entry_of(struct simulation *sim, enum kind kind, int section)
+{
+    return &sim->state.energy.entry[energy_entry(kind, section)];
+}
+
+static bool keeps_account(const struct simulation *sim) { return sim->effects & FX_ENERGY_ACCOUNT; }
+
+/* --- sums over the fluid --- */
+
+/* Power of all rates on a particle (T-46a); that of walls and structures; energy of position and
+ * compression. */
+enum quantity { POWER, BODY_POWER, STATIC_ENERGY };
+
+/* Eight particles abreast, over a fixed number of slices: the order of the sums is the same on
+ * every machine and with any number of threads. */
+enum { ABREAST = 8, SLICES = 16 };
+
+/* P/rho^2 rho0, m^2/s^2: the rate at which the energy of compression changes with the density. */
+SPHFSI_INLINE double compression_rate(double dens, double c0)
+{
+    return c0 * c0 / EOS_GAMMA * eos_power(dens) / ((1 + dens) * (1 + dens));
+}
+
+/* The quantity of `count` particles from i on. */
+SPHFSI_INLINE void find_values(const struct simulation *sim, enum quantity quantity, int64_t i,
+                               int count, double *value)
+{
+    const struct particles p = sim->kind[KIND_FLUID];
+    const double c0 = sim->fluid.k.c0, mass = sim->fluid.k.mass;
+    const double gx = sim->scene->top.gravity[0], gy = sim->scene->top.gravity[1];
+    if (quantity == BODY_POWER) {
+        for (int r = 0; r < count; r++) value[r] = p.body_power[i + r];
+        return;
+    }
+    if (quantity == POWER) {
+#pragma omp simd
+        for (int64_t k = i; k < i + count; k++)
+            value[k - i] = mass * (p.vx[k] * (p.ax[k] - gx) + p.vy[k] * (p.ay[k] - gy) +
+                                   compression_rate(p.dens[k], c0) * p.ddens[k]);
+    } else {
+#pragma omp simd
+        for (int64_t k = i; k < i + count; k++)
+            value[k - i] = mass * (eos_energy(p.dens[k], c0) - gx * p.x[k] - gy * p.y[k]);
+    }
+    for (int r = 0; r < count && p.m; r++) value[r] *= p.m[i + r];
+}
+
+static void sum_slice(const struct simulation *sim, enum quantity quantity, int64_t from,
+                      int64_t end, double of[SCENE_MAX_SECTIONS])
+{
+    const int32_t *const section = sim->kind[KIND_FLUID].body;
+    const bool one = sim->scene->n_fluid == 1;
+    double value[ABREAST], sum[ABREAST] = {0};
+    int64_t i = from;
+    for (; i + ABREAST <= end; i += ABREAST) {
+        find_values(sim, quantity, i, ABREAST, value);
+        for (int r = 0; r < ABREAST && one; r++) sum[r] += value[r];
+        for (int r = 0; r < ABREAST && !one; r++) of[section[i + r]] += value[r];
+    }
+    find_values(sim, quantity, i, (int)(end - i), value);
+    for (int r = 0; r < end - i; r++) of[section[i + r]] += value[r];
+    for (int r = 0; r < ABREAST; r++) of[0] += sum[r];
+}
+
+static void sum_fluid(const struct simulation *sim, enum quantity quantity,
+                      double of[SCENE_MAX_SECTIONS])
+{
+    const int64_t n = sim->kind[KIND_FLUID].n;
+    double part[SLICES][SCENE_MAX_SECTIONS];
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+#pragma omp parallel for schedule(static) num_threads(sim->fluid.threads)
+    for (int m = 0; m < SLICES; m++) {
+        memset(part[m], 0, sizeof part[m]);
+        sum_slice(sim, quantity, n * m / SLICES, n * (m + 1) / SLICES, part[m]);
+    }
+    for (int m = 0; m < SLICES; m++)
+        for (int k = 0; k < sim->scene->n_fluid; k++) of[k] += part[m][k];
+}
+
+/* --- rates --- */
+
+/* Power of the rates of the last evaluation, W/m: of all rates on a fluid, of walls and structures
+ * on it, and of sources outside the scene; of the fluid's force on structures at the velocity that
+ * it uses. */
+struct powers {
+    double total[SCENE_MAX_SECTIONS], bodies[SCENE_MAX_SECTIONS], outside[SCENE_MAX_SECTIONS];
+    double on_structure[SCENE_MAX_SECTIONS];
+};
+
+/* Of a program, of gravity beyond its value at t = 0, and of the constraint at open boundaries. */
+static void find_outside_power(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct external *const external = &sim->external[KIND_FLUID];
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double gx = k->gravity[0] - sim->scene->top.gravity[0],
+                 gy = k->gravity[1] - sim->scene->top.gravity[1];
+    if (sim->gravity_varies || external->at)
+        for (int64_t i = 0; i < p->n; i++) {
+            const double ax = gx + (external->at ? external->ax[i] : 0),
+                         ay = gy + (external->at ? external->ay[i] : 0);
+            of[p->body[i]] += particle_mass(k, p, i) * (ax * p->vx[i] + ay * p->vy[i]);
+        }
+    for (int b = 0; b < sim->open.n && sim->effects & FX_OPEN; b++)
+        of[0] += sim->open.rate[b].power;
+}
+
+static void find_powers(const struct simulation *sim, struct powers *power)
+{
+    const struct particles *const solid = &sim->kind[KIND_SOLID];
+    memset(power, 0, sizeof *power);
+    sum_fluid(sim, POWER, power->total);
+    if (sim->effects & (FX_WALL | FX_COUPLING)) sum_fluid(sim, BODY_POWER, power->bodies);
+    find_outside_power(sim, power->outside);
+    for (int64_t i = 0; i < solid->n && sim->effects & FX_COUPLING; i++)
+        power->on_structure[solid->body[i]] +=
+            solid->fx[i] * solid->wx[i] + solid->fy[i] * solid->wy[i];
+}
+
+static void integrate(struct simulation *sim, const struct powers *power, double dt)
+{
+    for (int k = 0; k < sim->scene->n_fluid; k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_FLUID, k);
+        e->supplied += dt * power->total[k];
+        e->dissipated += dt * (power->total[k] - power->bodies[k] - power->outside[k]);
+        e->dummies += dt * power->bodies[k];
+    }
+    for (int k = 0; k < sim->scene->n_solid; k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_SOLID, k);
+        e->dummies += dt * power->on_structure[k];
+        e->interface -= dt * power->on_structure[k];
+    }
+    for (int k = 0; k < sim->wall_motion.n; k++) {
+        const struct moving_wall *const wall = &sim->wall_motion.body[k];
+        entry_of(sim, KIND_WALL, wall->section)->dummies -=
+            dt * moving_wall_power(wall, &sim->kind[KIND_WALL]);
+    }
+}
+
+/* The work of a step: its change bounds the error of the sums over steps. */
+static void note_work(struct energy_entry *e, enum work_source source, double work)
+{
+    e->work_change = max2(e->work_change, fabs(work - e->last_work[source]));
+    e->last_work[source] = work;
+}
+
+static void note_fluid_work(struct simulation *sim, const struct powers *power, double dt)
+{
+    for (int k = 0; k < sim->scene->n_fluid; k++)
+        note_work(entry_of(sim, KIND_FLUID, k), WORK_OF_FLUID, dt * power->total[k]);
+}
+
+void energy_of_step(struct simulation *sim, double dt)
+{
+    struct energy_account *const account = &sim->state.energy;
+    struct powers power;
+    if (!keeps_account(sim)) return;
+    find_powers(sim, &power);
+    integrate(sim, &power, account->pending);
+    note_fluid_work(sim, &power, dt);
+    energy_test_due(sim);
+    account->pending = 0.5 * dt;
+    integrate(sim, &power, account->pending);
+}
+
+void energy_of_midpoint(struct simulation *sim, double dt)
+{
+    struct powers power;
+    if (!keeps_account(sim)) return;
+    find_powers(sim, &power);
+    integrate(sim, &power, dt);
+    note_fluid_work(sim, &power, dt);
+}
+
+/* --- Verlet --- */
+
+void energy_alternating(const struct simulation *sim, double of[SCENE_MAX_SECTIONS])
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const struct fluid_constants *const k = &sim->fluid.k;
+    const double since = sim->state.dt;
+    memset(of, 0, SCENE_MAX_SECTIONS * sizeof *of);
+    for (int64_t i = 0; i < p->n && p->vx_old; i++) {
+        if (p->open && p->open[i]) continue; /* set anew at each evaluation */
+        const double u = p->vx_old[i] + since * p->ax[i], v = p->vy_old[i] + since * p->ay[i];
+        const double d = p->dens_old[i] + since * p->ddens[i];
+        of[p->body[i]] += 0.5 * particle_mass(k, p, i) *
+                          (0.5 * (square(p->vx[i]) + square(p->vy[i]) - square(u) - square(v)) +
+                           eos_energy(p->dens[i], k->c0) - eos_energy(d, k->c0));
+    }
+}
+
+void energy_of_restart(struct simulation *sim)
+{
+    double lost[SCENE_MAX_SECTIONS];
+    if (!keeps_account(sim)) return;
+    energy_alternating(sim, lost);
+    for (int k = 0; k < sim->scene->n_fluid; k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_FLUID, k);
+        e->supplied += lost[k];
+        e->restarts += lost[k];
+    }
+}
+
+/* --- changes at once --- */
+
+static void dissipate(struct simulation *sim, int section, double loss)
+{
+    struct energy_entry *const e = entry_of(sim, KIND_FLUID, section);
+    e->supplied -= loss;
+    e->dissipated -= loss;
+}
+
+void energy_before_shift(const struct simulation *sim, double energy[SCENE_MAX_SECTIONS])
+{
+    if (keeps_account(sim)) sum_fluid(sim, STATIC_ENERGY, energy);
+}
+
+void energy_after_shift(struct simulation *sim, const double energy[SCENE_MAX_SECTIONS])
+{
+    double after[SCENE_MAX_SECTIONS];
+    if (!keeps_account(sim)) return;
+    sum_fluid(sim, STATIC_ENERGY, after);
+    for (int k = 0; k < sim->scene->n_fluid; k++) dissipate(sim, k, energy[k] - after[k]);
+}
+
+/* The rates of the last step have changed the density over the whole step, and half of this is
+ * still to be counted. That half will have no pressure: its work is counted here. By Verlet what is
+ * counted half a step before is the mean of both solutions' (T-46f). */
+void energy_drop_density(struct simulation *sim, int64_t i)
+{
+    const struct particles *const p = &sim->kind[KIND_FLUID];
+    const double c0 = sim->fluid.k.c0, d = p->dens[i];
+    if (!keeps_account(sim)) return;
+    const double rate = p->ddens_old ? p->ddens_old[i] : p->ddens[i];
+    const double half = sim->state.energy.pending * rate * compression_rate(d, c0);
+    const double held = p->dens_old ? 0.5 * (eos_energy(d, c0) + eos_energy(p->dens_old[i], c0))
+                                    : eos_energy(d, c0) - half;
+    dissipate(sim, p->body[i], particle_mass(&sim->fluid.k, p, i) * held);
+}
+
+void energy_supply(struct simulation *sim, enum kind kind, int section, double work)
+{
+    if (keeps_account(sim)) entry_of(sim, kind, section)->supplied += work;
+}
+
+/* --- the solid, and work from outside --- */
+
+void energy_of_solid(struct simulation *sim, double dt, int n, bool centred)
+{
+    const struct particles *const p = &sim->kind[KIND_SOLID];
+    const double *const *const external = sim->solid.external;
+    /* Work is done over the displacement by the mean velocities of the kicks (T-46c). Drifts after
+     * the kicks are longer by half a kick of the change of velocity. */
+    const double late = centred ? 0 : 0.5 * dt / n;
+    double fluid[SCENE_MAX_SECTIONS] = {0}, outside[SCENE_MAX_SECTIONS] = {0};
+    if (!keeps_account(sim)) return;
+    for (int64_t i = 0; i < p->n; i++) {
+        if (p->free[i] == 0) continue;
+        const double mass = sim->solid.body[p->body[i]].mass;
+        const double ux = p->ux[i] - p->x0[i] - late * (p->vx[i] - p->vx0[i]);
+        const double uy = p->uy[i] - p->y0[i] - late * (p->vy[i] - p->vy0[i]);
+        fluid[p->body[i]] += p->fx[i] * ux + p->fy[i] * uy;
+        if (sim->coupling.impedance > 0) fluid[p->body[i]] += mass * p->face_work[i]; /* T-35a */
+        if (external[0]) outside[p->body[i]] += mass * (external[0][i] * ux + external[1][i] * uy);
+    }
+    for (int k = 0; k < sim->scene->n_solid; k++) {
+        struct energy_entry *const e = entry_of(sim, KIND_SOLID, k);
+        e->supplied += fluid[k] + outside[k];
+        e->interface += fluid[k];
+        note_work(e, WORK_OF_FLUID, fluid[k] + outside[k]);
+    }
+}
+
+/* T-70: work in the last step of gravity beyond its value at t = 0, with the value at mid-step. The
+ * ledger has the potential energy of the value at t = 0. */
+static double gravity_work(struct simulation *sim)
+{
+    double g[2], px = 0, py = 0;
+    const double *const start = sim->scene->top.gravity;
+    const double dt = sim->state.dt;
+    scene_gravity_at(sim->scene, sim->state.time - 0.5 * dt, g);
+    const double gx = g[0] - start[0], gy = g[1] - start[1];
+    const struct particles *const fluid = &sim->kind[KIND_FLUID], *const p = &sim->kind[KIND_SOLID];
+    for (int64_t i = 0; i < fluid->n; i++) {
+        px += sim->fluid.k.mass * fluid->vx[i];
+        py += sim->fluid.k.mass * fluid->vy[i];
+    }
+    for (int64_t i = 0; i < p->n; i++) {
+        const double mass =
+            sim->scene->solid[p->body[i]].gravity * p->free[i] * sim->solid.body[p->body[i]].mass;
+        px += mass * p->vx[i];
+        py += mass * p->vy[i];
+        energy_supply(sim, KIND_SOLID, p->body[i], dt * mass * (gx * p->vx[i] + gy * p->vy[i]));
+    }
+    return dt * (gx * px + gy * py);
+}
+
+void energy_after_step(struct simulation *sim)
+{
+    double *const work = &sim->state.wall_work;
+    if (sim->effects & FX_MOTION && sim->effects & FX_FLUID)
+        *work += sim->state.dt * wall_motion_power(&sim->wall_motion, &sim->kind[KIND_WALL]);
+    if (sim->effects & FX_OPEN) sim->state.energy.open = open_energy(&sim->open);
+    *work += sim->solid.work;
+    sim->solid.work = 0;
+    for (int k = 0; k < sim->solid.n_bodies && keeps_account(sim); k++) {
+        energy_supply(sim, KIND_SOLID, k, sim->solid.work_on[k]);
+        note_work(entry_of(sim, KIND_SOLID, k), WORK_FROM_OUTSIDE, sim->solid.work_on[k]);
+        sim->solid.work_on[k] = 0;
+    }
+    if (sim->gravity_varies) *work += gravity_work(sim);
+    energy_join_touching(sim);
+}
