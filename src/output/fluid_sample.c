@@ -87,9 +87,10 @@ static double wetness(const struct simulation *sim, double x, double y)
     return at.fill / max2(1 - at.occupied, 0.05);
 }
 
-/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above has the
- * volume of that within reach. Unlike the height of half wetness it does not move when rows near the
- * surface do, while their mean height stays. `y` is the last wet height below the surface. */
+/* T-79, Gibbs' dividing surface: the height at which water that is full below and absent above
+ * has the volume of that within reach. Unlike the height of half wetness it does not move when
+ * rows near the surface do, while their mean height stays. `y` is the last wet height below
+ * the surface. */
 static double dividing_surface(const struct simulation *sim, double x, double y, double step)
 {
     const int reach = (int)(KERNEL_REACH * sim->fluid.k.h / step);
@@ -199,9 +200,9 @@ double fluid_flux(const struct simulation *sim, const double a[2], const double 
     const struct particles *const p = &sim->kind[KIND_FLUID];
     const struct flux_line line = flux_line(sim, a, b);
     const double tx = line.along[0], ty = line.along[1];
-    /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side is the least
-     * for which its sum over a lattice is exact. A wider strip would miss what flows into an opening
-     * round its edge. */
+    /* The mean over a strip, weighted by a cosine bell of area 1. One spacing to either side
+     * is the least for which its sum over a lattice is exact. A wider strip would miss what
+     * flows into an opening round its edge. */
     const double dp = sim->scene->top.dp, reach = dp;
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) {

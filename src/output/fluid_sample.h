@@ -6,8 +6,8 @@
 #include "time/state.h"
 
 /* The fluid at a fixed point, by the kernel over its particles within reach. Positions and
- * densities must be up to date, as they are between two steps; for the pressure accelerations as well, as
- * after simulation_refresh. */
+ * densities must be up to date, as they are between two steps; for the pressure accelerations
+ * as well, as after simulation_refresh. */
 struct sample {
     double fill;     /* sum V W of the fluid: about 1 inside it, 0.5 at its surface */
     double occupied; /* the same of walls and structures */
@@ -29,8 +29,8 @@ double fluid_front(const struct simulation *sim, int direction);
 
 /* Flow through the line from a to b, positive to the right of that direction, m^2/s per depth. */
 double fluid_flux(const struct simulation *sim, const double a[2], const double b[2]);
-/* Mean pressure along the line from a to b, Pa, and its force on a surface with the fluid to the left of the
- * line, N/m: the midpoint rule over pieces of at most dp. */
+/* Mean pressure along the line from a to b, Pa, and its force on a surface with the fluid to
+ * the left of the line, N/m: the midpoint rule over pieces of at most dp. */
 void fluid_pressure_on(const struct simulation *sim, const double a[2], const double b[2],
                        double out[3]);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Values of the fluid at points and lines: by hand in water at rest, and the same in a scene that is moved
- * anywhere, mirrored, or periodic. */
+ * Values of the fluid at points and lines: by hand in water at rest, and the same in a scene
+ * that is moved anywhere, mirrored, or periodic. */
 #include "output/fluid_sample.h"
 #include "rig.h"
 #include "unity.h"
@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Water 0.4 m wide and 0.2 m deep, and a splash of one particle beside it, with its lower left corner at a
- * place. */
+/* Water 0.4 m wide and 0.2 m deep, and a splash of one particle beside it, with its lower left
+ * corner at a place. */
 static const char tank[] =
     "dp = 1 cm\nend_time = 1\ngravity = 0, -10\n[constants]\nX = %g\nY = %g\n"
     "[fluid w]\nshape = box X, Y, X + 0.4, Y + 0.2\nshape = box X + 0.6, Y, X + 0.61, Y + 0.01\n"
@@ -70,8 +70,8 @@ static void test_anywhere(void)
     }
 }
 
-/* A point of a wall has fluid on one side of it only. Its pressure is that at the wall, not that in the
- * middle of the fluid within reach, here 0.6 spacings away. */
+/* A point of a wall has fluid on one side of it only. Its pressure is that at the wall, not
+ * that in the middle of the fluid within reach, here 0.6 spacings away. */
 static void test_pressure_at_a_wall(void)
 {
     for (size_t k = 0; k < COUNT_OF(places); k++) {
@@ -86,7 +86,8 @@ static void test_pressure_at_a_wall(void)
         assert_near(0.005 * 2000, 2000, fluid_pressure_at(s, x, y), "corner");
         assert_near(0.005 * 2000, 1000, side, "side");
         assert_near(0.005 * 2000, 50, fluid_pressure_at(s, x + 0.2, y + 0.195), "surface");
-        /* Beside air the slope is that of the fluid's acceleration, here none: the mean over the fluid. */
+        /* Beside air the slope is that of the fluid's acceleration, here none: the mean over
+         * the fluid. */
         for (int64_t i = 0; i < p->n; i++) p->ay[i] = -10;
         TEST_ASSERT_TRUE(fluid_pressure_at(s, x + 0.2, y + 0.195) > 70);
         assert_near(0.001 * floor, floor, fluid_pressure_at(s, x + 0.2, y), "floor at rest");
@@ -94,7 +95,8 @@ static void test_pressure_at_a_wall(void)
     }
 }
 
-/* Walls that are accelerated: no weight on a floor that falls freely, as much more on one that rises. */
+/* Walls that are accelerated: no weight on a floor that falls freely, as much more on one that
+ * rises. */
 static void test_pressure_at_a_moving_wall(void)
 {
     double floor[3];
@@ -126,8 +128,8 @@ static void test_flux_of_denser_water(void)
     assert_near(1e-12, flux / 1.1, fluid_flux(&rig.sim, from, to), "flux");
 }
 
-/* Water up to the top of the domain, and a surface just above it: the level is that of the water, not that of
- * the domain. */
+/* Water up to the top of the domain, and a surface just above it: the level is that of the
+ * water, not that of the domain. */
 static void test_level_at_the_top_of_the_domain(void)
 {
     rig_open(&rig,
@@ -143,8 +145,8 @@ static void test_level_at_the_top_of_the_domain(void)
     }
 }
 
-/* The volume of the water decides its level, not the heights of single rows; also where it is shallow, and
- * beside a wall. */
+/* The volume of the water decides its level, not the heights of single rows; also where it is
+ * shallow, and beside a wall. */
 static void test_level_of_volume(void)
 {
     open_at(0, 0);
