@@ -31,17 +31,12 @@ const char *csv_field(const char *line, int k, size_t *length)
 
 enum err csv_open(struct csv *c, const char *file)
 {
-    size_t size;
-    TRY(file_read(file, &c->text, &size, c->diag));
+    TRY(text_read(file, c->path, "a table", &c->text, c->diag));
     c->at = c->text;
     c->line = 0;
     c->lines = !*c->text;
     c->begun = false;
     for (const char *at = c->text; *at; at++) c->lines += *at == '\n' || !at[1];
-    const bool wide = strncmp(c->text, "\xFF\xFE", 2) == 0 || strncmp(c->text, "\xFE\xFF", 2) == 0;
-    if (strlen(c->text) < size)
-        return diag_add(c->diag, ERR_INPUT, "%s:%d: a zero byte; a table is plain text%s", c->path,
-                        c->lines, wide ? ", not UTF-16: save it as UTF-8" : "");
     if (c->lines > MAX_LINES)
         return diag_add(c->diag, ERR_INPUT, "%s: more than %d lines; use fewer rows", c->path,
                         MAX_LINES);

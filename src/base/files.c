@@ -76,6 +76,25 @@ enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d)
     return e;
 }
 
+enum err text_read(const char *path, const char *shown, const char *what, char **text,
+                   struct diag *d)
+{
+    struct diag why = {.code = ERR_OK};
+    size_t size;
+    const enum err e = file_read(path, text, &size, &why);
+    if (e) return diag_fail(d, e == ERR_MEMORY ? e : ERR_INPUT, "%s", why.text);
+    const size_t length = strlen(*text);
+    if (length == size) return ERR_OK;
+    int line = 1;
+    for (size_t k = 0; k < length; k++) line += (*text)[k] == '\n';
+    const bool wide = strncmp(*text, "\xFF\xFE", 2) == 0 || strncmp(*text, "\xFE\xFF", 2) == 0;
+    diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; %s is plain text%s", shown, line, what,
+              wide ? ", not UTF-16: save it as UTF-8" : "");
+    free(*text);
+    *text = NULL;
+    return ERR_INPUT;
+}
+
 enum err atomic_file_open(struct atomic_file *out, const char *folder, const char *name,
                           struct diag *d)
 {

@@ -26,6 +26,11 @@ enum err directory_sync(const char *path, struct diag *d) SPHFSI_CHECKED;
 /* Reads a whole file; `bytes` is malloc'd and followed by a 0 that `size` does not count. */
 enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d) SPHFSI_CHECKED;
 
+/* Reads a whole text file, ending with a 0; `shown` is its name in messages, `what` says what it should
+ * be. Any failure but of memory is ERR_INPUT. */
+enum err text_read(const char *path, const char *shown, const char *what, char **text,
+                   struct diag *d) SPHFSI_CHECKED;
+
 /* A file that is written as PATH.part and renamed to PATH when complete. */
 struct atomic_file {
     char path[PATH_BYTES], part[PATH_BYTES];

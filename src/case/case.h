@@ -95,9 +95,6 @@ enum err bad_entry(struct reader *r, const struct entry *e, const char *format, 
 enum err bad_value(struct reader *r, const struct entry *e, const char *format, ...)
     SPHFSI_PRINTF(3, 4);
 
-/* Warns: "FILE:LINE: ...". */
-void case_warn(const struct reader *r, int line, const char *format, ...) SPHFSI_PRINTF(3, 4);
-
 /* Replaces the error of invalid input already stored by ERR_OK, as long as more can be stored. */
 enum err case_go_on(const struct reader *r, enum err e) SPHFSI_CHECKED;
 /* Whether all lines, keys and values of a section are valid, or it is not given. */
@@ -148,6 +145,9 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: checks that involve several values. Those whose values depend on a problem already
  * stored are left out. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
+/* A name that no section has; `also`: another kind of section that may be meant; the same kind: none. */
+enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
+                         enum section_id kind, enum section_id also);
 /* case/check_motion.c */
 enum err case_check_motion(struct reader *r, const struct scene_motion *m) SPHFSI_CHECKED;
 /* case/open.c */

@@ -29,8 +29,8 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         "1e7; reduce `max_speed` or `max_pressure`",
                         f->common.name, *c0);
     if (*c0 < least * (1 - 1e-9))
-        case_warn(
-            r, line,
+        warn_at(
+            r->diag, r->scene, line,
             "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary "
             "by "
             "more than 1 %%",
@@ -39,8 +39,8 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
         return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; leave one out",
                         f->common.name);
     if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
-        case_warn(
-            r, line,
+        warn_at(
+            r->diag, r->scene, line,
             "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so the "
             "initial pressure is zero",
             f->common.name);
@@ -53,14 +53,14 @@ static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
     const int line = f->common.line;
     if (f->shifting_speed != SHIFTING_LARGEST) return;
     if (gravity[0] != 0 || gravity[1] != 0)
-        case_warn(r, line,
-                  "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
-                  "energy, in proportion to `shifting`; if the fluid has a free surface, use "
-                  "shifting_speed = own",
-                  f->common.name);
+        warn_at(r->diag, r->scene, line,
+                "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
+                "energy, in proportion to `shifting`; if the fluid has a free surface, use "
+                "shifting_speed = own",
+                f->common.name);
     if (f->shifting * cfl > 5 * (1 + 1e-9))
-        case_warn(
-            r, line,
+        warn_at(
+            r->diag, r->scene, line,
             "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
             "shifting_speed = largest; reduce one of them",
             f->common.name, f->shifting, cfl);
@@ -134,9 +134,8 @@ static void offer_names(const struct reader *r, enum section_id kind, const char
     }
 }
 
-/* `also`: another kind of section that may be meant; the same kind: none. */
-static enum err no_such(struct reader *r, int line, const char *what, const char *given,
-                        enum section_id kind, enum section_id also)
+enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
+                         enum section_id kind, enum section_id also)
 {
     struct nearest near = {0};
     offer_names(r, kind, given, &near);
@@ -157,15 +156,18 @@ static enum err check_moved(struct reader *r)
     for (int k = 0; k < s->n_wall; k++)
         if (case_sound(r, SECTION_wall, k) && *s->wall[k].motion &&
             scene_find_motion(s, s->wall[k].motion) < 0)
-            TRY(case_go_on(r, no_such(r, scene_line(r->scene, SECTION_wall, k, "motion"), "motion",
-                                      s->wall[k].motion, SECTION_motion, SECTION_motion)));
+            TRY(case_go_on(r, case_no_section(r, scene_line(r->scene, SECTION_wall, k, "motion"),
+                                              "motion", s->wall[k].motion, SECTION_motion,
+                                              SECTION_motion)));
     for (int k = 0; k < s->n_solid; k++) {
         const struct scene_solid *b = &s->solid[k];
         if (!*b->clamp_motion || !case_sound(r, SECTION_solid, k)) continue;
         if (scene_find_motion(s, b->clamp_motion) < 0)
-            TRY(case_go_on(r, no_such(r, scene_line(r->scene, SECTION_solid, k, "clamp_motion"),
-                                      "clamp_motion", b->clamp_motion, SECTION_motion,
-                                      SECTION_motion)));
+            TRY(case_go_on(r,
+                           case_no_section(r,
+                                           scene_line(r->scene, SECTION_solid, k, "clamp_motion"),
+                                           "clamp_motion", b->clamp_motion, SECTION_motion,
+                                           SECTION_motion)));
         else if (b->clamp.n == 0)
             TRY(case_go_on(r, bad_line(r, b->common.line,
                                        "[solid %s] has a `clamp_motion` but no `clamp`",
@@ -217,8 +219,8 @@ static enum err check_joined(struct reader *r, int solid)
     if (!*a->joined) return ERR_OK;
     const int other = scene_find_solid(s, a->joined);
     if (other < 0)
-        return no_such(r, scene_line(r->scene, SECTION_solid, solid, "joined"), "joined", a->joined,
-                       SECTION_solid, SECTION_solid);
+        return case_no_section(r, scene_line(r->scene, SECTION_solid, solid, "joined"), "joined",
+                               a->joined, SECTION_solid, SECTION_solid);
     if (other == solid)
         return bad_line(r, a->common.line,
                         "[solid %s] joined = %s: a body cannot be joined to itself; name another",
@@ -256,7 +258,7 @@ static enum err check_contact(struct reader *r, const struct scene_contact *c)
     for (int j = 0; j < 2; j++) {
         solid |= scene_find_solid(s, name[j]) >= 0;
         if (scene_find_solid(s, name[j]) < 0 && scene_find_wall(s, name[j]) < 0)
-            return no_such(r, line, "between", name[j], SECTION_solid, SECTION_wall);
+            return case_no_section(r, line, "between", name[j], SECTION_solid, SECTION_wall);
     }
     if (!solid)
         return bad_line(
@@ -272,8 +274,10 @@ static enum err check_load(struct reader *r, const struct scene_load *l)
     if (!*l->body)
         return bad_line(r, line, "[load %s] needs `body`, the solid it acts on", l->common.name);
     if (scene_find_solid(r->scene, l->body) < 0)
-        return no_such(r, scene_line(r->scene, SECTION_load, (int)(l - r->scene->load), "body"),
-                       "body", l->body, SECTION_solid, SECTION_solid);
+        return case_no_section(r,
+                               scene_line(r->scene, SECTION_load, (int)(l - r->scene->load),
+                                          "body"),
+                               "body", l->body, SECTION_solid, SECTION_solid);
     if (l->shape.n == 0)
         return bad_line(r, line, "[load %s] needs a `shape`, the region it acts on",
                         l->common.name);
@@ -368,11 +372,11 @@ static void warn_of_sliding(struct reader *r)
         const int slip = solid ? s->solid[k].slip : s->wall[k - s->n_solid].slip;
         const bool moves = solid || *s->wall[k - s->n_solid].motion;
         if (slip != SLIP_FREE || !moves) continue;
-        case_warn(r, scene_line(r->scene, SECTION_numerics, 0, "sides"),
-                  "sides = one drags the fluid that slides along [%s %s], as if the body were "
-                  "larger by a spacing all round: the added mass of a cylinder of 10 spacings is "
-                  "40 %% too large; use sides = both, or slip = none",
-                  solid ? "solid" : "wall", c->name);
+        warn_at(r->diag, r->scene, scene_line(r->scene, SECTION_numerics, 0, "sides"),
+                "sides = one drags the fluid that slides along [%s %s], as if the body were "
+                "larger by a spacing all round: the added mass of a cylinder of 10 spacings is "
+                "40 %% too large; use sides = both, or slip = none",
+                solid ? "solid" : "wall", c->name);
     }
 }
 

@@ -34,10 +34,9 @@ static enum err check_motion_keys(struct reader *r, const struct scene_motion *m
         if (owned[k].of & (1u << m->kind) || param_is_default(p, m)) continue;
         char name[SCENE_NAME];
         param_choice_name(param_find(SECTION_motion, "kind"), m->kind, name);
-        const struct scene_given *const given =
-            scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), owned[k].key);
+        const int index = (int)(m - r->scene->motion);
         return bad_line(
-            r, given ? given->line : m->common.line,
+            r, scene_line(r->scene, SECTION_motion, index, owned[k].key),
             "[motion %s] `%s` belongs to kind = %s, but this motion has kind = %s; leave it out",
             m->common.name, owned[k].key, owned[k].kinds, name);
     }
@@ -50,9 +49,7 @@ enum { MOTION_TIMES = 1000 };
 static enum err check_motion_jumps(struct reader *r, const struct scene_motion *m, const char *key,
                                    const struct expr *e, double length)
 {
-    const struct scene_given *const given =
-        scene_given(r->scene, SECTION_motion, (int)(m - r->scene->motion), key);
-    const int line = given ? given->line : m->common.line;
+    const int line = scene_line(r->scene, SECTION_motion, (int)(m - r->scene->motion), key);
     if (expr_steps(e))
         return bad_line(r, line,
                         "[motion %s] %s = %.200s jumps in time, because it rounds a term with t, "
@@ -121,11 +118,10 @@ enum err case_check_motion(struct reader *r, const struct scene_motion *m)
 {
     const int line = m->common.line;
     if (r->n_problems == 0 && !is_used(r->scene, m->common.name))
-        case_warn(
-            r, line,
-            "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
-            "[solid]",
-            m->common.name);
+        warn_at(r->diag, r->scene, line,
+                "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
+                "[solid]",
+                m->common.name);
     if (!(m->start < m->stop))
         return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                         m->common.name, m->start, m->stop);

@@ -9,17 +9,9 @@
 static enum err no_section(struct reader *r, const struct scene_probe *p, const char *key,
                            const char *name, bool walls_too)
 {
-    struct nearest near = {0};
-    for (int k = 0; k < r->scene->n_solid; k++)
-        nearest_offer(&near, name, r->scene->solid[k].common.name);
-    for (int k = 0; walls_too && k < r->scene->n_wall; k++)
-        nearest_offer(&near, name, r->scene->wall[k].common.name);
-    const struct scene_given *const given =
-        scene_given(r->scene, SECTION_probe, (int)(p - r->scene->probe), key);
-    return bad_line(r, given ? given->line : p->common.line,
-                    "%s = %.60s: there is no [solid]%s of that name%s%s%s", key, name,
-                    walls_too ? " or [wall]" : "", near.name ? "; did you mean `" : "",
-                    near.name ? near.name : "", near.name ? "`?" : "");
+    const int line = scene_line(r->scene, SECTION_probe, (int)(p - r->scene->probe), key);
+    return case_no_section(r, line, key, name, SECTION_solid,
+                           walls_too ? SECTION_wall : SECTION_solid);
 }
 
 static bool is_section(const struct scene *s, const char *name, bool walls_too)

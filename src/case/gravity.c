@@ -35,14 +35,12 @@ static void warn_of_end(const struct scene *s, int line, struct diag *d)
     const int last = table->n - 1;
     const bool acts = table->x[last] != 0 || table->y[last] != 0;
     if (!acts || table->t[last] >= s->top.end_time * (1 - 1e-9)) return;
-    char place[LOCATION_TEXT];
-    scene_location(s, line, place);
-    diag_warn(d,
-              "%s: gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
-              "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add a "
-              "row of zeros, or use end_time = %.6g s",
-              place, s->top.gravity_file, table->t[last], s->top.end_time, table->x[last],
-              table->y[last], table->t[last]);
+    warn_at(d, s, line,
+            "gravity_file = %.200s ends at t = %.6g s, before end_time = %.6g s: the "
+            "acceleration of its last row, (%g, %g) m/s^2, then stays; continue the table, add a "
+            "row of zeros, or use end_time = %.6g s",
+            s->top.gravity_file, table->t[last], s->top.end_time, table->x[last], table->y[last],
+            table->t[last]);
 }
 
 /* An accelerometer at rest shows gravity, which the table would add a second time. */
@@ -58,22 +56,19 @@ static void warn_of_double(const struct scene *s, int line, struct diag *d)
         sum[1] += half * (table->y[k] + table->y[k + 1]);
     }
     if (!(size2 > 0 && fabs(sum[0] * g[0] + sum[1] * g[1]) > 0.9 * size2)) return;
-    char place[LOCATION_TEXT];
-    scene_location(s, line, place);
-    diag_warn(d,
-              "%s: gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
-              "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
-              "out of one of them",
-              place, s->top.gravity_file, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
+    warn_at(d, s, line,
+            "gravity_file = %.200s has a mean of (%.3g, %.3g) m/s^2, so it seems to contain "
+            "gravity. It is added to `gravity`, which gives (%.3g, %.3g) m/s^2; leave gravity "
+            "out of one of them",
+            s->top.gravity_file, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
 }
 
 enum err gravity_load(struct scene *s, struct diag *d)
 {
     static const struct table_kind kind = {"a table of gravity", "time (s), gx (m/s^2), gy (m/s^2)",
                                            false};
-    const struct scene_given *const given = scene_given(s, SECTION_top, 0, "gravity_file");
     if (!*s->top.gravity_file) return ERR_OK;
-    const int line = given ? given->line : 0;
+    const int line = scene_line(s, SECTION_top, 0, "gravity_file");
     TRY(table_load(s, &s->gravity_data, &kind, s->top.gravity_file, line, "gravity_file", d));
     warn_of_end(s, line, d);
     warn_of_double(s, line, d);

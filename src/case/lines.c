@@ -236,7 +236,7 @@ static bool takes_key(const struct reader *r, int section, const char *key, stru
         if (strcmp(param_table[k].key, key) == 0) return true;
         nearest_offer(near, key, param_table[k].key);
     }
-    return param_retired((enum section_id)id, key) != NULL;
+    return false;
 }
 
 /* Whether "solid gate", "gate", "numerics" or "" (top and constants) names a section. */

@@ -56,17 +56,6 @@ enum err bad_value(struct reader *r, const struct entry *e, const char *format, 
     return bad_entry(r, e, "%s = %.60s%s: %s", e->key, e->value, cut ? "..." : "", text);
 }
 
-void case_warn(const struct reader *r, int line, const char *format, ...)
-{
-    char text[600], place[LOCATION_TEXT];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    scene_location(r->scene, line, place);
-    diag_warn(r->diag, "%s: %s", place, text);
-}
-
 enum err case_go_on(const struct reader *r, enum err e)
 {
     return e == ERR_INPUT && r->n_problems > 0 && r->n_problems < CASE_MAX_PROBLEMS ? ERR_OK : e;

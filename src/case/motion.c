@@ -95,15 +95,11 @@ static void warn_of_end(const struct scene *s, const struct scene_motion *m,
     const double end = m->start + table->t[n - 1];
     const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
     if (!moves || end >= min2(s->top.end_time, m->stop) * (1 - 1e-9)) return;
-    const struct scene_given *const given =
-        scene_given(s, SECTION_motion, (int)(m - s->motion), "file");
-    char place[LOCATION_TEXT];
-    scene_location(s, given ? given->line : m->common.line, place);
-    diag_warn(d,
-              "%s: [motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and "
-              "still moves in its last row: what it moves stops there within a step and then "
-              "rests; continue the table, end it at rest, or use end_time = %.6g s",
-              place, m->common.name, m->file, end, s->top.end_time, end);
+    warn_at(d, s, scene_line(s, SECTION_motion, (int)(m - s->motion), "file"),
+            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and "
+            "still moves in its last row: what it moves stops there within a step and then "
+            "rests; continue the table, end it at rest, or use end_time = %.6g s",
+            m->common.name, m->file, end, s->top.end_time, end);
 }
 
 enum err motion_load(struct scene *s, struct diag *d)

@@ -121,17 +121,17 @@ static void warn_of_absorb(struct reader *r, const struct scene_open *o)
     const int line = scene_line(s, o->section, o->index, "absorb");
     if (!(o->absorb > 0) || o->kind != OPEN_PRESSURE || !(s->c0 > 0)) return;
     if (wave < reach)
-        case_warn(r, line,
-                  "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The "
-                  "fluid resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out "
-                  "waves of up to the length L",
-                  o->word, o->common->name, o->absorb, wave, reach);
+        warn_at(r->diag, r->scene, line,
+                "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The "
+                "fluid resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out "
+                "waves of up to the length L",
+                o->word, o->common->name, o->absorb, wave, reach);
     if (o->absorb > s->top.end_time)
-        case_warn(r, line,
-                  "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
-                  "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a "
-                  "shorter time",
-                  o->word, o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
+        warn_at(r->diag, r->scene, line,
+                "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
+                "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a "
+                "shorter time",
+                o->word, o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
 }
 
 /* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs. `largest`:
@@ -141,17 +141,17 @@ static void warn_of_sound(struct reader *r, const struct scene_open *o, double l
     const double c0 = r->scene->c0, stiffness = r->scene->rho0 * c0 * c0;
     if (o->kind == OPEN_VELOCITY) r->scene->given_speed = max2(r->scene->given_speed, largest);
     if (o->kind == OPEN_VELOCITY && c0 > 0 && largest > SPEED_WARNING * c0)
-        case_warn(r, o->common->line,
-                  "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "
-                  "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
-                  "= %.3g or more",
-                  o->word, o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
+        warn_at(r->diag, r->scene, o->common->line,
+                "[%s %s] gives the fluid up to %.4g m/s, above %g of the speed of sound, %.4g "
+                "m/s, so it is not weakly compressible and may become unstable; use sound_speed "
+                "= %.3g or more",
+                o->word, o->common->name, largest, SPEED_WARNING, c0, 10 * largest);
     if (o->kind == OPEN_PRESSURE && stiffness > 0 && largest > DENS_WARNING * stiffness)
-        case_warn(r, o->common->line,
-                  "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
-                  "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
-                  o->word, o->common->name, largest, 100 * largest / stiffness,
-                  sqrt(largest / (0.01 * r->scene->rho0)));
+        warn_at(r->diag, r->scene, o->common->line,
+                "[%s %s] gives the fluid up to %.4g Pa, which changes its density by about %.2g "
+                "%%; 1 %% is usual, and the run stops at 30 %%; use sound_speed = %.3g or more",
+                o->word, o->common->name, largest, 100 * largest / stiffness,
+                sqrt(largest / (0.01 * r->scene->rho0)));
 }
 
 /* Finite on the whole line at all times; a velocity must pass fluid, in through an inflow at some time. */
@@ -206,12 +206,10 @@ enum err case_check_open(struct reader *r)
     const struct scene *const s = r->scene;
     if (scene_open_count(s) > 0 && s->n_fluid > 0 && s->fluid[0].density_diffusion == 0) {
         const struct scene_open o = scene_open_at(s, 0);
-        char place[LOCATION_TEXT];
-        scene_location(s, o.common->line, place);
-        diag_warn(r->diag,
-                  "%s: [%s %s] adjoins fluid without density_diffusion, so pressure noise grows at "
-                  "this boundary; use density_diffusion = 0.1",
-                  place, o.word, o.common->name);
+        warn_at(r->diag, s, o.common->line,
+                "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at this "
+                "boundary; use density_diffusion = 0.1",
+                o.word, o.common->name);
     }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
         const struct scene_open o = scene_open_at(s, k);

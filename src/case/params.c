@@ -91,50 +91,40 @@ static bool has_word(const char *key, const char *word)
 /* Whether `word` is the usual textbook name of a key. */
 static bool is_called(const char *key, const char *word)
 {
-    static const char *const names[][2] = {
-        {"e", "young"},
-        {"modulus", "young"},
-        {"youngs_modulus", "young"},
-        {"young_modulus", "young"},
-        {"elastic_modulus", "young"},
-        {"nu", "poisson"},
-        {"poisson_ratio", "poisson"},
-        {"rho", "density"},
-        {"rho0", "density"},
-        {"c0", "sound_speed"},
-        {"speed_of_sound", "sound_speed"},
-        {"spacing", "dp"},
-        {"particle_spacing", "dp"},
-        {"dx", "dp"},
-        {"resolution", "dp"},
-        {"dt", "fixed_step"},
-        {"time_step", "fixed_step"},
-        {"timestep", "fixed_step"},
-        {"duration", "end_time"},
-        {"t_end", "end_time"},
-        {"tmax", "end_time"},
-        {"g", "gravity"},
-        {"alpha", "artificial_viscosity"},
-        {"delta", "density_diffusion"},
-        {"mu", "laminar_viscosity"},
-        {"snapshots", "snapshot_interval"},
-        {"fixed", "clamp"},
-        {"fix", "clamp"},
-        {"material", "law"},
-        {"model", "law"},
-        {"water_level", "surface"},
-        {"height", "surface"},
-        {"geometry", "shape"},
-        {"region", "shape"},
-        {"movement", "motion"},
-        {"position", "point"},
-        {"location", "point"},
-        {"type", "kind"},
-        {"variable", "quantity"},
-        {"courant", "cfl"},
+    static const struct {
+        const char *key, *names;
+    } usual[] = {
+        {"young", "e modulus youngs_modulus young_modulus elastic_modulus"},
+        {"poisson", "nu poisson_ratio"},
+        {"density", "rho rho0"},
+        {"sound_speed", "c0 speed_of_sound"},
+        {"dp", "spacing particle_spacing dx resolution"},
+        {"fixed_step", "dt time_step timestep"},
+        {"end_time", "duration t_end tmax"},
+        {"gravity", "g"},
+        {"artificial_viscosity", "alpha"},
+        {"density_diffusion", "delta"},
+        {"laminar_viscosity", "mu"},
+        {"snapshot_interval", "snapshots"},
+        {"clamp", "fixed fix"},
+        {"law", "material model"},
+        {"surface", "water_level height"},
+        {"shape", "geometry region"},
+        {"motion", "movement"},
+        {"point", "position location"},
+        {"kind", "type"},
+        {"quantity", "variable"},
+        {"cfl", "courant"},
     };
-    for (size_t k = 0; k < COUNT_OF(names); k++)
-        if (strcasecmp(names[k][0], word) == 0 && strcmp(names[k][1], key) == 0) return true;
+    for (size_t k = 0; k < COUNT_OF(usual); k++) {
+        if (strcmp(usual[k].key, key) != 0) continue;
+        const size_t length = strlen(word);
+        for (const char *at = usual[k].names; *at; at += strspn(at, " ")) {
+            const size_t n = strcspn(at, " ");
+            if (n == length && strncasecmp(at, word, n) == 0) return true;
+            at += n;
+        }
+    }
     return false;
 }
 
@@ -160,21 +150,6 @@ const struct param *param_called(const char *word)
 {
     for (int k = 0; k < PARAM_COUNT; k++)
         if (is_called(param_table[k].key, word)) return &param_table[k];
-    return NULL;
-}
-
-const char *param_retired(enum section_id section, const char *key)
-{
-    static const struct {
-        enum section_id section;
-        const char *key, *why;
-    } retired[] = {
-        {SECTION_numerics, "idle", "it had no effect"},
-        {SECTION_numerics, "kernel", "it had no effect"},
-    };
-    for (size_t k = 0; k < COUNT_OF(retired); k++)
-        if (retired[k].section == section && strcmp(retired[k].key, key) == 0)
-            return retired[k].why;
     return NULL;
 }
 

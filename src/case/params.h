@@ -90,9 +90,6 @@ const struct param *param_called(const char *word);
 /* Whether `word` is a part of a key or its usual name. */
 bool param_may_be(const struct param *p, const char *word);
 
-/* Why a key of an older release has no effect any more; NULL: it is not such a key. */
-const char *param_retired(enum section_id section, const char *key);
-
 /* The expression of a component of a TIME_VECTOR; NULL: it is a number. */
 const struct expr *param_in_time(const struct param *p, const void *section, int component);
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
  * From a case file to a scene: defaults, values in the order of the file, checks. */
+#include "base/files.h"
 #include "case/case.h"
 
 #include <errno.h>
@@ -128,18 +129,6 @@ static enum err unknown_key(struct reader *r, const struct entry *e, int id)
     return bad_entry(r, e, "unknown key `%s` %s", e->key, place);
 }
 
-/* A key of an older release is ignored, with a note. */
-static bool note_retired(struct reader *r, const struct entry *e, int id)
-{
-    const char *const why = param_retired((enum section_id)id, e->key);
-    char place[LOCATION_TEXT];
-    if (!why) return false;
-    scene_location(r->scene, e->line, place);
-    diag_warn(r->diag, "%s: `%s` in [%s] has been removed, because %s; leave it out", place, e->key,
-              section_table[id].word, why);
-    return true;
-}
-
 /* A given surface replaces an inherited pressure, and a given pressure an inherited surface. */
 static void drop_rivals(struct reader *r, int section)
 {
@@ -161,15 +150,13 @@ static void warn_of_lost_clamp(struct reader *r, int section, const struct entry
     if (cs->id != SECTION_solid || !like) return;
     const struct scene_solid *const copy = &r->scene->solid[cs->index];
     if (copy->joined[0]) return;
-    char place[LOCATION_TEXT];
-    scene_location(r->scene, cs->line, place);
     for (int k = 0; k < cs->index; k++) {
         const struct scene_solid *const from = &r->scene->solid[k];
         if (strcmp(from->common.name, like->value) == 0 && from->clamp.n > 0 && copy->clamp.n == 0)
-            diag_warn(r->diag,
-                      "%s: [solid %s] is like [solid %s] but has no `clamp`, because `like` does "
-                      "not copy regions, so it moves freely; give it a `clamp`",
-                      place, copy->common.name, from->common.name);
+            warn_at(r->diag, r->scene, cs->line,
+                    "[solid %s] is like [solid %s] but has no `clamp`, because `like` does "
+                    "not copy regions, so it moves freely; give it a `clamp`",
+                    copy->common.name, from->common.name);
     }
 }
 
@@ -188,7 +175,6 @@ static enum err read_section(struct reader *r, int section)
         const struct entry *e = &r->entries[k];
         if (e->section != section) continue;
         const struct param *p = param_find((enum section_id)cs->id, e->key);
-        if (!p && note_retired(r, e, cs->id)) continue;
         if (!p) {
             r->sections[section].incomplete = r->sections[section].invalid = true;
             TRY(case_go_on(r, unknown_key(r, e, cs->id)));
@@ -295,47 +281,21 @@ enum err scene_parse(struct scene *s, const char *text, const char *path, int n_
     return err;
 }
 
-static enum err read_file(FILE *file, const char *path, char **text, struct diag *d)
-{
-    size_t capacity = 1 << 16, n = 0;
-    *text = NULL;
-    for (;;) {
-        char *more = realloc(*text, capacity + 1);
-        if (!more) return diag_fail(d, ERR_MEMORY, "%s: no memory to read it", path);
-        *text = more;
-        n += fread(*text + n, 1, capacity - n, file);
-        if (n < capacity) break;
-        if (capacity >= CASE_MAX_BYTES)
-            return diag_fail(d, ERR_INPUT, "%s: longer than %d bytes; is it a case file?", path,
-                             CASE_MAX_BYTES);
-        capacity *= 2;
-    }
-    if (ferror(file))
-        return diag_fail(d, ERR_INPUT, "%s: cannot be read: %s", path, strerror(errno));
-    (*text)[n] = '\0';
-    const size_t length = strlen(*text);
-    if (length == n) return ERR_OK;
-    int line = 1;
-    for (size_t k = 0; k < length; k++) line += (*text)[k] == '\n';
-    const bool wide = memcmp(*text, "\xFF\xFE", 2) == 0 || memcmp(*text, "\xFE\xFF", 2) == 0;
-    return diag_fail(d, ERR_INPUT, "%s:%d: a byte of value 0; a case file is plain text%s", path,
-                     line, wide ? ", not UTF-16: save it as UTF-8" : "");
-}
-
 enum err scene_read(struct scene *s, const char *path, int n_sets, const char *const *sets,
                     struct diag *d)
 {
-    /* Opening a pipe would wait for its writer, a terminal for input. */
     struct stat info;
-    if (stat(path, &info) == 0 && !S_ISREG(info.st_mode))
+    if (stat(path, &info) != 0)
+        return diag_fail(d, ERR_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    if (!S_ISREG(info.st_mode))
         return diag_fail(d, ERR_INPUT, "%s: is %s; a case is a regular file", path,
                          S_ISDIR(info.st_mode) ? "a folder" : "a pipe or a device");
-    FILE *file = fopen(path, "rb");
-    if (!file) return diag_fail(d, ERR_INPUT, "%s: cannot be opened: %s", path, strerror(errno));
+    if (info.st_size > CASE_MAX_BYTES)
+        return diag_fail(d, ERR_INPUT, "%s: longer than %d bytes; is it a case file?", path,
+                         CASE_MAX_BYTES);
     char *text;
-    enum err err = read_file(file, path, &text, d);
-    fclose(file);
-    if (!err) err = scene_parse(s, text, path, n_sets, sets, d);
+    TRY(text_read(path, path, "a case file", &text, d));
+    const enum err err = scene_parse(s, text, path, n_sets, sets, d);
     free(text);
     return err;
 }

@@ -13,18 +13,29 @@ void scene_free(struct scene *s)
     memset(s, 0, sizeof *s);
 }
 
-int scene_find_motion(const struct scene *s, const char *name)
+/* The index of a named section, or -1. */
+static int find_section(const struct scene *scene, enum section_id id, const char *name)
 {
-    for (int k = 0; k < s->n_motion; k++)
-        if (strcmp(s->motion[k].common.name, name) == 0) return k;
+    for (int k = 0; k < section_count(scene, id); k++) {
+        const struct scene_section_common *const common = section_at(scene, id, k);
+        if (strcmp(common->name, name) == 0) return k;
+    }
     return -1;
 }
 
-int scene_find_solid(const struct scene *s, const char *name)
+int scene_find_motion(const struct scene *scene, const char *name)
 {
-    for (int k = 0; k < s->n_solid; k++)
-        if (strcmp(s->solid[k].common.name, name) == 0) return k;
-    return -1;
+    return find_section(scene, SECTION_motion, name);
+}
+
+int scene_find_solid(const struct scene *scene, const char *name)
+{
+    return find_section(scene, SECTION_solid, name);
+}
+
+int scene_find_wall(const struct scene *scene, const char *name)
+{
+    return find_section(scene, SECTION_wall, name);
 }
 
 double scene_solid_h(const struct scene *s, int solid)
@@ -46,13 +57,6 @@ bool scene_is_bonded(const struct scene *s, int solid)
         if (to[0] && (k == solid || scene_find_solid(s, to) == solid)) return true;
     }
     return false;
-}
-
-int scene_find_wall(const struct scene *s, const char *name)
-{
-    for (int k = 0; k < s->n_wall; k++)
-        if (strcmp(s->wall[k].common.name, name) == 0) return k;
-    return -1;
 }
 
 /* Whether a section applies to two bodies, walls after solids; one without names applies to all. */
@@ -104,17 +108,9 @@ bool scene_listed(const char *list, int k, char name[SCENE_TEXT])
 
 bool scene_pair(const char *text, char name[2][SCENE_TEXT])
 {
-    const char *comma = strchr(text, ',');
-    if (!comma || strchr(comma + 1, ',')) return false;
-    const char *const from[2] = {text, comma + 1}, *const end[2] = {comma, text + strlen(text)};
-    for (int k = 0; k < 2; k++) {
-        const char *a = from[k], *b = end[k];
-        while (a < b && (*a == ' ' || *a == '\t')) a++;
-        while (b > a && (b[-1] == ' ' || b[-1] == '\t')) b--;
-        if (a == b) return false;
-        snprintf(name[k], SCENE_TEXT, "%.*s", (int)(b - a), a);
-    }
-    return true;
+    char more[SCENE_TEXT];
+    return scene_listed(text, 0, name[0]) && scene_listed(text, 1, name[1]) &&
+           !scene_listed(text, 2, more) && *name[0] && *name[1];
 }
 
 /* --- probes and snapshots --- */

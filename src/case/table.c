@@ -68,13 +68,11 @@ enum err table_load(struct scene *scene, struct scene_table *table, const struct
     csv_close(&csv);
     if (e) return e;
     const double last = table->t[table->n - 1];
-    char place[LOCATION_TEXT];
-    scene_location(scene, line, place);
     if (last > LONG_TABLE * scene->top.end_time)
-        diag_warn(d,
-                  "%s: %s = %.200s lasts until t = %g s, of which the run uses the first %g s "
-                  "(end_time): its times are in seconds, not in milliseconds",
-                  place, key, name, last, scene->top.end_time);
+        warn_at(d, scene, line,
+                "%s = %.200s lasts until t = %g s, of which the run uses the first %g s "
+                "(end_time): its times are in seconds, not in milliseconds",
+                key, name, last, scene->top.end_time);
     return ERR_OK;
 }
 

@@ -114,40 +114,6 @@ static void test_a_path_that_is_too_long(void)
     TEST_ASSERT_EQUAL_STRING(message, diag.text);
 }
 
-static char warned[1024];
-
-static void on_warning(void *context, const char *text)
-{
-    (void)context;
-    snprintf(warned, sizeof warned, "%s", text);
-}
-
-/* A case of an older release is read, with a note of what it does no longer. */
-static void test_retired_keys_are_passed_over_with_a_note(void)
-{
-    static const char *const keys[] = {"kernel = generic", "idle = work"};
-    for (size_t k = 0; k < COUNT_OF(keys); k++) {
-        char text[400], set[64], note[400];
-        snprintf(text, sizeof text, TOP "[numerics]\n%s\n" BLOCK, keys[k]);
-        snprintf(set, sizeof set, "numerics.%s", keys[k]);
-        const int length = (int)strcspn(keys[k], " ");
-        for (int by_set = 0; by_set < 2; by_set++) {
-            const char *const sets[] = {set};
-            diag = (struct diag){.warn = on_warning};
-            TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
-                                          scene_load_text(&scene, by_set ? TOP BLOCK : text,
-                                                          "x.cfg", by_set, sets, &diag),
-                                          diag.text);
-            snprintf(
-                note, sizeof note,
-                "%s: `%.*s` in [numerics] has been removed, because it had no effect; leave it out",
-                by_set ? "--set" : "x.cfg:4", length, keys[k]);
-            TEST_ASSERT_EQUAL_STRING(note, warned);
-            scene_free(&scene);
-        }
-    }
-}
-
 static void test_set_comes_before_evaluation(void)
 {
     parse(derived, 1, (const char *const[]){"n=2"});
@@ -432,7 +398,6 @@ int main(void)
     RUN_TEST(test_pairs_of_names);
     RUN_TEST(test_depth_of_an_open_boundary);
     RUN_TEST(test_a_path_that_is_too_long);
-    RUN_TEST(test_retired_keys_are_passed_over_with_a_note);
     RUN_TEST(test_set_comes_before_evaluation);
     RUN_TEST(test_set_of_sections);
     RUN_TEST(test_default_cfl);

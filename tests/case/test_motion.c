@@ -349,7 +349,10 @@ static void test_a_table_with_a_zero_byte_is_refused(void)
     fwrite(bytes, 1, sizeof bytes - 1, file);
     fclose(file);
     TEST_ASSERT_EQUAL_INT(ERR_INPUT, read("kind = table\nfile = test_motion.tmp\n"));
-    TEST_ASSERT_EQUAL_STRING("test_motion.tmp:2: a zero byte; a table is plain text", diag.text);
+    TEST_ASSERT_EQUAL_STRING(
+        "motion.cfg:9: [motion move] file: test_motion.tmp:2: a byte of value 0; a table "
+        "is plain text",
+        diag.text);
 }
 
 static void test_bad_tables(void)

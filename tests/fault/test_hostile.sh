@@ -48,7 +48,7 @@ ln -s loop.cfg "$dir/loop.cfg"
 expect 1 'loop.cfg: cannot be opened' "$dir/loop.cfg" --out "$dir/no"
 if [ "$(id -u)" != 0 ]; then
     install -m 000 "$case" "$dir/closed.cfg"
-    expect 1 'closed.cfg: cannot be opened: Permission denied' "$dir/closed.cfg" --out "$dir/no"
+    expect 1 'closed.cfg: cannot be read: Permission denied' "$dir/closed.cfg" --out "$dir/no"
 fi
 sed 's/^point.*/&\n[motion m]\nkind = table\nfile = fifo.cfg/' "$case" >"$dir/table.cfg"
 expect 1 'is not a file' "$dir/table.cfg" --out "$dir/no"
