@@ -137,10 +137,8 @@ static enum err step(struct sphfsi_simulation *s, double limit, struct diag *d)
 enum sphfsi_status sphfsi_step(struct sphfsi_simulation *s, double limit)
 {
     struct diag d;
-    enum err e = begin(s, "step", &d);
-    if (e) return call_result(&d, e);
-    e = step(s, limit, &d);
-    return end(s, &d, e);
+    const enum err e = begin(s, "step", &d);
+    return e ? call_result(&d, e) : end(s, &d, step(s, limit, &d));
 }
 
 enum sphfsi_status sphfsi_advance(struct sphfsi_simulation *s, double time)
@@ -357,10 +355,8 @@ enum sphfsi_status sphfsi_field(struct sphfsi_simulation *s, enum sphfsi_kind ki
                                 const char *name, struct sphfsi_view *view)
 {
     struct diag d;
-    enum err e = begin(s, "field", &d);
-    if (e) return call_result(&d, e);
-    e = find_field(s, kind, name, view, &d);
-    return end(s, &d, e);
+    const enum err e = begin(s, "field", &d);
+    return e ? call_result(&d, e) : end(s, &d, find_field(s, kind, name, view, &d));
 }
 
 /* --- probes --- */
@@ -387,10 +383,8 @@ enum sphfsi_status sphfsi_probe(struct sphfsi_simulation *s, const char *name,
                                 double values[SPHFSI_PROBE_COLUMNS])
 {
     struct diag d;
-    enum err e = begin(s, "probe", &d);
-    if (e) return call_result(&d, e);
-    e = find_probe(s, name, values, &d);
-    return end(s, &d, e);
+    const enum err e = begin(s, "probe", &d);
+    return e ? call_result(&d, e) : end(s, &d, find_probe(s, name, values, &d));
 }
 
 const char *sphfsi_probe_name(const struct sphfsi_simulation *s, int k)
@@ -434,10 +428,8 @@ enum sphfsi_status sphfsi_set_force(struct sphfsi_simulation *s, enum sphfsi_kin
                                     sphfsi_force *force, void *context)
 {
     struct diag d;
-    enum err e = begin(s, "force", &d);
-    if (e) return call_result(&d, e);
-    e = set_force(s, kind, force, context, &d);
-    return end(s, &d, e);
+    const enum err e = begin(s, "force", &d);
+    return e ? call_result(&d, e) : end(s, &d, set_force(s, kind, force, context, &d));
 }
 
 static void apply_user_motion(void *context, double time, double d[2], double v[2], double a[2])
@@ -478,8 +470,6 @@ enum sphfsi_status sphfsi_set_motion(struct sphfsi_simulation *s, const char *na
                                      sphfsi_motion *motion, void *context)
 {
     struct diag d;
-    enum err e = begin(s, "motion", &d);
-    if (e) return call_result(&d, e);
-    e = set_motion(s, name, motion, context, &d);
-    return end(s, &d, e);
+    const enum err e = begin(s, "motion", &d);
+    return e ? call_result(&d, e) : end(s, &d, set_motion(s, name, motion, context, &d));
 }

@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * The functions of include/sphfsi.h on a whole case. */
 #include "app/call.h"
-#include "app/explain.h"
+#include "app/actions.h"
 #include "base/files.h"
-#include "app/inspect.h"
-#include "app/manual.h"
 #include "case/params.h"
-#include "app/preview.h"
-#include "app/run.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,65 +34,71 @@ enum sphfsi_status sphfsi_run(const struct sphfsi_options *options)
     return call_end(&c, e);
 }
 
-/* What is done with a session, by its name; `with` says what else it needs. */
-typedef enum err session_work(struct session *x, struct call *c, void *with);
+/* What is done with a session; `path`: of the file that sphfsi_effective writes. */
+typedef enum err session_action(struct session *x, struct sphfsi_options *o, const char *path,
+                                struct diag *d);
 
-static enum err with_session(struct call *c, const char *name, session_work *work, void *with)
+static enum sphfsi_status act(const char *name, const struct sphfsi_options *options,
+                              session_action *action, const char *path)
 {
-    struct session *const x = calloc(1, sizeof *x);
-    if (!x) return diag_fail(&c->diag, ERR_MEMORY, "%s: no memory for %zu bytes", name, sizeof *x);
-    const enum err e = work(x, c, with);
+    struct call c;
+    enum err e = call_begin(&c, name, options);
+    struct session *const x = e ? NULL : calloc(1, sizeof *x);
+    if (!e && !x)
+        e = diag_fail(&c.diag, ERR_MEMORY, "%s: no memory for %zu bytes", name, sizeof *x);
+    if (x) e = action(x, &c.options, path, &c.diag);
     free(x);
-    return e;
+    return call_end(&c, e);
 }
 
-/* As data if there are warnings to put into it. */
-static enum err explain_work(struct session *x, struct call *c, void *heard)
+static enum err explain(struct session *x, struct sphfsi_options *o, const char *path,
+                        struct diag *d)
 {
-    TRY(session_open(x, &c->options, &c->diag));
-    const enum err e = heard ? explain_data(x, heard, &c->options, &c->diag)
-                             : explain_session(x, &c->options, &c->diag);
+    (void)path;
+    TRY(session_open(x, o, d));
+    const enum err e = explain_text(x, o, d);
     session_close(x);
     return e;
 }
 
 enum sphfsi_status sphfsi_explain(const struct sphfsi_options *options)
 {
-    struct call c;
-    enum err e = call_begin(&c, "explain", options);
-    if (!e) e = with_session(&c, "explain", explain_work, NULL);
-    return call_end(&c, e);
+    return act("explain", options, explain, NULL);
+}
+
+static enum err explain_as_json(struct session *x, struct sphfsi_options *o, const char *path,
+                                struct diag *d)
+{
+    (void)path;
+    struct heard h;
+    heard_begin(&h, o);
+    enum err e = session_open(x, o, d);
+    if (!e) {
+        e = explain_json(x, &h, o, d);
+        session_close(x);
+    }
+    free(h.text);
+    return e;
 }
 
 enum sphfsi_status sphfsi_explain_json(const struct sphfsi_options *options)
 {
-    struct call c;
-    struct heard h = {0};
-    enum err e = call_begin(&c, "explain", options);
-    if (!e) {
-        heard_begin(&h, &c.options);
-        e = with_session(&c, "explain", explain_work, &h);
-    }
-    free(h.text);
-    return call_end(&c, e);
+    return act("explain", options, explain_as_json, NULL);
 }
 
-static enum err effective_work(struct session *x, struct call *c, void *path)
+static enum err effective(struct session *x, struct sphfsi_options *o, const char *path,
+                          struct diag *d)
 {
-    TRY(session_read(x, &c->options, &c->diag));
-    const enum err e = scene_write(&x->scene, path, &c->diag);
+    TRY(session_read(x, o, d));
+    const enum err e = scene_write(&x->scene, path, d);
     scene_free(&x->scene);
     return e;
 }
 
 enum sphfsi_status sphfsi_effective(const struct sphfsi_options *options, const char *path)
 {
-    struct call c;
     if (!path) return call_without("effective", "path");
-    char *const to = (char *)(uintptr_t)path;
-    enum err e = call_begin(&c, "effective", options);
-    if (!e) e = with_session(&c, "case", effective_work, to);
-    return call_end(&c, e);
+    return act("case", options, effective, path);
 }
 
 enum sphfsi_status sphfsi_inspect(const char *file, const struct sphfsi_options *options)
@@ -120,43 +122,36 @@ static void preview_path(const struct sphfsi_options *o, char path[PATH_BYTES])
         snprintf(path, PATH_BYTES, "preview-%.*s.svg", (int)(cfg ? length - 4 : length), name);
 }
 
-static enum err preview_work(struct session *x, struct call *c, void *unused)
+static enum err preview(struct session *x, struct sphfsi_options *o, const char *path,
+                        struct diag *d)
 {
-    (void)unused;
-    char path[PATH_BYTES];
-    TRY(session_read(x, &c->options, &c->diag));
-    preview_path(&c->options, path);
-    const enum err e = preview_draw(&x->scene, path, &c->diag);
-    if (!e)
-        session_say(&c->options, "%s: picture of the case at the start; open it in a browser",
-                    path);
+    (void)path;
+    char to[PATH_BYTES];
+    TRY(session_read(x, o, d));
+    preview_path(o, to);
+    const enum err e = preview_draw(&x->scene, to, d);
+    if (!e) session_say(o, "%s: picture of the case at the start; open it in a browser", to);
     scene_free(&x->scene);
     return e;
 }
 
 enum sphfsi_status sphfsi_preview(const struct sphfsi_options *options)
 {
-    struct call c;
-    enum err e = call_begin(&c, "preview", options);
-    if (!e) e = with_session(&c, "preview", preview_work, NULL);
-    return call_end(&c, e);
+    return act("preview", options, preview, NULL);
 }
 
-static enum err cite_work(struct session *x, struct call *c, void *unused)
+static enum err cite(struct session *x, struct sphfsi_options *o, const char *path, struct diag *d)
 {
-    (void)unused;
-    TRY(session_read(x, &c->options, &c->diag));
-    manual_cite(&x->scene, effects_of_scene(&x->scene), &c->options);
+    (void)path;
+    TRY(session_read(x, o, d));
+    manual_cite(&x->scene, effects_of_scene(&x->scene), o);
     scene_free(&x->scene);
     return ERR_OK;
 }
 
 enum sphfsi_status sphfsi_cite(const struct sphfsi_options *options)
 {
-    struct call c;
-    enum err e = call_begin(&c, "cite", options);
-    if (!e) e = with_session(&c, "cite", cite_work, NULL);
-    return call_end(&c, e);
+    return act("cite", options, cite, NULL);
 }
 
 enum sphfsi_status sphfsi_keys(const struct sphfsi_options *options)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "app/closing.h"
+#include "app/actions.h"
 
 #include "time/timestep.h"
 

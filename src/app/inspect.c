@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "app/inspect.h"
+#include "app/actions.h"
 
 #include "output/checkpoint.h"
 

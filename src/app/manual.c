@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The reference of keys, from the same tables as the reader of cases. */
-#include "app/manual.h"
+ * The reference of keys, from the same tables as the reader of cases; templates of cases. */
+#include "app/actions.h"
 
 #include "app/embedded.h"
 #include "case/effects.h"
@@ -259,4 +259,26 @@ void manual_keys(const struct sphfsi_options *o)
     for (int id = 0; id < SECTION_COUNT; id++) say_section((enum section_id)id, o);
     say_quantities(o);
     say_effects(o);
+}
+
+/* --- templates of cases: the files of cases/templates --- */
+
+static bool is_template(const struct embedded_file *file)
+{
+    static const char folder[] = "cases/templates/";
+    return strncmp(file->name, folder, sizeof folder - 1) == 0;
+}
+
+const char *manual_template_name(int k)
+{
+    for (const struct embedded_file *file = embedded_files; file->name; file++)
+        if (is_template(file) && k-- == 0) return file->stem;
+    return NULL;
+}
+
+const char *manual_template(const char *name)
+{
+    for (const struct embedded_file *file = embedded_files; file->name; file++)
+        if (is_template(file) && strcmp(file->stem, name) == 0) return file->text;
+    return NULL;
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "app/preview.h"
+#include "app/actions.h"
 
 #include "case/params.h"
 #include "particles/particles.h"

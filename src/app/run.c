@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "app/run.h"
+#include "app/actions.h"
 
 #include "app/case_change.h"
-#include "app/closing.h"
 #include "app/due.h"
 #include "app/evidence.h"
 #include "base/run_dir.h"

@@ -2,9 +2,8 @@
  * What the program says of itself is true: examples are accepted, templates run, sources fit the scene. */
 #include "case/effects.h"
 #include "app/evidence.h"
-#include "app/manual.h"
+#include "app/actions.h"
 #include "case/params.h"
-#include "app/preview.h"
 #include "geometry/load.h"
 #include "rig.h"
 #include "tiny.h"
@@ -287,7 +286,7 @@ static void preview_shows_the_scene(void)
     TEST_ASSERT_NOT_NULL(strstr(svg, "fluid water: 0.1 x 0.1 m, 100 particles"));
     TEST_ASSERT_NOT_NULL(strstr(svg, "solid gate: 0.03 x 0.15 m, 45 particles"));
     TEST_ASSERT_NOT_NULL(strstr(svg, "9 clamped"));
-    TEST_ASSERT_NOT_NULL(strstr(svg, ">flow_through</text>"));
+    TEST_ASSERT_NOT_NULL(strstr(svg, ">probe flow_through: flux from (0.05, 0) to"));
     TEST_ASSERT_NOT_NULL(strstr(svg, "</svg>"));
 }
 
