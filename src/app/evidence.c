@@ -1,51 +1,44 @@
 /* SPDX-License-Identifier: MIT
- * Rows of CSV: fields between commas, those with a comma inside between double quotes. */
+ * The expected error of a case, from what the accuracy study measured. */
 #include "app/evidence.h"
 
 #include "app/embedded.h"
+#include "base/csv.h"
 #include "case/params.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The field at `at`, which moves behind it, but not beyond the end of the line. */
-static void read_field(const char **at, char field[EVIDENCE_TEXT])
+static void read_field(const char *line, int k, char field[EVIDENCE_TEXT])
 {
-    const bool quoted = **at == '"';
-    const char *const start = *at + quoted;
-    const size_t length = strcspn(start, quoted ? "\"\n" : ",\n");
-    const size_t kept = length < EVIDENCE_TEXT ? length : EVIDENCE_TEXT - 1;
-    memcpy(field, start, kept);
-    field[kept] = '\0';
-    *at = start + length;
-    *at += strcspn(*at, ",\n");
-    if (**at == ',') ++*at;
+    size_t length = 0;
+    const char *const start = csv_field(line, k, &length);
+    snprintf(field, EVIDENCE_TEXT, "%.*s", (int)length, start ? start : "");
 }
 
 const char *evidence_first(void)
 {
     const char *text = embedded_text("data/evidence.csv");
-    while (*text == '#') text += strcspn(text, "\n") + 1;
-    return text + strcspn(text, "\n") + 1; /* behind the names of the columns */
+    while (*text == '#') text = csv_next_line(text);
+    return csv_next_line(text); /* behind the names of the columns */
 }
 
 bool evidence_next(const char **rest, struct evidence *row)
 {
-    char kind[EVIDENCE_TEXT], number[EVIDENCE_TEXT];
-    const char *at = *rest;
-    if (!*at) return false;
-    read_field(&at, kind);
-    row->kind = kind[0] == 's' ? SCENE_SOLID : kind[0] == 'f' ? SCENE_FLUID : SCENE_COUPLED;
-    read_field(&at, row->accuracy);
-    read_field(&at, row->name);
-    read_field(&at, row->error);
-    read_field(&at, number);
-    row->resolution = strtod(number, NULL);
-    read_field(&at, row->what);
-    read_field(&at, number);
-    row->percent = strtod(number, NULL);
-    *rest = at + (*at == '\n');
+    char field[EVIDENCE_TEXT];
+    if (!**rest) return false;
+    read_field(*rest, 0, field);
+    row->kind = field[0] == 's' ? SCENE_SOLID : field[0] == 'f' ? SCENE_FLUID : SCENE_COUPLED;
+    read_field(*rest, 1, row->accuracy);
+    read_field(*rest, 2, row->name);
+    read_field(*rest, 3, row->error);
+    read_field(*rest, 4, field);
+    row->resolution = strtod(field, NULL);
+    read_field(*rest, 5, row->what);
+    read_field(*rest, 6, field);
+    row->percent = strtod(field, NULL);
+    *rest = csv_next_line(*rest);
     return true;
 }
 
