@@ -399,8 +399,9 @@ static enum err write_all(FILE *file, struct session *x, const struct heard *h, 
     write_scene(&j, x);
     report_effects(&j, s);
     write_fields(&j, s);
-    TRY(forecast_measure(&c, s, d));
+    const enum err e = forecast_measure(&c, s, d);
     check_simulation(s, d);
+    TRY(e);
     write_bounds(&j, s);
     write_cost(&j, s, &c);
     report_derived(&j, &x->scene);
