@@ -184,10 +184,10 @@ static void sweep(const struct chunk *own, solid_sweep *f)
     f(own->s, own->p, own->first, own->last);
 }
 
-static void stress_sweeps(const struct chunk *own)
+static void stress_sweeps(const struct chunk *own, bool displaced)
 {
     const struct solid *const s = own->s;
-    sweep(own, s->sweeps->stress);
+    if (displaced || s->kelvin_voigt) sweep(own, s->sweeps->stress);
     if (s->variational) {
 #pragma omp barrier
         sweep(own, s->sweeps->pairs);
@@ -328,18 +328,18 @@ void solid_stress(struct solid *s, struct particles *p)
     {
         const struct chunk own = chunk_of(s, p);
         pack_motion(&own);
-        stress_sweeps(&own);
+        stress_sweeps(&own, true);
         sweep(&own, s->sweeps->write_stress);
     }
 }
 
-void solid_operator(struct solid *s, struct particles *p)
+void solid_operator(struct solid *s, struct particles *p, bool displaced)
 {
 #pragma omp parallel num_threads(s->threads)
     {
         const struct chunk own = chunk_of(s, p);
         pack_motion(&own);
-        stress_sweeps(&own);
+        stress_sweeps(&own, displaced);
         sweep(&own, s->sweeps->forces);
 #pragma omp barrier
 #pragma omp for schedule(static)
@@ -395,7 +395,7 @@ static void substeps(struct solid *s, struct particles *p, double dt, int n, boo
     kick_and_drift(own, solid_free_kick, 0, first);
     if (centred) place_clamps(own, s->time + first);
     for (int k = 0; k < n; k++) {
-        stress_sweeps(own);
+        stress_sweeps(own, true);
         force_sweeps(own);
         outer_forces(s, p, s->time + k * dt + first);
         if (s->contact || s->loads) {

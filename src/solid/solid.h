@@ -20,8 +20,8 @@ void solid_stress(struct solid *s, struct particles *p);
 void solid_forces(const struct solid *s, struct particles *p);
 
 /* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the other results
- * only the packed fields are updated. */
-void solid_operator(struct solid *s, struct particles *p);
+ * only the packed fields are updated. displaced: not only velocities have changed since the last call. */
+void solid_operator(struct solid *s, struct particles *p, bool displaced);
 
 /* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from what
  * solid_stress has found. They stay in the scratch of s until that is used again; p is as it was. */

@@ -65,13 +65,13 @@ static double apply_operator(struct solid *s, struct particles *p, double *const
          * the opposite field. */
         set_field(field, base, p->sx, p->sy, p->n, -factor);
         keep(other, p->sx, p->sy, p->n);
-        solid_operator(s, p);
+        solid_operator(s, p, false);
         set_field(field, base, other[0], other[1], p->n, factor);
         keep(other, p->sx, p->sy, p->n);
     } else {
         set_field(field, base, p->sx, p->sy, p->n, factor);
     }
-    solid_operator(s, p);
+    solid_operator(s, p, !both_signs);
     for (int64_t i = 0; i < p->n; i++) {
         p->sx[i] -= both_signs ? other[0][i] : rest[0][i];
         p->sy[i] -= both_signs ? other[1][i] : rest[1][i];
@@ -120,7 +120,7 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     keep(kept, p->vx, p->vy, p->n);
     memset(p->vx, 0, bytes);
     memset(p->vy, 0, bytes);
-    solid_operator(s, p);
+    solid_operator(s, p, true);
     keep(rest, p->sx, p->sy, p->n);
     keep(base, p->ux, p->uy, p->n);
     *omega = sqrt(largest_factor(s, p, u, base, amplitude, false));
@@ -136,7 +136,10 @@ double solid_stable_step(struct solid *s, struct particles *p, double *omega, do
     }
     /* Linear damping acts on both signs: half of it on each. */
     for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 0.5;
-    if (damped) *damping = largest_factor(s, p, v, base, amplitude * *omega, true);
+    if (damped) {
+        solid_operator(s, p, true);
+        *damping = largest_factor(s, p, v, base, amplitude * *omega, true);
+    }
     for (int k = 0; k < s->n_bodies; k++) s->body[k].damping_time *= 2;
     *damping += rate;
     keep(v, kept[0], kept[1], p->n);
