@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+#include "solid/contact.h"
+
 #include "base/elementary.h"
+#include "solid/contact_friction.h"
 #include "solid/contact_law.h"
 
 #include <math.h>
@@ -8,15 +11,16 @@
 
 /* --- forces of a pair --- */
 
-/* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach `reach`, with
- * the relative velocity v. The dashpot may reduce the repulsion but not turn it into attraction. */
-static void point_force(const struct pair *q, const double offset[2], double reach,
+/* f_n of T-62 for a point at `offset` from a place on an edge where it repels it with the reach
+ * `reach`, with the relative velocity v. The dashpot may reduce the repulsion but not turn it
+ * into attraction. */
+static void point_force(const struct contact_constants *q, const double offset[2], double reach,
                         const double v[2], double f[2])
 {
     f[0] = f[1] = 0;
     const double r = sqrt(offset[0] * offset[0] + offset[1] * offset[1]),
-                 left = r - (reach - q->least_reach);
-    if (!(left < q->least_reach) || left <= 0) return;
+                 left = r - (reach - q->min_reach);
+    if (!(left < q->min_reach) || left <= 0) return;
     const double n[2] = {offset[0] / r, offset[1] / r}, along = v[0] * n[0] + v[1] * n[1];
     const double normal = max2(0, elastic_force(q, left) - q->damping * along);
     f[0] = normal * n[0];
@@ -24,17 +28,17 @@ static void point_force(const struct pair *q, const double offset[2], double rea
 }
 
 /* The same for an end of the edge. */
-static void end_force(const struct contact *c, const struct contact_law *law, const struct pair *q,
-                      int32_t point, int32_t end, double f[2])
+static void end_force(const struct contact *c, const struct contact_law *law,
+                      const struct contact_constants *q, int32_t point, int32_t end, double f[2])
 {
     const double offset[2] = {c->x[point] - c->x[end], c->y[point] - c->y[end]};
     const double v[2] = {c->vx[point] - c->vx[end], c->vy[point] - c->vy[end]};
     point_force(q, offset, contact_reach(c, law, point, end), v, f);
 }
 
-/* T-61a: an edge acts with its full force, less the fraction that its end points exert, which the
- * edges that meet there divide among them. The place on the edge is that of the largest overlap (T-61b),
- * so its change contributes nothing to the derivative of the potential. */
+/* T-61a: an edge acts with its full force, less the fraction that its end points exert, which
+ * the edges that meet there divide among them. The place on the edge is that of the largest
+ * overlap (T-61b), so its change contributes nothing to the derivative of the potential. */
 static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
                        struct contact_force *out)
 {
@@ -42,7 +46,7 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
     if (!law.on) return false;
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
     if (!(foot.distance < foot.reach)) return false;
-    const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
+    const struct contact_constants q = contact_constants_of(c, &law, point, edge, foot.min_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double s = foot.at, offset[2] = {foot.x, foot.y};
     double v[2], f[2], fa[2], fb[2];
@@ -61,13 +65,13 @@ static bool pair_force(const struct contact *c, int32_t point, int32_t edge,
 }
 
 /* Of T-61 at a place of an edge where the reach is `reach`. */
-static double place_energy(const struct contact *c, const struct pair *q, int32_t point, int32_t a,
-                           int32_t b, double s, double reach)
+static double place_energy(const struct contact *c, const struct contact_constants *q,
+                           int32_t point, int32_t a, int32_t b, double s, double reach)
 {
     const double offset[2] = {c->x[point] - ((1 - s) * c->x[a] + s * c->x[b]),
                               c->y[point] - ((1 - s) * c->y[a] + s * c->y[b])};
-    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->least_reach);
-    return left < q->least_reach ? touch_energy(q, left) : 0;
+    const double r = elementary_hypot(offset[0], offset[1]), left = r - (reach - q->min_reach);
+    return left < q->min_reach ? elastic_energy(q, left) : 0;
 }
 
 static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
@@ -76,7 +80,7 @@ static double pair_energy(const struct contact *c, int32_t point, int32_t edge)
     if (!law.on) return 0;
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
     if (!(foot.distance < foot.reach)) return 0;
-    const struct pair q = pair_of(c, &law, point, edge, foot.least_reach);
+    const struct contact_constants q = contact_constants_of(c, &law, point, edge, foot.min_reach);
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const double at_a = contact_reach(c, &law, point, a), at_b = contact_reach(c, &law, point, b);
     return place_energy(c, &q, point, a, b, foot.at, foot.reach) -
@@ -104,9 +108,8 @@ static void find_forces(struct contact *c)
     }
 }
 
-void contact_forces(struct contact *c, const struct solid *s, struct particles *p, double time)
+void contact_forces(struct contact *c, struct particles *p, double time)
 {
-    (void)s;
     contact_place(c, p, time);
     list_if_stale(c);
     find_forces(c);
@@ -123,7 +126,7 @@ void contact_forces(struct contact *c, const struct solid *s, struct particles *
             contact_add_force(c, p, a, f->a);
             contact_add_force(c, p, c->edge[c->pair_edge[k]].b, f->b);
         }
-        contact_rub(c, p);
+        if (c->friction) contact_friction_forces(c, p);
     }
 }
 
@@ -149,7 +152,7 @@ double contact_energy(struct contact *c, const struct particles *p, double time)
     double sum = 0;
     for (int64_t k = 0; k < c->n_pairs; k++)
         sum += pair_energy(c, c->pair_point[k], c->pair_edge[k]);
-    if (!c->press_head) return sum;
+    if (!c->friction) return sum;
     find_forces(c);
     return sum + contact_friction_energy(c, p);
 }
@@ -180,11 +183,11 @@ static void find_means(struct contact *c)
 }
 
 /* Largest distance that two points may have approached since the list was made, and their speed. */
-struct contact_pace {
+struct relative_motion {
     double moved[CONTACT_WITH], speed[CONTACT_WITH];
 };
 
-static struct contact_pace pace_of(const struct contact *c)
+static struct relative_motion relative_motion_of(const struct contact *c)
 {
     double far2[3] = {0}, speed2[3] = {0}; /* relative to their group; of solids; of walls */
     for (int64_t k = 0; k < c->n_solid_points; k++) {
@@ -199,7 +202,7 @@ static struct contact_pace pace_of(const struct contact *c)
         far2[2] = max2(far2[2], square(c->x[k] - c->at_x[k]) + square(c->y[k] - c->at_y[k]));
         speed2[2] = max2(speed2[2], square(c->vx[k]) + square(c->vy[k]));
     }
-    return (struct contact_pace){
+    return (struct relative_motion){
         .moved = {2 * sqrt(far2[0]), sqrt(far2[1]) + sqrt(max2(far2[1], far2[2]))},
         .speed = {2 * sqrt(speed2[0]), sqrt(speed2[1]) + sqrt(max2(speed2[1], speed2[2]))},
     };
@@ -207,15 +210,6 @@ static struct contact_pace pace_of(const struct contact *c)
 
 /* Fraction of the distance to a surface that a point may move in a step (T-62b). */
 #define ADVANCE 0.25
-
-static void add_row(struct contact *c, const struct particles *p, int32_t point, double weight,
-                    double stiffness, double damping)
-{
-    if (point >= c->n_solid_points) return;
-    const double per_mass = p->free[c->index[point]] / c->solid->body[c->body[point]].mass;
-    c->row[point] += weight * stiffness * per_mass;
-    c->row_damping[point] += weight * damping * per_mass;
-}
 
 static double moves_freely(const struct contact *c, const struct particles *p, int32_t point)
 {
@@ -225,7 +219,8 @@ static double moves_freely(const struct contact *c, const struct particles *p, i
 /* T-62a: a pair's part of the rows of M^-1 K by Gershgorin, at its position at the end of the
  * step. */
 static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
-                     const struct pair *q, const struct contact_foot *foot, double left)
+                     const struct contact_constants *q, const struct contact_foot *foot,
+                     double left)
 {
     const int32_t k = c->pair_point[pair];
     const struct contact_edge *const e = &c->edge[c->pair_edge[pair]];
@@ -235,12 +230,12 @@ static void add_rows(struct contact *c, const struct particles *p, int64_t pair,
         moves_freely(c, p, k) + (1 - s) * moves_freely(c, p, e->a) + s * moves_freely(c, p, e->b);
     const double stiffness = own * both * elastic_stiffness(q, left);
     const double damping = own * both * q->damping;
-    add_row(c, p, k, 1, stiffness, damping);
-    add_row(c, p, e->a, 1 - s, stiffness, damping);
-    add_row(c, p, e->b, s, stiffness, damping);
+    contact_add_row(c, p, k, 1, stiffness, damping);
+    contact_add_row(c, p, e->a, 1 - s, stiffness, damping);
+    contact_add_row(c, p, e->b, s, stiffness, damping);
 }
 
-static void note_depth(struct contact *c, int32_t point, int32_t edge, double overlap)
+static void find_depth(struct contact *c, int32_t point, int32_t edge, double overlap)
 {
     if (!(overlap > c->deepest.overlap)) return;
     c->deepest = (struct contact_depth){overlap, c->x[point], c->y[point], c->body[point],
@@ -259,11 +254,11 @@ static double overlap_of(const struct contact *c, const struct contact_law *law,
 {
     const struct contact_edge *const e = &c->edge[edge];
     struct contact_law apart = *law;
-    apart.began = (double)INFINITY;
+    apart.initial = (double)INFINITY;
     const double gap = law->reach - law->spacing;
-    const double least_reach =
+    const double min_reach =
         min2(contact_reach(c, &apart, point, e->a), contact_reach(c, &apart, point, e->b));
-    return (overlap - gap) / (least_reach - gap);
+    return (overlap - gap) / (min_reach - gap);
 }
 
 static void watch_pair(struct contact *c, const struct particles *p, int64_t pair, double longest,
@@ -273,27 +268,26 @@ static void watch_pair(struct contact *c, const struct particles *p, int64_t pai
     const int32_t point = c->pair_point[pair], edge = c->pair_edge[pair];
     const struct contact_law law = contact_pair_law(c, point, edge);
     const struct contact_foot foot = contact_foot(c, &law, point, edge);
-    const double r = foot.distance, left = contact_left(&foot), least_reach = foot.least_reach;
+    const double r = foot.distance, left = contact_clearance(&foot), min_reach = foot.min_reach;
     double v[2];
     relative_velocity(c, point, edge, foot.at, v);
     if (r > foot.reach + distance_near(c, sqrt(v[0] * v[0] + v[1] * v[1]), span)) return;
     c->near = true;
-    note_depth(c, point, edge, overlap_of(c, &law, point, edge, least_reach - left));
+    find_depth(c, point, edge, overlap_of(c, &law, point, edge, min_reach - left));
     const double closing = r > 0 ? max2(0, -(v[0] * foot.x + v[1] * foot.y) / r) : 0;
     if (closing > 0)
-        c->approach =
-            min2(c->approach,
-                 (max2(0, left - least_reach) + ADVANCE * min2(left, least_reach)) / closing);
-    const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, least_reach));
-    if (then > NEAR * least_reach) return;
+        c->approach = min2(c->approach,
+                           (max2(0, left - min_reach) + ADVANCE * min2(left, min_reach)) / closing);
+    const double then = max2(left - closing * longest, (1 - ADVANCE) * min2(left, min_reach));
+    if (then > NEAR * min_reach) return;
     c->force[pair].near = true;
     c->force[pair].distance = r;
-    const struct pair q = pair_of(c, &law, point, edge, least_reach);
+    const struct contact_constants q = contact_constants_of(c, &law, point, edge, min_reach);
     add_rows(c, p, pair, &q, &foot, then);
 }
 
-/* Notes the depth of a point behind the nearest edge of another body if it has passed the surface, from
- * the pairs of this point. */
+/* Notes the depth of a point behind the nearest edge of another body if it has passed the
+ * surface, from the pairs of this point. */
 static void watch_side(struct contact *c, int64_t first, int64_t end)
 {
     double nearest = (double)INFINITY;
@@ -311,24 +305,24 @@ static void watch_side(struct contact *c, int64_t first, int64_t end)
         inside = e->sided && f.at > 0 && f.at < 1 && side > 0;
     }
     if (inside && nearest > 0)
-        note_depth(c, point, edge, 1 + nearest / contact_pair_law(c, point, edge).spacing);
+        find_depth(c, point, edge, 1 + nearest / contact_pair_law(c, point, edge).spacing);
 }
 
 static void watch_pairs(struct contact *c, const struct particles *p, double longest, double span)
 {
     memset(c->row, 0, (size_t)c->n_solid_points * sizeof *c->row);
     memset(c->row_damping, 0, (size_t)c->n_solid_points * sizeof *c->row);
-    if (c->hold) memset(c->hold, 0, (size_t)c->n_solid_points * sizeof *c->hold);
-    if (c->hold) memset(c->hold_damping, 0, (size_t)c->n_solid_points * sizeof *c->hold);
+    if (c->friction) memset(c->wall_row, 0, (size_t)c->n_solid_points * sizeof *c->wall_row);
+    if (c->friction) memset(c->wall_damping, 0, (size_t)c->n_solid_points * sizeof *c->wall_row);
     for (int64_t first = 0, end; first < c->n_pairs; first = end) {
         for (end = first; end < c->n_pairs && c->pair_point[end] == c->pair_point[first]; end++)
             watch_pair(c, p, end, longest, span);
         watch_side(c, first, end);
-        contact_watch_friction(c, p, first, end);
+        if (c->friction) contact_friction_rows(c, p, first, end);
     }
     for (int64_t k = 0; k < c->n_solid_points; k++) {
-        c->omega2 = max2(c->omega2, c->row[k] + (c->hold ? c->hold[k] : 0));
-        c->damping = max2(c->damping, c->row_damping[k] + (c->hold ? c->hold_damping[k] : 0));
+        c->omega2 = max2(c->omega2, c->row[k] + (c->friction ? c->wall_row[k] : 0));
+        c->damping = max2(c->damping, c->row_damping[k] + (c->friction ? c->wall_damping[k] : 0));
     }
 }
 
@@ -337,12 +331,12 @@ bool contact_watch(struct contact *c, const struct particles *p, double time, do
 {
     contact_place(c, p, time);
     find_means(c);
-    const struct contact_pace pace = pace_of(c);
+    const struct relative_motion motion = relative_motion_of(c);
     double want[CONTACT_WITH];
     bool holds = c->known;
     for (int k = 0; k < CONTACT_WITH; k++) {
-        want[k] = distance_near(c, pace.speed[k], span);
-        holds = holds && c->margin[k] - pace.moved[k] >= want[k];
+        want[k] = distance_near(c, motion.speed[k], span);
+        holds = holds && c->margin[k] - motion.moved[k] >= want[k];
     }
     if (!holds) {
         for (int k = 0; k < CONTACT_WITH; k++) c->margin[k] = want[k] + SKIN * c->spacing;
@@ -381,8 +375,8 @@ void contact_name(const struct contact *c, int body, char text[CONTACT_NAME])
 
 /* --- start --- */
 
-/* Modulus of a layer between two surfaces that is as stiff as half a spacing of each body, in series; a
- * wall is rigid. Of two equal bodies each is compressed by half of the overlap. */
+/* Modulus of a layer between two surfaces that is as stiff as half a spacing of each body, in
+ * series; a wall is rigid. Of two equal bodies each is compressed by half of the overlap. */
 static double layer_modulus(const struct contact *c, int a, int b, double spacing)
 {
     const struct solid_body *const one = &c->solid->body[a];
@@ -408,7 +402,7 @@ static void set_law(struct contact *c, const struct scene_contact *from, int a, 
 {
     const bool wall = b >= c->n_solids;
     const struct solid_body *const one = &c->solid->body[a];
-    const double spacing = 0.5 * (one->dp + dp_of(c, b));
+    const double spacing = 0.5 * (one->dp + contact_dp(c, b));
     /* A body that folds: what begins near in it may be nearer than a layer of fluid. */
     const bool own = !wall && one->bond == c->solid->body[b].bond;
     const double reach = spacing + (own ? from->gap : scene_contact_gap(c->scene, from));
@@ -436,11 +430,11 @@ static void set_laws(struct contact *c)
 }
 
 /* Lists the pairs that begin within their reach of another group. */
-static void list_beginnings(struct contact *c)
+static void list_initial_pairs(struct contact *c)
 {
     c->margin[CONTACT_SELF] = -c->reach;
     c->margin[CONTACT_OTHER] = 0;
-    for (int64_t k = 0; k < c->n_points; k++) c->began_group[k] = -1;
+    for (int64_t k = 0; k < c->n_points; k++) c->initial_group[k] = -1;
     contact_list(c);
 }
 
@@ -459,7 +453,7 @@ static void drop_layers(struct contact *c)
 {
     const int n = c->n_solids + c->n_walls;
     double r;
-    list_beginnings(c);
+    list_initial_pairs(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int a = c->body[c->pair_point[k]], b = c->body[c->edge[c->pair_edge[k]].a];
         const struct scene_contact *const from = scene_contact_of(c->scene, a, b);
@@ -470,16 +464,16 @@ static void drop_layers(struct contact *c)
 
 /* Stores initial distances from other groups that are below the reach. Bodies on lattices that do
  * not fit, and particles clamped within a wall, start without repulsion and keep that distance. */
-static void note_beginnings(struct contact *c)
+static void set_initial_distances(struct contact *c)
 {
-    list_beginnings(c);
+    list_initial_pairs(c);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         const int32_t point = c->pair_point[k], group = c->group[c->edge[c->pair_edge[k]].a];
         double r;
         if (!begins_near(c, k, &r)) continue;
-        if (c->began_group[point] >= 0 && r >= c->began[point]) continue;
-        c->began[point] = r;
-        c->began_group[point] = group;
+        if (c->initial_group[point] >= 0 && r >= c->initial[point]) continue;
+        c->initial[point] = r;
+        c->initial_group[point] = group;
     }
     c->margin[CONTACT_SELF] = c->margin[CONTACT_OTHER] = 0;
     c->known = false;
@@ -491,8 +485,6 @@ static enum err create_list(struct contact *c, struct arena *a, struct diag *d)
 {
     const size_t n = (size_t)c->n_solid_points, edges = (size_t)c->n_edges;
     const size_t groups = (size_t)c->n_groups, walls = (size_t)c->n_walls;
-    c->most_pairs = 4 * c->n_solid_points + 64;
-    const size_t most = (size_t)c->most_pairs;
     c->row = arena_alloc(a, n, sizeof *c->row, "contact", d);
     c->row_damping = arena_alloc(a, n, sizeof *c->row, "contact", d);
     c->middle_x = arena_alloc(a, edges, sizeof *c->middle_x, "contact", d);
@@ -500,15 +492,11 @@ static enum err create_list(struct contact *c, struct arena *a, struct diag *d)
     c->skip = arena_alloc(a, edges, sizeof *c->skip, "contact", d);
     c->mean = arena_alloc(a, groups, sizeof *c->mean, "contact", d);
     c->motion = arena_alloc(a, walls, sizeof *c->motion, "contact", d);
-    c->pair_point = arena_alloc(a, most, sizeof *c->pair_point, "contact", d);
-    c->pair_edge = arena_alloc(a, most, sizeof *c->pair_edge, "contact", d);
-    c->force = arena_alloc(a, most, sizeof *c->force, "contact", d);
     if (!c->row || !c->row_damping || !c->middle_x || !c->middle_y || !c->skip || !c->mean ||
-        !c->motion || !c->pair_point || !c->pair_edge || !c->force)
+        !c->motion)
         return ERR_MEMORY;
-    c->grid.x = c->middle_x;
-    c->grid.y = c->middle_y;
-    return contact_grid_create(&c->grid, a, c->n_edges, d);
+    TRY(contact_list_resize(c, 4 * c->n_solid_points + 64, d));
+    return point_grid_create(&c->grid, c->reach, c->n_edges, c->middle_x, c->middle_y, a, d);
 }
 
 static bool meets_walls(const struct scene *s)
@@ -523,17 +511,17 @@ enum err contact_create(struct contact *c, struct arena *a, const struct scene *
                         const struct solid *s, const struct particles *solid, struct diag *d)
 {
     *c = (struct contact){.scene = scene, .arena = a, .solid = s, .n_solids = scene->n_solid};
+    c->friction = solid->stick_edge;
     c->n_walls = meets_walls(scene) ? scene->n_wall : 0;
     c->n_groups = scene->n_solid + scene->n_motion + 1;
     const size_t n = (size_t)(c->n_solids + c->n_walls);
     c->law = arena_alloc(a, n * n, sizeof *c->law, "contact", d);
     if (!c->law) return ERR_MEMORY;
     set_laws(c);
-    TRY(contact_find_surface(c, a, solid, d));
-    TRY(contact_find_outer(c, a, d));
-    c->reach += 2 * c->most_outer;
+    TRY(contact_surface_create(c, a, solid, d));
+    c->reach += 2 * c->max_outer;
     TRY(create_list(c, a, d));
     drop_layers(c);
-    note_beginnings(c);
-    return solid->stick_edge ? contact_friction_create(c, a, d) : ERR_OK;
+    set_initial_distances(c);
+    return c->friction ? contact_friction_create(c, a, d) : ERR_OK;
 }

@@ -1,94 +1,81 @@
-/* SPDX-License-Identifier: MIT
- * Friction (T-62c, T-62d): a point of a solid holds to a place that moves with the surface which it presses.
- * If the spring between both would exceed Coulomb's friction, the place slides. */
+/* SPDX-License-Identifier: MIT */
+#include "solid/contact_friction.h"
+
 #include "solid/contact_law.h"
 
 #include <math.h>
 #include <string.h>
 
-/* The parts of a pair: the point; the ends of the edge. */
-enum { PARTS = 3 };
-
-/* A surface that presses a point of a solid. */
-struct press {
+/* What a surface presses a point of a solid with. */
+struct normal_load {
     int32_t group, edge; /* the nearest edge of that surface */
     double distance, force[2];
 };
 
 /* More surfaces than these at one point have no friction. */
-enum { SURFACES = 4 };
+enum { MAX_LOADS = 4 };
 
 enum err contact_friction_create(struct contact *c, struct arena *a, struct diag *d)
 {
     const size_t n = (size_t)c->n_solid_points;
-    c->press_head = arena_alloc(a, n, sizeof *c->press_head, "contact", d);
-    c->press_next = arena_alloc(a, PARTS * (size_t)c->most_pairs, sizeof(int32_t), "contact", d);
-    c->hold = arena_alloc(a, n, sizeof *c->hold, "contact", d);
-    c->hold_damping = arena_alloc(a, n, sizeof *c->hold, "contact", d);
-    c->edge_at = arena_alloc(a, (size_t)c->n_points, sizeof *c->edge_at, "contact", d);
-    if (!c->press_head || !c->press_next || !c->hold || !c->hold_damping || !c->edge_at)
-        return ERR_MEMORY;
+    c->load_head = arena_alloc(a, n, sizeof *c->load_head, "contact", d);
+    c->wall_row = arena_alloc(a, n, sizeof *c->wall_row, "contact", d);
+    c->wall_damping = arena_alloc(a, n, sizeof *c->wall_row, "contact", d);
+    c->point_edge = arena_alloc(a, (size_t)c->n_points, sizeof *c->point_edge, "contact", d);
+    if (!c->load_head || !c->wall_row || !c->wall_damping || !c->point_edge) return ERR_MEMORY;
     for (int64_t k = 0; k < c->n_edges; k++)
-        c->edge_at[c->edge[k].a] = c->edge_at[c->edge[k].b] = (int32_t)k;
+        c->point_edge[c->edge[k].a] = c->point_edge[c->edge[k].b] = (int32_t)k;
     return ERR_OK;
-}
-
-bool contact_friction_grow(struct contact *c, int64_t most, struct diag *d)
-{
-    if (!c->press_head) return true;
-    int32_t *const next = arena_alloc(c->arena, PARTS * (size_t)most, sizeof *next, "contact", d);
-    if (next) c->press_next = next;
-    return next;
 }
 
 /* --- what presses a point --- */
 
-static void note_press(struct contact *c, int32_t point, int64_t pair, int part)
+static void add_load(struct contact *c, int32_t point, int64_t pair, int part)
 {
-    const int64_t slot = PARTS * pair + part;
-    c->press_next[slot] = c->press_head[point];
-    c->press_head[point] = (int32_t)slot;
+    const int64_t slot = CONTACT_LOADS * pair + part;
+    c->load_next[slot] = c->load_head[point];
+    c->load_head[point] = (int32_t)slot;
 }
 
 /* A wall is rigid and its points have no state: what they press is on the solid's points. */
-static void find_presses(struct contact *c)
+static void list_loads(struct contact *c)
 {
-    memset(c->press_head, 0xff, (size_t)c->n_solid_points * sizeof *c->press_head);
+    memset(c->load_head, 0xff, (size_t)c->n_solid_points * sizeof *c->load_head);
     for (int64_t k = 0; k < c->n_pairs; k++) {
         if (!c->force[k].touches) continue;
         if (c->pair_point[k] < c->n_solid_points) {
-            note_press(c, c->pair_point[k], k, 0);
+            add_load(c, c->pair_point[k], k, 0);
         } else {
-            note_press(c, c->edge[c->pair_edge[k]].a, k, 1);
-            note_press(c, c->edge[c->pair_edge[k]].b, k, 2);
+            add_load(c, c->edge[c->pair_edge[k]].a, k, 1);
+            add_load(c, c->edge[c->pair_edge[k]].b, k, 2);
         }
     }
 }
 
-/* Notes an edge among the surfaces `on` a point; the surface's number, or SURFACES. */
-static int note_surface(const struct contact *c, int32_t edge, double distance,
-                        struct press on[SURFACES], int *n)
+/* Notes an edge among the surfaces `on` a point; the surface's number, or MAX_LOADS. */
+static int load_of_surface(const struct contact *c, int32_t edge, double distance,
+                           struct normal_load on[MAX_LOADS], int *n)
 {
     const int32_t group = c->group[c->edge[edge].a];
     int k = 0;
     while (k < *n && on[k].group != group) k++;
-    if (k == SURFACES) return k;
-    if (k == *n) on[(*n)++] = (struct press){group, edge, distance, {0}};
+    if (k == MAX_LOADS) return k;
+    if (k == *n) on[(*n)++] = (struct normal_load){group, edge, distance, {0}};
     if (distance < on[k].distance) on[k].edge = edge, on[k].distance = distance;
     return k;
 }
 
-static int presses_on(const struct contact *c, int32_t point, struct press on[SURFACES])
+static int loads_on(const struct contact *c, int32_t point, struct normal_load on[MAX_LOADS])
 {
     int n = 0;
-    for (int32_t slot = c->press_head[point]; slot >= 0; slot = c->press_next[slot]) {
-        const int64_t pair = slot / PARTS;
-        const int part = slot % PARTS;
+    for (int32_t slot = c->load_head[point]; slot >= 0; slot = c->load_next[slot]) {
+        const int64_t pair = slot / CONTACT_LOADS;
+        const int part = slot % CONTACT_LOADS;
         const struct contact_force *const from = &c->force[pair];
         const double *const f = part == 0 ? from->p : part == 1 ? from->a : from->b;
-        const int32_t edge = part ? c->edge_at[c->pair_point[pair]] : c->pair_edge[pair];
-        const int k = note_surface(c, edge, part ? (double)INFINITY : from->distance, on, &n);
-        if (k == SURFACES) continue;
+        const int32_t edge = part ? c->point_edge[c->pair_point[pair]] : c->pair_edge[pair];
+        const int k = load_of_surface(c, edge, part ? (double)INFINITY : from->distance, on, &n);
+        if (k == MAX_LOADS) continue;
         on[k].force[0] += f[0];
         on[k].force[1] += f[1];
     }
@@ -118,10 +105,10 @@ static void place_on(const struct contact *c, int32_t edge, double x, double y, 
 
 /* --- force --- */
 
-/* What holds a point: a spring with the displacement u across the normal n, a dashpot, a slider. */
-struct hold {
-    int32_t edge; /* that the place moves with */
-    double n[2], u[2], push, pull, stiffness, grip, friction;
+/* A tangential spring with the displacement u across the normal n, a dashpot and a slider. */
+struct spring {
+    int32_t edge; /* that its place moves with */
+    double n[2], u[2], normal_force, force, stiffness, damping, friction;
 };
 
 static struct contact_law law_of(const struct contact *c, int32_t point, int32_t edge)
@@ -135,37 +122,37 @@ static double halves(const struct contact *c, int32_t edge)
     return c->edge[edge].a < c->n_solid_points ? 1 : 1 / CONTACT_HALF;
 }
 
-static struct hold constants_of(const struct contact *c, int32_t point, int32_t edge)
+static struct spring spring_constants(const struct contact *c, int32_t point, int32_t edge)
 {
     const struct contact_law law = law_of(c, point, edge);
-    const struct pair q = pair_of(c, &law, point, edge, 0);
-    return (struct hold){
+    const struct contact_constants q = contact_constants_of(c, &law, point, edge, 0);
+    return (struct spring){
         .edge = edge,
         .stiffness = halves(c, edge) * law.shear * q.stiffness,
-        .grip = halves(c, edge) * q.grip,
+        .damping = halves(c, edge) * q.tangential_damping,
         .friction = q.friction,
     };
 }
 
 /* Edge of the place that a point holds to, if on this surface; else -1. */
-static int32_t edge_held(const struct contact *c, const struct particles *p, int32_t point,
-                         int32_t group)
+static int32_t spring_edge(const struct contact *c, const struct particles *p, int32_t point,
+                           int32_t group)
 {
     const int64_t edge = p->stick_edge[c->index[point]] - 1;
     return edge >= 0 && edge < c->n_edges && c->group[c->edge[edge].a] == group ? (int32_t)edge
                                                                                 : -1;
 }
 
-/* push = 0: there is no friction. */
-static struct hold hold_of(const struct contact *c, const struct particles *p, int32_t point,
-                           const struct press *on)
+/* normal_force = 0: there is no friction. */
+static struct spring spring_at(const struct contact *c, const struct particles *p, int32_t point,
+                               const struct normal_load *on)
 {
-    const int32_t edge = edge_held(c, p, point, on->group), i = c->index[point];
-    struct hold h = constants_of(c, point, edge < 0 ? on->edge : edge);
+    const int32_t edge = spring_edge(c, p, point, on->group), i = c->index[point];
+    struct spring h = spring_constants(c, point, edge < 0 ? on->edge : edge);
     const double *const f = on->force;
-    h.push = h.friction > 0 ? sqrt(f[0] * f[0] + f[1] * f[1]) : 0;
-    if (!(h.push > 0)) return h;
-    for (int k = 0; k < 2; k++) h.n[k] = f[k] / h.push;
+    h.normal_force = h.friction > 0 ? sqrt(f[0] * f[0] + f[1] * f[1]) : 0;
+    if (!(h.normal_force > 0)) return h;
+    for (int k = 0; k < 2; k++) h.n[k] = f[k] / h.normal_force;
     if (edge < 0) return h;
     const int32_t a = c->edge[edge].a;
     double e[2];
@@ -174,13 +161,14 @@ static struct hold hold_of(const struct contact *c, const struct particles *p, i
     const double y = c->y[a] + p->stick_along[i] * e[1] + p->stick_across[i] * e[0];
     const double d[2] = {c->x[point] - x, c->y[point] - y};
     for (int k = 0; k < 2; k++) h.u[k] = across(h.n, d, k);
-    h.pull = h.stiffness * sqrt(h.u[0] * h.u[0] + h.u[1] * h.u[1]);
+    h.force = h.stiffness * sqrt(h.u[0] * h.u[0] + h.u[1] * h.u[1]);
     return h;
 }
 
-/* The edge bears the opposite force as if it reached to the point: both act along one line, and the work of
- * the spring is that of its energy. */
-static void rub(struct contact *c, struct particles *p, int32_t point, const struct hold *h)
+/* The edge bears the opposite force as if it reached to the point: both act along one line, and
+ * the work of the spring is that of its energy. */
+static void add_friction(struct contact *c, struct particles *p, int32_t point,
+                         const struct spring *h)
 {
     const int32_t a = c->edge[h->edge].a, b = c->edge[h->edge].b;
     const double w[2] = {c->vx[b] - c->vx[a], c->vy[b] - c->vy[a]};
@@ -189,8 +177,8 @@ static void rub(struct contact *c, struct particles *p, int32_t point, const str
     const double v[2] = {c->vx[point] - (c->vx[a] + at[0] * w[0] - at[1] * w[1]),
                          c->vy[point] - (c->vy[a] + at[0] * w[1] + at[1] * w[0])};
     double f[2];
-    for (int k = 0; k < 2; k++) f[k] = -h->stiffness * h->u[k] - h->grip * across(h->n, v, k);
-    const double size = sqrt(f[0] * f[0] + f[1] * f[1]), most = h->friction * h->push;
+    for (int k = 0; k < 2; k++) f[k] = -h->stiffness * h->u[k] - h->damping * across(h->n, v, k);
+    const double size = sqrt(f[0] * f[0] + f[1] * f[1]), most = h->friction * h->normal_force;
     const double less = size > most ? most / size : 1;
     f[0] *= less;
     f[1] *= less;
@@ -201,16 +189,15 @@ static void rub(struct contact *c, struct particles *p, int32_t point, const str
     contact_add_force(c, p, b, fb);
 }
 
-void contact_rub(struct contact *c, struct particles *p)
+void contact_friction_forces(struct contact *c, struct particles *p)
 {
-    if (!c->press_head) return;
-    find_presses(c);
+    list_loads(c);
     for (int32_t point = 0; point < c->n_solid_points; point++) {
-        struct press on[SURFACES];
-        const int n = presses_on(c, point, on);
+        struct normal_load on[MAX_LOADS];
+        const int n = loads_on(c, point, on);
         for (int k = 0; k < n; k++) {
-            const struct hold h = hold_of(c, p, point, &on[k]);
-            if (h.push > 0) rub(c, p, point, &h);
+            const struct spring h = spring_at(c, p, point, &on[k]);
+            if (h.normal_force > 0) add_friction(c, p, point, &h);
         }
     }
 }
@@ -218,13 +205,14 @@ void contact_rub(struct contact *c, struct particles *p)
 double contact_friction_energy(struct contact *c, const struct particles *p)
 {
     double sum = 0;
-    find_presses(c);
+    list_loads(c);
     for (int32_t point = 0; point < c->n_solid_points; point++) {
-        struct press on[SURFACES];
-        const int n = presses_on(c, point, on);
+        struct normal_load on[MAX_LOADS];
+        const int n = loads_on(c, point, on);
         for (int k = 0; k < n; k++) {
-            const struct hold h = hold_of(c, p, point, &on[k]);
-            if (h.pull > 0) sum += 0.5 * square(min2(h.pull, h.friction * h.push)) / h.stiffness;
+            const struct spring h = spring_at(c, p, point, &on[k]);
+            if (h.force > 0)
+                sum += 0.5 * square(min2(h.force, h.friction * h.normal_force)) / h.stiffness;
         }
     }
     return sum;
@@ -232,14 +220,15 @@ double contact_friction_energy(struct contact *c, const struct particles *p)
 
 /* --- after a step --- */
 
-/* A point keeps to the surface that it holds to until it leaves it; then it takes the nearest. -1: none. */
-static int surface_to_hold(const struct contact *c, const struct particles *p, int32_t point,
-                           const struct press *on, int n)
+/* A point keeps to the surface that it holds to until it leaves it; then it takes the nearest.
+ * -1: none. */
+static int load_with_spring(const struct contact *c, const struct particles *p, int32_t point,
+                            const struct normal_load *on, int n)
 {
     int best = -1;
     for (int k = 0; k < n; k++) {
-        if (!(hold_of(c, p, point, &on[k]).push > 0)) continue;
-        if (edge_held(c, p, point, on[k].group) >= 0) return k;
+        if (!(spring_at(c, p, point, &on[k]).normal_force > 0)) continue;
+        if (spring_edge(c, p, point, on[k].group) >= 0) return k;
         if (best < 0 || on[k].distance < on[best].distance) best = k;
     }
     return best;
@@ -247,17 +236,17 @@ static int surface_to_hold(const struct contact *c, const struct particles *p, i
 
 void contact_slide(struct contact *c, struct particles *p)
 {
-    if (!c->press_head) return;
+    if (!c->friction) return;
     for (int32_t point = 0; point < c->n_solid_points; point++) {
-        struct press on[SURFACES];
-        const int n = presses_on(c, point, on), k = surface_to_hold(c, p, point, on, n);
+        struct normal_load on[MAX_LOADS];
+        const int n = loads_on(c, point, on), k = load_with_spring(c, p, point, on, n);
         const int32_t i = c->index[point];
         if (k < 0) {
             p->stick_edge[i] = 0;
             continue;
         }
-        const struct hold h = hold_of(c, p, point, &on[k]);
-        const double most = h.friction * h.push, less = h.pull > most ? most / h.pull : 1;
+        const struct spring h = spring_at(c, p, point, &on[k]);
+        const double most = h.friction * h.normal_force, less = h.force > most ? most / h.force : 1;
         double place[2];
         place_on(c, on[k].edge, c->x[point] - less * h.u[0], c->y[point] - less * h.u[1], place);
         p->stick_edge[i] = on[k].edge + 1;
@@ -273,16 +262,9 @@ static double per_mass(const struct contact *c, const struct particles *p, int32
     return p->free[c->index[point]] / c->solid->body[c->body[point]].mass;
 }
 
-static void add_row(struct contact *c, const struct particles *p, int32_t point, double weight,
-                    const struct hold *h)
-{
-    c->row[point] += weight * h->stiffness * per_mass(c, p, point);
-    c->row_damping[point] += weight * h->grip * per_mass(c, p, point);
-}
-
-/* The rows of T-62a of a point that holds to a solid: the weights are those of rub(). */
-static void add_rows(struct contact *c, const struct particles *p, int32_t point,
-                     const struct hold *h)
+/* The rows of T-62a of a point that holds to a solid: the weights are those of add_friction(). */
+static void add_spring_rows(struct contact *c, const struct particles *p, int32_t point,
+                            const struct spring *h)
 {
     const int32_t a = c->edge[h->edge].a, b = c->edge[h->edge].b;
     double at[2];
@@ -291,41 +273,40 @@ static void add_rows(struct contact *c, const struct particles *p, int32_t point
     const double to_a = sqrt(square(1 - at[0]) + square(at[1]));
     const double all =
         p->free[c->index[point]] + to_a * p->free[c->index[a]] + to_b * p->free[c->index[b]];
-    add_row(c, p, point, all, h);
-    add_row(c, p, a, to_a * all, h);
-    add_row(c, p, b, to_b * all, h);
+    contact_add_row(c, p, point, all, h->stiffness, h->damping);
+    contact_add_row(c, p, a, to_a * all, h->stiffness, h->damping);
+    contact_add_row(c, p, b, to_b * all, h->stiffness, h->damping);
 }
 
 /* A point that holds to walls does so with one spring, whichever pairs press it. */
-static void hold_to_wall(struct contact *c, const struct particles *p, int32_t point, int32_t edge)
+static void add_wall_spring(struct contact *c, const struct particles *p, int32_t point,
+                            int32_t edge)
 {
-    const struct hold h = constants_of(c, point, edge);
+    const struct spring h = spring_constants(c, point, edge);
     if (!(h.friction > 0)) return;
-    c->hold[point] = max2(c->hold[point], h.stiffness * per_mass(c, p, point));
-    c->hold_damping[point] = max2(c->hold_damping[point], h.grip * per_mass(c, p, point));
+    c->wall_row[point] = max2(c->wall_row[point], h.stiffness * per_mass(c, p, point));
+    c->wall_damping[point] = max2(c->wall_damping[point], h.damping * per_mass(c, p, point));
 }
 
-void contact_watch_friction(struct contact *c, const struct particles *p, int64_t first,
-                            int64_t end)
+void contact_friction_rows(struct contact *c, const struct particles *p, int64_t first, int64_t end)
 {
-    if (!c->press_head) return;
     const int32_t point = c->pair_point[first];
-    struct press on[SURFACES];
+    struct normal_load on[MAX_LOADS];
     int n = 0;
     for (int64_t k = first; k < end; k++) {
         const int32_t edge = c->pair_edge[k];
         if (!c->force[k].near) continue;
         if (point >= c->n_solid_points) {
-            hold_to_wall(c, p, c->edge[edge].a, c->edge_at[point]);
-            hold_to_wall(c, p, c->edge[edge].b, c->edge_at[point]);
+            add_wall_spring(c, p, c->edge[edge].a, c->point_edge[point]);
+            add_wall_spring(c, p, c->edge[edge].b, c->point_edge[point]);
         } else if (c->edge[edge].a >= c->n_solid_points) {
-            hold_to_wall(c, p, point, edge);
+            add_wall_spring(c, p, point, edge);
         } else {
-            note_surface(c, edge, c->force[k].distance, on, &n);
+            load_of_surface(c, edge, c->force[k].distance, on, &n);
         }
     }
     for (int k = 0; k < n; k++) {
-        const struct hold h = constants_of(c, point, on[k].edge);
-        if (h.friction > 0) add_rows(c, p, point, &h);
+        const struct spring h = spring_constants(c, point, on[k].edge);
+        if (h.friction > 0) add_spring_rows(c, p, point, &h);
     }
 }

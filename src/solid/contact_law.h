@@ -6,64 +6,64 @@
 #include <math.h>
 
 #include "base/elementary.h"
-#include "solid/contact.h"
+#include "solid/contact_search.h"
+#include "solid/contact_surface.h"
 
 /* Each surface of a pair of bodies carries half of the force: the points of each act on the edges
  * of the other. */
 #define CONTACT_HALF 0.5
 
 /* Constants of a point and an edge. */
-struct pair {
-    double least_reach; /* R of T-61c, the overlap at which the energy is infinite, m */
-    double stiffness;   /* force per overlap at first contact, N/m per depth */
-    double damping;     /* N s/m */
+struct contact_constants {
+    double min_reach; /* R of T-61c, the overlap at which the energy is infinite, m */
+    double stiffness; /* force per overlap at first contact, N/m per depth */
+    double damping;   /* N s/m */
     double friction;
-    double grip; /* of the dashpot that damps sticking, N s/m */
+    double tangential_damping; /* of the spring of friction, N s/m */
 };
 
-SPHFSI_INLINE double mass_of(const struct contact *c, int body)
+SPHFSI_INLINE double contact_mass(const struct contact *c, int body)
 {
     return body < c->n_solids ? c->solid->body[body].mass : (double)INFINITY;
 }
 
-SPHFSI_INLINE double dp_of(const struct contact *c, int body)
-{
-    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
-}
-
 /* A point represents its own part of the outline. Damping as a fraction of 2 sqrt(k m), with the
  * mass m of the pair, m_a m_b/(m_a + m_b). */
-SPHFSI_INLINE struct pair pair_of(const struct contact *c, const struct contact_law *law,
-                                  int32_t point, int32_t edge, double least_reach)
+SPHFSI_INLINE struct contact_constants contact_constants_of(const struct contact *c,
+                                                            const struct contact_law *law,
+                                                            int32_t point, int32_t edge,
+                                                            double min_reach)
 {
     const int a = c->body[point], b = c->body[c->edge[edge].a];
     const double k = law->stiffness * c->width[point] / law->spacing;
-    const double mass = 1 / (1 / mass_of(c, a) + 1 / mass_of(c, b)), critical = 2 * sqrt(k * mass);
-    return (struct pair){
-        .least_reach = least_reach,
+    const double mass = 1 / (1 / contact_mass(c, a) + 1 / contact_mass(c, b)),
+                 critical = 2 * sqrt(k * mass);
+    return (struct contact_constants){
+        .min_reach = min_reach,
         .stiffness = CONTACT_HALF * k,
         .damping = CONTACT_HALF * law->damping * critical,
         .friction = law->friction,
-        .grip = law->friction > 0 ? CONTACT_HALF * 0.5 * critical : 0,
+        .tangential_damping = law->friction > 0 ? CONTACT_HALF * 0.5 * critical : 0,
     };
 }
 
-/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is R, the least reach; r = contact_left. */
-SPHFSI_INLINE double touch_energy(const struct pair *q, double r)
+/* T-61: k R^2 (r/R - 1 - ln(r/R)), infinite where the overlap is R, the least reach; r =
+ * contact_clearance. */
+SPHFSI_INLINE double elastic_energy(const struct contact_constants *q, double r)
 {
-    if (!(r < q->least_reach)) return 0;
-    const double s = r / q->least_reach;
-    return q->stiffness * square(q->least_reach) * (s - 1 - elementary_log(s));
+    if (!(r < q->min_reach)) return 0;
+    const double s = r / q->min_reach;
+    return q->stiffness * square(q->min_reach) * (s - 1 - elementary_log(s));
 }
 
 /* The derivative of the potential, k R (R/r - 1), and its second derivative, k (R/r)^2. */
-SPHFSI_INLINE double elastic_force(const struct pair *q, double r)
+SPHFSI_INLINE double elastic_force(const struct contact_constants *q, double r)
 {
-    return q->stiffness * q->least_reach * (q->least_reach / r - 1);
+    return q->stiffness * q->min_reach * (q->min_reach / r - 1);
 }
-SPHFSI_INLINE double elastic_stiffness(const struct pair *q, double r)
+SPHFSI_INLINE double elastic_stiffness(const struct contact_constants *q, double r)
 {
-    return q->stiffness * square(q->least_reach / min2(r, q->least_reach));
+    return q->stiffness * square(q->min_reach / min2(r, q->min_reach));
 }
 
 /* Component k of a vector's part across the direction n. */
@@ -93,6 +93,16 @@ SPHFSI_INLINE void contact_add_force(struct contact *c, struct particles *p, int
     const double per_mass = p->free[i] / c->solid->body[c->body[point]].mass;
     p->sx[i] += f[0] * per_mass;
     p->sy[i] += f[1] * per_mass;
+}
+
+/* A part of the rows of T-62a, of a point of a solid. */
+SPHFSI_INLINE void contact_add_row(struct contact *c, const struct particles *p, int32_t point,
+                                   double weight, double stiffness, double damping)
+{
+    if (point >= c->n_solid_points) return;
+    const double per_mass = p->free[c->index[point]] / c->solid->body[c->body[point]].mass;
+    c->row[point] += weight * stiffness * per_mass;
+    c->row_damping[point] += weight * damping * per_mass;
 }
 
 #endif

@@ -1,60 +1,16 @@
 /* SPDX-License-Identifier: MIT
  * Positions of surface points, and the edges near them. */
-#include "solid/contact.h"
+#include "solid/contact_search.h"
 
 #include "particles/kernel.h"
 
 #include <math.h>
 #include <string.h>
 
-/* --- positions by cell --- */
-
-static int64_t cell_of(const struct contact_grid *g, double x)
-{
-    return (int64_t)floor(x / g->side);
-}
-
-enum err contact_grid_create(struct contact_grid *g, struct arena *a, int64_t n, struct diag *d)
-{
-    uint32_t size = 64;
-    while (size < (uint64_t)n) size *= 2;
-    g->mask = size - 1;
-    g->head = arena_alloc(a, size, sizeof *g->head, "contact", d);
-    g->next = arena_alloc(a, (size_t)n, sizeof *g->next, "contact", d);
-    return g->head && g->next ? ERR_OK : ERR_MEMORY;
-}
-
-void contact_grid_fill(struct contact_grid *g, int64_t n, const uint8_t *skip)
-{
-    memset(g->head, 0xff, ((size_t)g->mask + 1) * sizeof *g->head);
-    for (int64_t k = n - 1; k >= 0; k--) {
-        if (skip && skip[k]) continue;
-        const uint32_t slot = hash_cell(cell_of(g, g->x[k]), cell_of(g, g->y[k]), g->mask);
-        g->next[k] = g->head[slot];
-        g->head[slot] = (int32_t)k;
-    }
-}
-
-void contact_grid_find(const struct contact_grid *g, double x, double y, double reach,
-                       contact_visit *found, void *context)
-{
-    const int64_t i0 = cell_of(g, x - reach), i1 = cell_of(g, x + reach);
-    const int64_t j0 = cell_of(g, y - reach), j1 = cell_of(g, y + reach);
-    for (int64_t j = j0; j <= j1; j++) {
-        for (int64_t i = i0; i <= i1; i++) {
-            for (int32_t k = g->head[hash_cell(i, j, g->mask)]; k >= 0; k = g->next[k]) {
-                /* Several cells may have the same slot. */
-                if (cell_of(g, g->x[k]) != i || cell_of(g, g->y[k]) != j) continue;
-                if (square(g->x[k] - x) + square(g->y[k] - y) < reach * reach) found(context, k);
-            }
-        }
-    }
-}
-
 /* --- pairs --- */
 
-/* The place on an edge where the distance less the reach is smallest if the reach rises by `rise` from a
- * to b (T-61c). */
+/* The place on an edge where the distance less the reach is smallest if the reach rises by
+ * `rise` from a to b (T-61c). */
 static struct contact_foot foot_of(const struct contact *c, int32_t point, int32_t edge,
                                    double rise)
 {
@@ -92,13 +48,13 @@ struct contact_foot contact_foot(const struct contact *c, const struct contact_l
     const double at_b = contact_reach(c, law, point, c->edge[edge].b);
     struct contact_foot f = foot_of(c, point, edge, at_b - at_a);
     f.reach = f.at == 1 ? at_b : at_a + f.at * (at_b - at_a);
-    f.least_reach = min2(at_a, at_b);
+    f.min_reach = min2(at_a, at_b);
     return f;
 }
 
 /* Whether a point was initially within the kernel of an end of an edge, with the smoothing length
  * of a body. */
-static bool began_within(const struct contact *c, int32_t point, int32_t edge, int body)
+static bool initially_within(const struct contact *c, int32_t point, int32_t edge, int body)
 {
     const int32_t end[2] = {c->edge[edge].a, c->edge[edge].b};
     const double reach2 = square(KERNEL_REACH * c->solid->body[body].h);
@@ -109,14 +65,15 @@ static bool began_within(const struct contact *c, int32_t point, int32_t edge, i
 }
 
 /* Whether a clamp holds the solid of a pair to its wall there. */
-static bool held_together(const struct contact *c, int32_t point, int32_t edge)
+static bool joined_by_clamp(const struct contact *c, int32_t point, int32_t edge)
 {
     const int32_t a = c->edge[edge].a, b = c->edge[edge].b;
     const bool first = point < c->n_solid_points;
     const int one = c->body[first ? point : a], wall = c->body[first ? a : point] - c->n_solids;
-    if (wall < 0 || !(first ? c->held[point] : c->held[a] || c->held[b])) return false;
+    if (wall < 0 || !(first ? c->near_clamp[point] : c->near_clamp[a] || c->near_clamp[b]))
+        return false;
     return strcmp(c->scene->solid[one].clamp_motion, c->scene->wall[wall].motion) == 0 &&
-           began_within(c, point, edge, one);
+           initially_within(c, point, edge, one);
 }
 
 /* The material keeps points apart that were initially within each other's kernel in one body. A
@@ -125,15 +82,15 @@ struct contact_law contact_pair_law(const struct contact *c, int32_t point, int3
 {
     const struct contact_edge *const e = &c->edge[edge];
     struct contact_law law = c->law[c->body[point] * (c->n_solids + c->n_walls) + c->body[e->a]];
-    law.began = (double)INFINITY;
+    law.initial = (double)INFINITY;
     if (!law.on) return law;
     if (c->group[point] == c->group[e->a])
-        law.on = !began_within(c, point, edge, c->body[point]);
-    else if (held_together(c, point, edge))
+        law.on = !initially_within(c, point, edge, c->body[point]);
+    else if (joined_by_clamp(c, point, edge))
         law.on = false;
-    else if (c->began_group[point] == c->group[e->a])
-        law.began = c->began[point];
-    law.on = law.on && law.began > 0;
+    else if (c->initial_group[point] == c->group[e->a])
+        law.initial = c->initial[point];
+    law.on = law.on && law.initial > 0;
     return law;
 }
 
@@ -159,50 +116,44 @@ static bool in_box(const struct box *box, double x, double y)
     return x >= box->low[0] && x <= box->high[0] && y >= box->low[1] && y <= box->high[1];
 }
 
-/* Enlarges the list; if there is no memory for it, the run stops. */
-static bool grow(struct contact *c)
+enum err contact_list_resize(struct contact *c, int64_t max_pairs, struct diag *d)
 {
-    struct diag d = {0};
-    const int64_t most = 2 * c->most_pairs;
-    int32_t *const point = arena_alloc(c->arena, (size_t)most, sizeof *point, "contact", &d);
-    int32_t *const edge = arena_alloc(c->arena, (size_t)most, sizeof *edge, "contact", &d);
-    struct contact_force *const force =
-        arena_alloc(c->arena, (size_t)most, sizeof *force, "contact", &d);
-    if (!point || !edge || !force || !contact_friction_grow(c, most, &d)) return false;
-    memcpy(point, c->pair_point, (size_t)c->n_pairs * sizeof *point);
-    memcpy(edge, c->pair_edge, (size_t)c->n_pairs * sizeof *edge);
+    const size_t max = (size_t)max_pairs, n = (size_t)c->n_pairs;
+    int32_t *const point = arena_alloc(c->arena, max, sizeof *point, "contact", d);
+    int32_t *const edge = arena_alloc(c->arena, max, sizeof *edge, "contact", d);
+    struct contact_force *const force = arena_alloc(c->arena, max, sizeof *force, "contact", d);
+    int32_t *const load =
+        arena_alloc(c->arena, c->friction ? CONTACT_LOADS * max : 0, sizeof *load, "contact", d);
+    if (!point || !edge || !force || !load) return ERR_MEMORY;
+    if (n) memcpy(point, c->pair_point, n * sizeof *point);
+    if (n) memcpy(edge, c->pair_edge, n * sizeof *edge);
     c->pair_point = point;
     c->pair_edge = edge;
     c->force = force;
-    c->most_pairs = most;
-    return true;
+    c->load_next = load;
+    c->max_pairs = max_pairs;
+    return ERR_OK;
 }
 
-struct lister {
-    struct contact *c;
-    int32_t point;
-    int64_t first; /* of the point's pairs */
-};
-
-/* Keeps an edge if it is near enough, in ascending order of edges. */
-static void keep_pair(void *context, int32_t edge)
+/* Lists a point and an edge if they are near enough; the edges of a point, whose pairs begin at
+ * `first`, in ascending order. */
+static void list_pair(struct contact *c, int32_t point, int32_t edge, int64_t first)
 {
-    const struct lister *const l = context;
-    struct contact *const c = l->c;
-    const struct contact_law law = contact_pair_law(c, l->point, edge);
+    const struct contact_law law = contact_pair_law(c, point, edge);
     if (!law.on) return;
-    const double margin = c->margin[contact_with(c, l->point, edge)];
-    const struct contact_foot foot = contact_foot(c, &law, l->point, edge);
+    const double margin = c->margin[contact_with(c, point, edge)];
+    const struct contact_foot foot = contact_foot(c, &law, point, edge);
     if (!(foot.distance < foot.reach + margin)) return;
-    if (c->n_pairs == c->most_pairs && !grow(c)) {
+    struct diag d = {0};
+    /* Without memory for a longer list the run stops. */
+    if (c->n_pairs == c->max_pairs && contact_list_resize(c, 2 * c->max_pairs, &d)) {
         c->list_full = true;
         return;
     }
     int64_t at = c->n_pairs++;
-    for (; at > l->first && c->pair_edge[at - 1] > edge; at--)
-        c->pair_edge[at] = c->pair_edge[at - 1];
+    for (; at > first && c->pair_edge[at - 1] > edge; at--) c->pair_edge[at] = c->pair_edge[at - 1];
     c->pair_edge[at] = edge;
-    c->pair_point[c->n_pairs - 1] = l->point;
+    c->pair_point[c->n_pairs - 1] = point;
 }
 
 void contact_list(struct contact *c)
@@ -221,12 +172,15 @@ void contact_list(struct contact *c)
     }
     const double reach = c->reach + margin + sqrt(half2);
     c->grid.side = reach;
-    contact_grid_fill(&c->grid, c->n_edges, skip);
+    point_grid_clear(&c->grid);
+    for (int64_t k = c->n_edges - 1; k >= 0; k--)
+        if (!skip[k]) point_grid_insert(&c->grid, k);
     c->n_pairs = 0;
     for (int64_t k = 0; k < c->n_points; k++) {
         if (k >= c->n_solid_points && !in_box(&box, c->x[k], c->y[k])) continue;
-        struct lister l = {c, (int32_t)k, c->n_pairs};
-        contact_grid_find(&c->grid, c->x[k], c->y[k], reach, keep_pair, &l);
+        const int64_t first = c->n_pairs;
+        struct point_visit v = point_grid_visit(&c->grid, c->x[k], c->y[k], reach);
+        while (point_grid_next(&c->grid, &v)) list_pair(c, (int32_t)k, (int32_t)v.k, first);
     }
     memcpy(c->at_x, c->x, (size_t)c->n_points * sizeof *c->x);
     memcpy(c->at_y, c->y, (size_t)c->n_points * sizeof *c->y);

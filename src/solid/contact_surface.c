@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Surfaces of solids and walls as lines through their outermost particles: the alpha shape of each
  * group (Edelsbrunner, Kirkpatrick and Seidel 1983). */
-#include "solid/contact.h"
+#include "solid/contact_surface.h"
 
+#include "base/elementary.h"
+#include "geometry/outline.h"
 #include "particles/kernel.h"
 
 #include <math.h>
@@ -16,7 +18,7 @@ static const double roll = 0.85;
 /* Particles of one kind that may have a surface. */
 struct cloud {
     int64_t n;
-    const double *x, *y;
+    double *x, *y;
     int32_t *body, *group;
     double *dp;
     int32_t *point; /* [n] number at the surface; -1: inside */
@@ -32,20 +34,10 @@ struct link {
 enum { AROUND = 64 };
 struct around {
     const struct cloud *of;
-    int32_t self, group;
-    double limit2;
+    int32_t self;
     int n;
     int32_t item[AROUND];
 };
-
-static void note(void *context, int32_t item)
-{
-    struct around *const at = context;
-    const struct cloud *const of = at->of;
-    if (item == at->self || of->group[item] != at->group || at->n >= AROUND) return;
-    const double x = of->x[item] - of->x[at->self], y = of->y[item] - of->y[at->self];
-    if (x * x + y * y < at->limit2) at->item[at->n++] = item;
-}
 
 /* Whether the circle about (x, y) contains none of the particles around but `other`. */
 static bool empty_circle(const struct around *at, double x, double y, double radius, int32_t other)
@@ -80,17 +72,31 @@ static int64_t links_of(const struct around *at, struct link *link, int64_t n)
     return n;
 }
 
+/* A grid of the points without `skip`, NULL: of all, which visits those of a cell in ascending
+ * order. */
+static enum err grid_of(struct point_grid *g, double side, int64_t n, double *x, double *y,
+                        const double *skip, struct arena *temp, struct diag *d)
+{
+    TRY(point_grid_create(g, side, n, x, y, temp, d));
+    for (int64_t i = n - 1; i >= 0; i--)
+        if (!skip || skip[i] == 0) point_grid_insert(g, i);
+    return ERR_OK;
+}
+
 static enum err find_links(const struct cloud *of, struct arena *temp, struct link *link,
                            int64_t *n_links, struct diag *d)
 {
-    struct contact_grid g = {.x = of->x, .y = of->y};
-    TRY(contact_grid_create(&g, temp, of->n, d));
-    for (int64_t i = 0; i < of->n; i++) g.side = max2(g.side, 2 * roll * of->dp[i]);
-    contact_grid_fill(&g, of->n, NULL);
+    struct point_grid g;
+    double side = 0;
+    for (int64_t i = 0; i < of->n; i++) side = max2(side, 2 * roll * of->dp[i]);
+    TRY(grid_of(&g, side, of->n, of->x, of->y, NULL, temp, d));
     *n_links = 0;
     for (int64_t i = 0; i < of->n; i++) {
-        struct around at = {of, (int32_t)i, of->group[i], square(2 * roll * of->dp[i]), 0, {0}};
-        contact_grid_find(&g, of->x[i], of->y[i], 2 * roll * of->dp[i], note, &at);
+        struct around at = {.of = of, .self = (int32_t)i};
+        struct point_visit v = point_grid_visit(&g, of->x[i], of->y[i], 2 * roll * of->dp[i]);
+        while (point_grid_next(&g, &v))
+            if (v.k != i && of->group[v.k] == of->group[i] && at.n < AROUND)
+                at.item[at.n++] = (int32_t)v.k;
         const int64_t before = *n_links;
         *n_links = links_of(&at, link, *n_links);
         for (int64_t k = before; k < *n_links; k++) of->point[link[k].a] = of->point[link[k].b] = 0;
@@ -99,7 +105,8 @@ static enum err find_links(const struct cloud *of, struct arena *temp, struct li
     return ERR_OK;
 }
 
-/* Numbers the particles at the surface of groups from `first` to before `end` on from c->n_points. */
+/* Numbers the particles at the surface of groups from `first` to before `end` on from
+ * c->n_points. */
 static void number_points(struct contact *c, const struct cloud *of, int32_t first, int32_t end)
 {
     for (int64_t i = 0; i < of->n; i++) {
@@ -137,9 +144,9 @@ static void set_shares(struct contact *c)
 
 static enum err points_create(struct contact *c, struct arena *a, size_t n, struct diag *d)
 {
-    int32_t **const number[] = {&c->index, &c->body, &c->group, &c->began_group};
-    double **const place[] = {&c->X,    &c->Y,    &c->x,     &c->y,     &c->vx,    &c->vy,
-                              &c->at_x, &c->at_y, &c->began, &c->share, &c->outer, &c->width};
+    int32_t **const number[] = {&c->index, &c->body, &c->group, &c->initial_group};
+    double **const place[] = {&c->X,    &c->Y,    &c->x,       &c->y,     &c->vx,    &c->vy,
+                              &c->at_x, &c->at_y, &c->initial, &c->share, &c->outer, &c->width};
     for (size_t k = 0; k < COUNT_OF(number); k++)
         if (!(*number[k] = arena_alloc(a, n, sizeof(int32_t), "contact", d))) return ERR_MEMORY;
     for (size_t k = 0; k < COUNT_OF(place); k++)
@@ -147,8 +154,8 @@ static enum err points_create(struct contact *c, struct arena *a, size_t n, stru
     return ERR_OK;
 }
 
-static enum err cloud_create(struct cloud *of, struct arena *temp, int64_t n, const double *x,
-                             const double *y, struct diag *d)
+static enum err cloud_create(struct cloud *of, struct arena *temp, int64_t n, double *x, double *y,
+                             struct diag *d)
 {
     *of = (struct cloud){.n = n, .x = x, .y = y};
     of->body = arena_alloc(temp, (size_t)n, sizeof *of->body, "contact", d);
@@ -180,35 +187,21 @@ static enum err make_clouds(struct contact *c, const struct particles *solid, st
     return ERR_OK;
 }
 
-struct holder {
-    struct contact *c;
-    const struct particles *solid;
-    int64_t point;
-};
-
-static void note_clamp(void *context, int32_t particle)
-{
-    const struct holder *const h = context;
-    if (h->c->solid->body[h->solid->body[particle]].bond == h->c->group[h->point])
-        h->c->held[h->point] = 1;
-}
-
 /* Marks the points near clamps. */
-static enum err find_held(struct contact *c, struct arena *a, const struct particles *solid,
-                          struct arena *temp, struct diag *d)
+static enum err find_clamps(struct contact *c, struct arena *a, const struct particles *solid,
+                            struct arena *temp, struct diag *d)
 {
-    struct contact_grid g = {.x = solid->X, .y = solid->Y};
-    TRY(contact_grid_create(&g, temp, solid->n, d));
-    uint8_t *const free = arena_alloc(temp, (size_t)solid->n, sizeof *free, "contact", d);
-    c->held = arena_alloc(a, (size_t)c->n_points, sizeof *c->held, "contact", d);
-    if (!free || !c->held) return ERR_MEMORY;
-    for (int64_t i = 0; i < solid->n; i++) free[i] = solid->free[i] != 0;
-    for (int k = 0; k < c->n_solids; k++) g.side = max2(g.side, KERNEL_REACH * c->solid->body[k].h);
-    contact_grid_fill(&g, solid->n, free);
+    struct point_grid g;
+    double side = 0;
+    for (int k = 0; k < c->n_solids; k++) side = max2(side, KERNEL_REACH * c->solid->body[k].h);
+    TRY(grid_of(&g, side, solid->n, solid->X, solid->Y, solid->free, temp, d));
+    c->near_clamp = arena_alloc(a, (size_t)c->n_points, sizeof *c->near_clamp, "contact", d);
+    if (!c->near_clamp) return ERR_MEMORY;
     for (int64_t k = 0; k < c->n_solid_points; k++) {
-        struct holder h = {c, solid, k};
-        contact_grid_find(&g, c->X[k], c->Y[k], KERNEL_REACH * c->solid->body[c->body[k]].h,
-                          note_clamp, &h);
+        const double reach = KERNEL_REACH * c->solid->body[c->body[k]].h;
+        struct point_visit v = point_grid_visit(&g, c->X[k], c->Y[k], reach);
+        while (point_grid_next(&g, &v))
+            c->near_clamp[k] |= c->solid->body[solid->body[v.k]].bond == c->group[k];
     }
     return ERR_OK;
 }
@@ -241,14 +234,166 @@ static enum err find_surface(struct contact *c, struct arena *a, const struct pa
     for (int k = 0; k < 2; k++) add_edges(c, &of[k], link[k], n_links[k]);
     set_shares(c);
     for (int64_t i = 0; i < of[1].n; i++) c->wall_point[i] = of[1].point[i];
-    return find_held(c, a, solid, temp, d);
+    return find_clamps(c, a, solid, temp, d);
 }
 
-enum err contact_find_surface(struct contact *c, struct arena *a, const struct particles *solid,
-                              struct diag *d)
+/* --- how far surface points lie inside the outlines of the shapes that they sample (T-61b) --- */
+
+/* Shapes of a solid or wall. */
+struct region {
+    struct outlines add, minus;
+    int group;
+};
+
+struct regions {
+    int n;
+    struct region *item;
+    double *scratch;
+};
+
+static enum err add_region(struct regions *r, const struct scene *scene, int group,
+                           const struct shape_list *add, const struct shape_list *minus,
+                           struct arena *a, struct diag *d)
+{
+    struct region *const to = &r->item[r->n++];
+    to->group = group;
+    TRY(outlines_of(&to->add, scene, add, a, d));
+    return outlines_of(&to->minus, scene, minus, a, d);
+}
+
+static enum err regions_create(struct regions *r, const struct contact *c, struct arena *a,
+                               struct diag *d)
+{
+    const struct scene *const s = c->scene;
+    *r = (struct regions){0};
+    r->item = arena_alloc(a, (size_t)(c->n_solids + c->n_walls), sizeof *r->item, "contact", d);
+    if (!r->item) return ERR_MEMORY;
+    for (int k = 0; k < c->n_solids; k++)
+        TRY(add_region(r, s, c->solid->body[k].bond, &s->solid[k].shape, &s->solid[k].minus, a, d));
+    for (int k = 0; k < c->n_walls; k++)
+        TRY(add_region(r, s, c->n_solids + 1 + scene_find_motion(s, s->wall[k].motion),
+                       &s->wall[k].shape, &s->wall[k].minus, a, d));
+    int most = 2;
+    for (int k = 0; k < r->n; k++) {
+        const int add = outlines_capacity(&r->item[k].add);
+        const int minus = outlines_capacity(&r->item[k].minus);
+        most = add > most ? add : most;
+        most = minus > most ? minus : most;
+    }
+    r->scratch = arena_alloc(a, (size_t)most, sizeof *r->scratch, "contact", d);
+    return r->scratch ? ERR_OK : ERR_MEMORY;
+}
+
+static bool in_any(const struct outlines *o, double x, double y, double *scratch)
+{
+    for (int k = 0; k < o->n; k++)
+        if (outline_contains(&o->item[k], x, y, scratch)) return true;
+    return false;
+}
+
+static bool inside(const struct regions *r, int group, double x, double y)
+{
+    for (int k = 0; k < r->n; k++) {
+        const struct region *const of = &r->item[k];
+        if (of->group == group && in_any(&of->add, x, y, r->scratch) &&
+            !in_any(&of->minus, x, y, r->scratch))
+            return true;
+    }
+    return false;
+}
+
+/* A point in search of the nearest place of the outline. */
+struct nearest {
+    const struct regions *regions;
+    int group;
+    double x, y, distance;
+};
+
+/* Takes a place of a piece if it is nearer and on the outline of the union: just beyond it is
+ * outside. */
+static void try_place(struct nearest *n, double x, double y)
+{
+    const double dx = x - n->x, dy = y - n->y, distance = elementary_hypot(dx, dy);
+    if (!(distance < n->distance)) return;
+    const double beyond = 1 + 1e-6;
+    if (inside(n->regions, n->group, n->x + beyond * dx, n->y + beyond * dy)) return;
+    n->distance = distance;
+}
+
+static void try_piece(struct nearest *n, const struct outline *o)
+{
+    if (n->x < o->low[0] - n->distance || n->x > o->high[0] + n->distance ||
+        n->y < o->low[1] - n->distance || n->y > o->high[1] + n->distance)
+        return;
+    if (o->n == 0) {
+        const double dx = n->x - o->centre[0], dy = n->y - o->centre[1];
+        const double r = elementary_hypot(dx, dy);
+        if (r > 0)
+            try_place(n, o->centre[0] + o->radius / r * dx, o->centre[1] + o->radius / r * dy);
+        return;
+    }
+    for (int k = 0; k < o->n; k++) {
+        const double *const a = o->pt[k], *const b = o->pt[k + 1 < o->n ? k + 1 : 0];
+        const double ex = b[0] - a[0], ey = b[1] - a[1], length2 = ex * ex + ey * ey;
+        if (length2 == 0) continue;
+        const double along = (n->x - a[0]) * ex + (n->y - a[1]) * ey;
+        const double s = min2(1, max2(0, along / length2));
+        try_place(n, a[0] + s * ex, a[1] + s * ey);
+    }
+}
+
+/* Distance to the outline less half a spacing. On a lattice that fits it is zero, but for
+ * round-off. */
+static double outer_of(const struct regions *r, int group, double x, double y, double dp)
+{
+    struct nearest n = {r, group, x, y, dp};
+    for (int k = 0; k < r->n; k++) {
+        if (r->item[k].group != group) continue;
+        for (int j = 0; j < r->item[k].add.n; j++) try_piece(&n, &r->item[k].add.item[j]);
+        for (int j = 0; j < r->item[k].minus.n; j++) try_piece(&n, &r->item[k].minus.item[j]);
+    }
+    if (!(n.distance < dp)) return 0;
+    const double outer = n.distance - 0.5 * dp;
+    return fabs(outer) < 1e-6 * dp ? 0 : outer;
+}
+
+/* The length of outline that each point stands for: half of both edges, as seen from the
+ * outline. At the end of a line it is a whole edge, for a single point a spacing. On a lattice
+ * that fits it is the spacing, but for round-off. */
+static void find_width(struct contact *c)
+{
+    for (int64_t k = 0; k < c->n_edges; k++) {
+        const int32_t a = c->edge[k].a, b = c->edge[k].b;
+        const double length2 = square(c->X[b] - c->X[a]) + square(c->Y[b] - c->Y[a]);
+        const double along = sqrt(max2(0, length2 - square(c->outer[b] - c->outer[a])));
+        c->width[a] += (1 - c->share[a]) * along;
+        c->width[b] += (1 - c->share[b]) * along;
+    }
+    for (int64_t k = 0; k < c->n_points; k++) {
+        const double dp = contact_dp(c, c->body[k]);
+        if (c->width[k] == 0 || fabs(c->width[k] - dp) < 1e-6 * dp) c->width[k] = dp;
+    }
+}
+
+static enum err find_outlines(struct contact *c, struct arena *temp, struct diag *d)
+{
+    struct regions r;
+    TRY(regions_create(&r, c, temp, d));
+    for (int64_t k = 0; k < c->n_points; k++) {
+        const double dp = contact_dp(c, c->body[k]);
+        c->outer[k] = outer_of(&r, c->group[k], c->X[k], c->Y[k], dp);
+        c->max_outer = max2(c->max_outer, c->outer[k]);
+    }
+    find_width(c);
+    return ERR_OK;
+}
+
+enum err contact_surface_create(struct contact *c, struct arena *a, const struct particles *solid,
+                                struct diag *d)
 {
     struct arena temp = {.limit = a->limit};
-    const enum err e = find_surface(c, a, solid, &temp, d);
+    enum err e = find_surface(c, a, solid, &temp, d);
+    if (!e) e = find_outlines(c, &temp, d);
     arena_free(&temp);
     return e;
 }

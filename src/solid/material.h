@@ -43,8 +43,8 @@ SPHFSI_INLINE double plane_lambda(const struct solid_body *b)
     return b->plane == PLANE_STRESS ? 2 * b->lambda * b->mu / (b->lambda + 2 * b->mu) : b->lambda;
 }
 
-/* Eqs. 9-12 with the Almansi strain eps = F^-T E F^-1: Cauchy stress linear in eps, P = J sigma F^-T.
- * In plane stress J counts the change of thickness, 1/sqrt(1 - 2 eps_zz). */
+/* Eqs. 9-12 with the Almansi strain eps = F^-T E F^-1: Cauchy stress linear in eps, P = J sigma
+ * F^-T. In plane stress J counts the change of thickness, 1/sqrt(1 - 2 eps_zz). */
 SPHFSI_INLINE struct vtensor2 paper_pk1(const struct solid_body *b, struct vtensor2 U)
 {
     const struct vtensor2 F = deformation(U), cof = vtensor2_cof(F);

@@ -21,8 +21,8 @@ static void forces_without_clamps(struct solid *s, struct particles *p, double t
     if (contact) contact->power = power, contact->seconds = seconds;
 }
 
-/* What a clamp gives particle i: its prescribed acceleration, and the force that this takes beside the
- * others (T-74). */
+/* What a clamp gives particle i: its prescribed acceleration, and the force that this takes
+ * beside the others (T-74). */
 static void hold(const struct solid *s, const struct particles *p, int64_t i, const double to[2])
 {
     double *const *const now = s->scratch;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "solid/contact.h"
+#include "solid/contact_friction.h"
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "case/params.h"
@@ -282,7 +283,7 @@ static void outer_forces(const struct solid *s, struct particles *p, double time
 {
     if (s->contact) {
         const double start = wall_clock();
-        contact_forces(s->contact, s, p, time);
+        contact_forces(s->contact, p, time);
 #pragma omp master
         s->contact->seconds += wall_clock() - start;
     }

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * Total-Lagrangian elastic solid: reference neighbours as packs, deformation gradient, stress, forces. */
+ * Total-Lagrangian elastic solid: reference neighbours as packs, deformation gradient, stress,
+ * forces. */
 #ifndef SPHFSI_SOLID_SOLID_H
 #define SPHFSI_SOLID_SOLID_H
 
 #include "solid/types.h"
 
-/* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free are
- * set). */
+/* Builds constants, reference neighbours and their weights for the particles p (X, Y, body, free
+ * are set). */
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
                       struct particles *p, struct diag *d) SPHFSI_CHECKED;
 
@@ -19,12 +20,14 @@ void solid_stress(struct solid *s, struct particles *p);
  * displacements and velocities; zero where clamped. */
 void solid_forces(const struct solid *s, struct particles *p);
 
-/* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the other results
- * only the packed fields are updated. displaced: not only velocities have changed since the last call. */
+/* The acceleration by the forces between particles alone to sx, sy; zero where clamped. Of the
+ * other results only the packed fields are updated. displaced: not only velocities have changed
+ * since the last call. */
 void solid_operator(struct solid *s, struct particles *p, bool displaced);
 
-/* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from what
- * solid_stress has found. They stay in the scratch of s until that is used again; p is as it was. */
+/* Accelerations now, m/s^2, and forces of clamps on their particles, N/m (0 on all others), from
+ * what solid_stress has found. They stay in the scratch of s until that is used again; p is as
+ * it was. */
 struct solid_forces_now {
     const double *ax, *ay, *clamp_x, *clamp_y;
 };

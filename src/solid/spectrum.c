@@ -96,9 +96,9 @@ static double largest_factor(struct solid *s, struct particles *p, double *const
     return 1.01 * factor;
 }
 
-/* An oscillation of angular frequency omega, damped explicitly at the rate gamma, does not grow while
- * (omega dt)^2 + 2 gamma dt < 4: just that for semi-implicit Euler, a little less than the limit for the
- * predictor-corrector (docs/theory.md). */
+/* An oscillation of angular frequency omega, damped explicitly at the rate gamma, does not grow
+ * while (omega dt)^2 + 2 gamma dt < 4: just that for semi-implicit Euler, a little less than the
+ * limit for the predictor-corrector (docs/theory.md). */
 double solid_step_of(double omega2, double damping)
 {
     if (!(omega2 > 0)) return (double)INFINITY;
@@ -192,8 +192,8 @@ static bool stretches(const struct particles *p, int64_t i, int n, vdouble *firs
     return true;
 }
 
-/* The largest of the axial stiffnesses in a pack. Each particle counts by itself: who shares its vector
- * depends on the machine. */
+/* The largest of the axial stiffnesses in a pack. Each particle counts by itself: who shares its
+ * vector depends on the machine. */
 static double stiffest(const struct solid *s, const struct particles *p,
                        const struct solid_pack *pack)
 {

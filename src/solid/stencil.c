@@ -29,8 +29,8 @@ static double reference_distance(double a, double b, double dp)
     return nearbyint((a - b) / unit) * unit;
 }
 
-/* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near, are
- * not bonded to it. -1: too many. */
+/* Neighbours of i in its own body and those joined to it, ascending. Other bodies, however near,
+ * are not bonded to it. -1: too many. */
 static int neighbours_of(const struct solid *s, const struct point_grid *g,
                          const struct particles *p, int64_t i, int32_t *found)
 {
@@ -80,7 +80,8 @@ static void basis(double x, double y, double b[5])
     b[4] = 0.5 * y * y;
 }
 
-/* Solves M z = e_row for a symmetric positive matrix by Cholesky; false where it is (nearly) singular. */
+/* Solves M z = e_row for a symmetric positive matrix by Cholesky; false where it is (nearly)
+ * singular. */
 static bool solve_row(const double M[5][5], int n, int row, double z[5])
 {
     double C[5][5];

@@ -5,8 +5,8 @@
 
 #include "solid/solid.h"
 
-/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and the
- * weights of the gradient, and sums these (S_GX, S_GY). s->body, sweeps and lane are set. */
+/* Cuts the particles into packs, finds their reference neighbours within 2h in the same body and
+ * the weights of the gradient, and sums these (S_GX, S_GY). s->body, sweeps and lane are set. */
 enum err solid_stencil_create(struct solid *s, struct arena *a, const struct particles *p,
                               struct diag *d) SPHFSI_CHECKED;
 

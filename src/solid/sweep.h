@@ -13,8 +13,8 @@ SPHFSI_INLINE void store_packed(const struct solid *s, int lane, const struct so
     vput((real *)s->lane[lane] + pack->i, value, pack->lanes);
 }
 
-/* Four components from field `lane` on. The last pack of a body is stored in a function of its own, which
- * leaves the registers of the others alone. */
+/* Four components from field `lane` on. The last pack of a body is stored in a function of its
+ * own, which leaves the registers of the others alone. */
 static __attribute__((noinline, cold)) void
 store_part(const struct solid *s, int lane, const struct solid_pack *pack, const struct vtensor2 *t)
 {
@@ -102,8 +102,9 @@ static void stress(const struct solid *s, struct particles *p, int64_t first, in
     }
 }
 
-/* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C : dE/dt with the
- * tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a) G_ab^T. P gains F times it. */
+/* Kelvin and Voigt: beside the elastic second Piola-Kirchhoff stress a viscous one, tau C :
+ * dE/dt with the tangent C of Eq. 10, dE/dt = sym(F^T dF/dt) and dF/dt = sum of (v_b - v_a)
+ * G_ab^T. P gains F times it. */
 static void damping_of_pack(const struct solid *s, const struct solid_pack *pack)
 {
     const struct solid_body *const body = &s->body[pack->body];
@@ -212,8 +213,8 @@ static void pairs(const struct solid *s, struct particles *p, int64_t first, int
         if (s->body[s->pack[k].body].variational) pairs_of_pack(s, &s->pack[k]);
 }
 
-/* Eq. 13a with the neighbours' part of the stress in `sums`. The particle's own part is P_a times the sum of
- * G_ab, zero inside a lattice. */
+/* Eq. 13a with the neighbours' part of the stress in `sums`. The particle's own part is P_a
+ * times the sum of G_ab, zero inside a lattice. */
 SPHFSI_INLINE struct vvector2 total_acceleration(const struct solid *s,
                                                  const struct solid_pack *pack,
                                                  const struct solid_sums *sums,

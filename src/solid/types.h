@@ -6,6 +6,7 @@
 
 #include "particles/particles.h"
 #include "case/scene.h"
+#include "base/point_grid.h"
 #include "base/simd.h"
 
 /* Constants of one body, SI. */
@@ -143,7 +144,7 @@ struct contact_law {
     bool on;
     double spacing;   /* mean of both spacings, m */
     double reach;     /* distance below which they repel each other: the spacing and the gap, m */
-    double began;     /* of a pair that began nearer, its distance then; else infinite, m */
+    double initial;   /* of a pair that initial nearer, its distance then; else infinite, m */
     double stiffness; /* stress per relative overlap (overlap over spacing), Pa */
     double shear;     /* the same across the normal, in parts of it */
     double damping;   /* fraction of the critical damping */
@@ -155,14 +156,6 @@ struct contact_law {
 struct contact_edge {
     int32_t a, b;
     bool sided; /* the outside is to the right from a to b; else on both sides */
-};
-
-/* Positions by cell in a hash table: bodies far apart do not make it larger. */
-struct contact_grid {
-    double side;
-    const double *x, *y;
-    int32_t *head, *next;
-    uint32_t mask;
 };
 
 /* The forces of one pair: on the point and on both ends of the edge, N/m. */
@@ -178,8 +171,8 @@ struct contact_depth {
     int body, other; /* walls behind solids */
 };
 
-/* Pairs of a body with itself, and with others: they move relative to each other at different speeds.
- * */
+/* Pairs of a body with itself, and with others: they move relative to each other at different
+ * speeds. */
 enum contact_with { CONTACT_SELF, CONTACT_OTHER, CONTACT_WITH };
 
 struct contact {
@@ -195,20 +188,21 @@ struct contact {
     int32_t *wall_point; /* [n of walls as sampled] number of a wall's particle; -1: inside */
     int32_t *group; /* solids that are bonded, and walls that move together, have the same number */
     double *X, *Y, *x, *y, *vx, *vy; /* initial position; present position and velocity */
-    double *began;                   /* initial distance from another group if below the reach, m */
-    int32_t *began_group;            /* and that group; -1: none */
+    double *initial;                 /* initial distance from another group if below the reach, m */
+    int32_t *initial_group;          /* and that group; -1: none */
     double *share;                   /* (n - 1)/n of the n edges that end at the point, T-61a */
-    double *outer;     /* distance of the point from the outline less half a spacing, m, T-61b */
-    double most_outer; /* the largest of them, m */
-    double *width;     /* length of outline that the point stands for, m, T-61 */
-    /* With friction, else NULL: lists of the forces on each solid point, three for each pair; an edge of
+    double *outer;    /* distance of the point from the outline less half a spacing, m, T-61b */
+    double max_outer; /* the largest of them, m */
+    double *width;    /* length of outline that the point stands for, m, T-61 */
+    bool friction;    /* some pair has it; else the next five are NULL */
+    /* Lists of the forces on each solid point, three for each pair; an edge of
      * each point; and what friction with walls adds to `row` and `row_damping`. */
-    int32_t *press_head, *press_next, *edge_at;
-    double *hold, *hold_damping;
-    uint8_t *held; /* within the kernel of a clamped particle of its group */
+    int32_t *load_head, *load_next, *point_edge;
+    double *wall_row, *wall_damping;
+    uint8_t *near_clamp; /* within the kernel of a clamped particle of its group */
     int64_t n_edges;
     struct contact_edge *edge;
-    struct contact_grid grid; /* of the edges' middles */
+    struct point_grid grid; /* of the edges' middles */
     double *middle_x, *middle_y;
     uint8_t *skip;         /* [n_edges] of walls far away */
     double reach, spacing; /* largest of all laws */
@@ -216,9 +210,9 @@ struct contact {
     bool known;
     double margin[CONTACT_WITH];
     double *at_x, *at_y;
-    int64_t n_pairs, most_pairs;
+    int64_t n_pairs, max_pairs;
     int32_t *pair_point, *pair_edge;
-    struct contact_force *force; /* [most_pairs] */
+    struct contact_force *force; /* [max_pairs] */
     double *row, *row_damping;   /* [n_solid_points] sums of the bound of the step */
     struct contact_mean *mean;   /* [n_groups] */
     struct motion_state *motion; /* [n_walls] now */

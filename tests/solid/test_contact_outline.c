@@ -15,7 +15,7 @@ static void test_nothing_is_added_on_a_lattice_that_fits(void)
               "minus = box 0.06, 0.1, 0.08, 0.13\n" RUBBER
               "[solid b]\nlike = a\nshape = box 0.1, 0.1, 0.15, 0.15\njoined = a\n");
     for (int64_t k = 0; k < c->n_points; k++) TEST_ASSERT_TRUE(c->outer[k] == 0);
-    TEST_ASSERT_TRUE(c->most_outer == 0);
+    TEST_ASSERT_TRUE(c->max_outer == 0);
 }
 
 static void test_outline_of_a_disc(void)
@@ -66,7 +66,7 @@ static void test_turned_faces_touch_at_once(void)
         if (p->body[i] == 1) p->uy[i] = -0.01 - overlap;
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
     for (int64_t i = 0; i < p->n; i++) p->sx[i] = p->sy[i] = 0;
-    contact_forces(c, &rig.sim.solid, p, 0);
+    contact_forces(c, p, 0);
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (p->body[i] == 1 || p->Y[i] < 0.045) continue;
@@ -100,7 +100,7 @@ static void test_forces_of_a_potential(void)
     TEST_ASSERT_TRUE(timestep_watch_contact(&rig.sim, 0, 1));
     const int64_t n = p->n;
     for (int64_t i = 0; i < n; i++) p->sx[i] = p->sy[i] = 0;
-    contact_forces(c, &rig.sim.solid, p, 0);
+    contact_forces(c, p, 0);
     double *const u[2] = {p->ux, p->uy}, *const f[2] = {p->sx, p->sy};
     double largest = 0, sum[2] = {0}, moment = 0;
     int pressed = 0;

@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT
+ * The surfaces of solids and walls: points, edges and their weights. */
+#ifndef SPHFSI_SOLID_CONTACT_SURFACE_H
+#define SPHFSI_SOLID_CONTACT_SURFACE_H
+
+#include "solid/types.h"
+
+/* Finds the surfaces, and how much further than half a spacing the outlines of the shapes are
+ * from their points (T-61b). */
+enum err contact_surface_create(struct contact *c, struct arena *a, const struct particles *solid,
+                                struct diag *d) SPHFSI_CHECKED;
+
+/* The spacing of a solid or wall, m. */
+SPHFSI_INLINE double contact_dp(const struct contact *c, int body)
+{
+    return body < c->n_solids ? c->solid->body[body].dp : c->scene->top.dp;
+}
+
+#endif
