@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Judges a scene before it runs: what can be simulated but is probably a mistake, or costs more time
- * than it needs. Each warning has the consequence and the remedy. What cannot be simulated is refused
- * where it is read or sampled. */
+ * Judges a scene before it runs: what can be simulated but is probably a mistake, or costs more
+ * time than it needs. Each warning has the consequence and the remedy. What cannot be simulated is
+ * refused where it is read or sampled. */
 #ifndef SPHFSI_CHECK_CHECK_H
 #define SPHFSI_CHECK_CHECK_H
 
@@ -41,12 +41,14 @@ struct check {
 enum err list_points(struct check *c) SPHFSI_CHECKED;
 /* Whether a region of walls or solids covers a place as drawn. */
 bool is_drawn(const struct check *c, double x, double y);
-/* The first point of these kinds within a distance of a place, through periodic sides too; -1: none. */
+/* The first point of these kinds within a distance of a place, through periodic sides too; -1:
+ * none. */
 int64_t point_at(const struct check *c, const double at[2], double within, int kinds);
 /* The point of these kinds that is next to point k in a direction, or -1. */
 int64_t point_beside(const struct check *c, int64_t k, const double toward[2], double within,
                      int kinds);
-/* Extent of a section's points along a vector times its length, without those of buffers; 0: none. */
+/* Extent of a section's points along a vector times its length, without those of buffers; 0:
+ * none. */
 double extent_along(const struct scene *scene, enum kind kind, int section, const double along[2]);
 /* The largest initial velocity of a section's points, m/s. */
 double start_speed(const struct scene *scene, enum kind kind, int section,

@@ -8,9 +8,9 @@
 
 #include <stdio.h>
 
-/* Up to its largest cfl, a falling column of water (tests/stability/column.cfg) was found stable with an
- * integrator; for leapfrog the analysis of docs/theory.md gives the same. fixed_step is used unchanged,
- * even if the run then becomes unstable. */
+/* Up to its largest cfl, a falling column of water (tests/stability/column.cfg) was found stable
+ * with an integrator; for leapfrog the analysis of docs/theory.md gives the same. fixed_step is
+ * used unchanged, even if the run then becomes unstable. */
 static void warn_of_unstable_step(const struct simulation *sim, struct diag *d)
 {
     const struct scene *const scene = sim->scene;
@@ -96,8 +96,8 @@ static void warn_of_damping(const struct simulation *sim, struct diag *d)
     }
 }
 
-/* Bounds below a tenth of the step that sound waves would allow: of the fluid's laws; a body that is light,
- * or one that steps together with the fluid. */
+/* Bounds below a tenth of the step that sound waves would allow: of the fluid's laws; a body that
+ * is light, or one that steps together with the fluid. */
 static void warn_of_bounds(const struct simulation *sim, struct diag *d)
 {
     static const struct {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Fluid that is probably a mistake: a tank without a bottom, water without the pressure of its weight, a
- * surface below the water, speeds near that of sound, probes where there is no fluid. */
+ * Fluid that is probably a mistake: a tank without a bottom, water without the pressure of its
+ * weight, a surface below the water, speeds near that of sound, probes where there is no fluid. */
 #include "check/check.h"
 
 #include "base/box2.h"
@@ -13,77 +13,52 @@ static double dot(const double a[2], double x, double y) { return a[0] * x + a[1
 
 /* --- nothing below the fluid --- */
 
-/* For each strip of width dp along gravity: the coordinate along gravity of the last wall or body
- * particle in it. */
-struct supports {
-    double along[2], across[2]; /* unit vectors: of gravity, and to its left */
-    double low;                 /* coordinate across of the first strip, m */
-    int64_t n;
-    double *last; /* [n] */
-};
-
-static int64_t strip_of(const struct supports *f, double dp, double x, double y)
-{
-    return (int64_t)floor((dot(f->across, x, y) - f->low) / dp);
-}
-
-static enum err find_supports(struct supports *f, struct check *c)
-{
-    const struct points *const p = &c->points;
-    const double *const gravity = c->scene->top.gravity, dp = c->scene->top.dp,
-                        size = elementary_hypot(gravity[0], gravity[1]);
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    *f = (struct supports){.along = {gravity[0] / size, gravity[1] / size}};
-    f->across[0] = -f->along[1];
-    f->across[1] = f->along[0];
-    for (int64_t k = 0; k < p->n; k++) {
-        low = min2(low, dot(f->across, p->x[k], p->y[k]));
-        high = max2(high, dot(f->across, p->x[k], p->y[k]));
-    }
-    f->low = low - 1.5 * dp; /* one strip more on each side */
-    f->n = (int64_t)((high - f->low) / dp) + 3;
-    f->last = arena_alloc(&c->shapes.temp, (size_t)f->n, sizeof *f->last, "check", c->diag);
-    if (!f->last) return ERR_MEMORY;
-    for (int64_t k = 0; k < f->n; k++) f->last[k] = -HUGE_VAL;
-    for (int64_t k = 0; k < p->n; k++) {
-        if (p->bit[k] != POINT_BODY) continue;
-        double *const last = &f->last[strip_of(f, dp, p->x[k], p->y[k])];
-        *last = max2(*last, dot(f->along, p->x[k], p->y[k]));
-    }
-    return ERR_OK;
-}
-
-/* Fluid without a wall or body between it and the edge of the domain below falls out of the
- * scene. */
+/* Fluid without a wall or body between it and the edge of the domain below falls out of the scene.
+ * For each strip of width dp along gravity, `last` is how far down its walls and bodies reach. */
 static enum err warn_of_missing_floor(struct check *c)
 {
     const struct scene *const scene = c->scene;
-    const struct scene_points *const p = &scene->points[KIND_FLUID];
-    if (p->n == 0 || (scene->top.gravity[0] == 0 && scene->top.gravity[1] == 0)) return ERR_OK;
-    if (scene->domain.periodic != PERIODIC_NONE) return ERR_OK; /* it may enter again */
-    struct supports f;
-    TRY(find_supports(&f, c));
-    int64_t falling = 0, first = -1;
+    const struct points *const p = &c->points;
+    const double *const gravity = scene->top.gravity, dp = scene->top.dp;
+    const double size = elementary_hypot(gravity[0], gravity[1]);
+    if (size == 0 || scene->domain.periodic != PERIODIC_NONE)
+        return ERR_OK; /* it may enter again */
+    const double along[2] = {gravity[0] / size, gravity[1] / size},
+                 across[2] = {-along[1], along[0]};
+    double low = HUGE_VAL, high = -HUGE_VAL;
     for (int64_t k = 0; k < p->n; k++) {
-        const int64_t strip = strip_of(&f, scene->top.dp, p->x[k], p->y[k]);
-        const double at = dot(f.along, p->x[k], p->y[k]);
-        bool held = false;
-        for (int64_t m = strip - 1; m <= strip + 1; m++) held |= f.last[m] > at;
-        falling += !held;
-        if (!held && first < 0) first = k;
+        low = min2(low, dot(across, p->x[k], p->y[k]));
+        high = max2(high, dot(across, p->x[k], p->y[k]));
     }
+    low -= 1.5 * dp; /* one strip more on each side */
+    const int64_t n = (int64_t)((high - low) / dp) + 3;
+    double *const last = arena_alloc(&c->shapes.temp, (size_t)n, sizeof *last, "check", c->diag);
+    if (!last) return ERR_MEMORY;
+    for (int64_t k = 0; k < n; k++) last[k] = -HUGE_VAL;
+    long long falling = 0, all = 0;
+    int64_t first = -1;
+    for (int fluid = 0; fluid < 2; fluid++)
+        for (int64_t k = 0; k < p->n; k++) {
+            const double at = dot(along, p->x[k], p->y[k]);
+            double *const strip = &last[(int64_t)floor((dot(across, p->x[k], p->y[k]) - low) / dp)];
+            if ((p->bit[k] != POINT_BODY) != fluid) continue;
+            if (!fluid) *strip = max2(*strip, at);
+            const bool falls = fluid && max2(max2(strip[-1], strip[0]), strip[1]) <= at;
+            if (falls && falling++ == 0) first = k;
+            all += fluid;
+        }
     if (falling > 0)
-        warn_at(c->diag, scene, scene->fluid[p->body[first]].common.line,
+        warn_at(c->diag, scene, scene->fluid[p->section[first]].common.line,
                 "%lld of %lld fluid particles, the first at (%.4g, %.4g) m, have no wall or body "
                 "below them and will fall out of the domain; add a [wall] below them",
-                (long long)falling, (long long)p->n, p->x[first], p->y[first]);
+                falling, all, p->x[first], p->y[first]);
     return ERR_OK;
 }
 
 /* --- `surface`: gravity along -y, and water up to that height --- */
 
-/* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank may be
- * shaken. The mean over the run is by the midpoint rule. */
+/* Gravity at t = 0 sets the initial pressure. Later a moment of upward gravity is no doubt: a tank
+ * may be shaken. The mean over the run is by the midpoint rule. */
 static void warn_of_upward_gravity(struct check *c, const struct scene_fluid *fluid)
 {
     enum { TIMES = 1000 };
@@ -126,7 +101,8 @@ static void warn_of_low_surface(struct check *c, int f)
                 fluid->common.name, top, fluid->surface, (long long)above);
 }
 
-/* Fluid whose column of width dp ends more than one spacing below its `surface`, with nothing above it. */
+/* Fluid whose column of width dp ends more than one spacing below its `surface`, with nothing
+ * above it. */
 static enum err warn_of_high_surface(struct check *c, int f)
 {
     const struct scene *const scene = c->scene;
@@ -167,9 +143,10 @@ static enum err warn_of_high_surface(struct check *c, int f)
 
 /* --- density, weight --- */
 
-/* Probable errors of units: a density in g/cm^3, as of water with 1 instead of 1000 kg/m^3. A weakly
- * compressible fluid stays within 1 % of its density (Monaghan 1994); its own weight compresses it by
- * g H/c0^2, unless gravity is along a periodic side, where it carries no weight. */
+/* Probable errors of units: a density in g/cm^3, as of water with 1 instead of 1000 kg/m^3. A
+ * weakly compressible fluid stays within 1 % of its density (Monaghan 1994); its own weight
+ * compresses it by g H/c0^2, unless gravity is along a periodic side, where it carries no
+ * weight. */
 static void warn_of_density(struct check *c, int f)
 {
     enum {
@@ -204,7 +181,8 @@ static bool stands(const struct check *c, int fluid, const double down[2])
     return false;
 }
 
-/* Water that begins without the pressure of its weight, or with that of a floor that it does not have. */
+/* Water that begins without the pressure of its weight, or with that of a floor that it does not
+ * have. */
 static void warn_of_weight(struct check *c, int fluid)
 {
     const struct scene *const scene = c->scene;
@@ -355,7 +333,8 @@ static void warn_of_end(struct check *c, const struct scene_open *o, bool last)
             o->from[1] + (last ? o->length * o->along[1] : 0));
 }
 
-/* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of it. */
+/* Without a level the buffer is filled over the whole line, also above the fluid within 2 dp of
+ * it. */
 static void warn_of_level(struct check *c, const struct scene_open *o)
 {
     const struct points *const p = &c->points;
@@ -376,8 +355,8 @@ static void warn_of_level(struct check *c, const struct scene_open *o)
             kind_of(o), o->common->name, buffer, fluid, o->inflow ? "falls in" : "waits", fluid);
 }
 
-/* Given velocities hold exactly, whatever the pressure. In a full channel they must balance: within a
- * hundredth of the fluid's volume, at all times. */
+/* Given velocities hold exactly, whatever the pressure. In a full channel they must balance:
+ * within a hundredth of the fluid's volume, at all times. */
 static void warn_of_balance(struct check *c)
 {
     enum { TIMES = 256 };
@@ -427,8 +406,8 @@ static void corner_around(const struct check *c, const double at[2], int corner,
     to[1] = at[1] + (corner & 2 ? side : -side);
 }
 
-/* Whether the point is in walls or solids, more than half a spacing from their faces, i.e. deeper than the
- * outermost particle reaches. */
+/* Whether the point is in walls or solids, more than half a spacing from their faces, i.e. deeper
+ * than the outermost particle reaches. */
 static bool is_buried(const struct check *c, const double at[2])
 {
     for (int corner = 0; corner < 4; corner++) {
@@ -439,8 +418,8 @@ static bool is_buried(const struct check *c, const double at[2])
     return true;
 }
 
-/* Whether nothing but gravity drives the fluid, so that it rises above its top by splashes only, and the
- * point is more than 2 h above all fluid. */
+/* Whether nothing but gravity drives the fluid, so that it rises above its top by splashes only,
+ * and the point is more than 2 h above all fluid. */
 static bool is_in_air(const struct scene *scene, const double at[2])
 {
     const struct scene_points *const p = &scene->points[KIND_FLUID];
@@ -526,7 +505,8 @@ static int leaving_wall(const struct check *c, const double at[2])
     return found;
 }
 
-/* The pressure at a wall that moves away is hardly meant to be that of the place where it once was. */
+/* The pressure at a wall that moves away is hardly meant to be that of the place where it once
+ * was. */
 static void warn_of_fixed_probe(struct check *c, const struct scene_probe *probe)
 {
     const bool face = probe->quantity == PROBE_SURFACE_PRESSURE;
@@ -545,7 +525,8 @@ static void warn_of_fixed_probe(struct check *c, const struct scene_probe *probe
             probe->common.name, name, name);
 }
 
-/* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and sticks. */
+/* L-1 leaves a moment of 2 mu A times the rate of turning, of either sign, on what turns and
+ * sticks. */
 static void warn_of_moment(struct check *c, const struct scene_probe *probe)
 {
     const struct scene *const scene = c->scene;
@@ -570,38 +551,14 @@ static void warn_of_moment(struct check *c, const struct scene_probe *probe)
 
 /* --- drift of the mean pressure --- */
 
-/* Whether walls enclose the fluid where the domain is not periodic, and particles cover all between
- * them: then there is no free surface. */
-static bool is_filled(const struct check *c)
-{
-    const struct scene *const scene = c->scene;
-    const struct points *const p = &c->points;
-    struct box2 box = box2_empty();
-    double area = 1;
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->bit[k] == POINT_BODY) box2_include(&box, p->x[k], p->y[k]);
-    for (int axis = 0; axis < 2; axis++) {
-        const bool periodic = scene_periodic(scene, axis);
-        if (periodic) box.low[axis] = scene->domain_lower[axis];
-        if (periodic) box.high[axis] = scene->domain_upper[axis];
-        for (int64_t k = 0; k < p->n; k++) {
-            const double at = axis ? p->y[k] : p->x[k];
-            if (p->bit[k] != POINT_BODY && (at < box.low[axis] || at > box.high[axis]))
-                return false;
-        }
-        area *= box.high[axis] - box.low[axis] + (periodic ? 0 : scene->top.dp);
-    }
-    return (double)p->n * square(scene->top.dp) > 0.99 * area;
-}
-
-/* Without a free surface the volume is given, and nothing takes back the pressure that a shift makes.
- * In a channel, periodic in x, it rose by 0.4, 0.75 and 1.1 % of rho c0^2 with `shifting` 0.5, 2 and 8;
- * without walls, where L-9 holds for all particles, it did not. */
+/* Without a free surface the volume is given, and nothing takes back the pressure that a shift
+ * makes. In a channel, periodic in x, it rose by 0.4, 0.75 and 1.1 % of rho c0^2 with `shifting`
+ * 0.5, 2 and 8; without walls, where L-9 holds for all particles, it did not. */
 static void warn_of_drift(struct check *c)
 {
     const struct scene *const scene = c->scene;
     const int periodic = scene->domain.periodic;
-    if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || !is_filled(c)) return;
+    if ((periodic != PERIODIC_X && periodic != PERIODIC_Y) || has_surface(c)) return;
     for (int k = 0; k < scene->n_fluid; k++)
         if (scene->fluid[k].shifting > 0)
             warn_at(c->diag, scene, scene->fluid[k].common.line,

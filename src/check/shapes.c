@@ -398,8 +398,8 @@ static bool is_slit(const struct check *c, int64_t k, int64_t m)
     return true;
 }
 
-/* Whether fluid could pass between two faces in both directions along the unit vector: the gap ends where
- * a face does, before another face closes it. */
+/* Whether fluid could pass between two faces in both directions along the unit vector: the gap
+ * ends where a face does, before another face closes it. */
 static bool is_passage(const struct check *c, const double at[2], const double along[2])
 {
     const double dp = c->scene->top.dp, reach = 0.75 * dp;
@@ -429,10 +429,10 @@ static int name_gap(const struct check *c, int64_t k, int64_t m, char between[BE
     return shape >= 0 ? b->list->item[shape].line : b->line;
 }
 
-/* Warns if an empty gap lies between two particles in which at most one particle fits. Centres on both
- * sides of a gap of width w are w + dp apart. Where two lattices meet, they are up to 1.5 dp apart, and a
- * particle lies nearer to their middle than 0.75 dp. Where two faces meet at an angle, the gap is no
- * passage. */
+/* Warns if an empty gap lies between two particles in which at most one particle fits. Centres on
+ * both sides of a gap of width w are w + dp apart. Where two lattices meet, they are up to 1.5 dp
+ * apart, and a particle lies nearer to their middle than 0.75 dp. Where two faces meet at an
+ * angle, the gap is no passage. */
 static void warn_of_narrow_gap(struct gaps *g, int64_t k, int64_t m)
 {
     const struct check *const c = g->c;
@@ -452,8 +452,8 @@ static void warn_of_narrow_gap(struct gaps *g, int64_t k, int64_t m)
             between, at[0], at[1], dp, 0.5 * (r - dp));
 }
 
-/* How wide the drawn shapes leave a line through the point open, up to 2 `most`; moves the point to the
- * middle. */
+/* How wide the drawn shapes leave a line through the point open, up to 2 `most`; moves the point
+ * to the middle. */
 static double open_width(const struct check *c, double at[2], const double across[2], double most)
 {
     const double step = 0.02 * c->scene->top.dp;
@@ -507,8 +507,8 @@ static bool is_drawn_passage(const struct check *c, const double from[2], const 
     return true;
 }
 
-/* The middle of the longest stretch between two particles that their own shapes leave open. A slit of less
- * than a fortieth of their distance is meant as a joint. */
+/* The middle of the longest stretch between two particles that their own shapes leave open. A slit
+ * of less than a fortieth of their distance is meant as a joint. */
 static bool find_opening(const struct check *c, int64_t k, int64_t m, double at[2])
 {
     enum { POINTS = 80 };

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Bodies that are probably a mistake: clamped all over, without a clamp, far too soft, light or fast. */
+ * Bodies that are probably a mistake: clamped all over, without a clamp, far too soft, light or
+ * fast. */
 #include "check/check.h"
 
 #include "base/elementary.h"
@@ -29,9 +30,9 @@ static bool stands_on(const struct check *c, const char *hold, int body)
     return false;
 }
 
-/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load, unless it
- * begins with a velocity. Clamps hold bodies, and bonds those that are joined to them. Others stand on
- * walls and on bodies that do not fall. */
+/* A body without a clamp moves away, which is seldom intended in a case with gravity or a load,
+ * unless it begins with a velocity. Clamps hold bodies, and bonds those that are joined to them.
+ * Others stand on walls and on bodies that do not fall. */
 static enum err warn_of_loose_bodies(struct check *c)
 {
     const struct scene *const scene = c->scene;
@@ -230,8 +231,8 @@ static void warn_of_material(struct check *c, int body)
                 b->common.name, speed, sound);
 }
 
-/* By L-1 the moment on a body that turns and sticks is too large by 2 mu A times its rate of turning. At low
- * Reynolds numbers it turns twice as fast in a shear as it should. */
+/* By L-1 the moment on a body that turns and sticks is too large by 2 mu A times its rate of
+ * turning. At low Reynolds numbers it turns twice as fast in a shear as it should. */
 static void warn_of_turning(struct check *c, int body)
 {
     const struct scene_solid *const b = &c->scene->solid[body];

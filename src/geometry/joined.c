@@ -26,17 +26,15 @@ enum err geometry_check_joined(struct sampler *g)
         const int other = scene_find_solid(s, s->solid[k].joined);
         if (other < 0) continue;
         struct point_grid table;
-        const double reach = 2 * max2(scene_solid_h(s, k), scene_solid_h(s, other));
+        const double reach = 2 * scene_solid_h(s, k) * (1 - 1e-9);
         TRY(point_grid_create(&table, reach, p->n, p->x, p->y, &g->temp, g->diag));
         for (int64_t n = 0; n < p->n; n++) point_grid_insert(&table, n);
         if (touches(s, &table, k, other, reach)) continue;
-        char place[LOCATION_TEXT];
-        scene_location(s, scene_line(s, SECTION_solid, k, "joined"), place);
         TRY(geometry_go_on(
-            g, diag_add(g->diag, ERR_INPUT,
-                        "%s: [solid %s] is joined to [solid %s], but lies more than 2 h = %g m "
-                        "away from it; move it, or leave `joined` out",
-                        place, s->solid[k].common.name, s->solid[k].joined, reach)));
+            g, fail_at(g->diag, s, scene_line(s, SECTION_solid, k, "joined"),
+                       "[solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
+                       "from it; move it, or leave `joined` out",
+                       s->solid[k].common.name, s->solid[k].joined, reach)));
     }
     return ERR_OK;
 }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Buffers of [inflow] and [outflow] sections: rows of particles behind the line, a spacing apart. */
+ * Buffers of [inflow] and [outflow] sections: rows of particles behind the line, a spacing
+ * apart. */
 #include "geometry/sampling.h"
 
 #include "case/case.h"

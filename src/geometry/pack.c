@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * Fluid beside edges that are not along its lattice. The cells with their centre inside the shape and not
- * too near to a wall cover less than its area, and the level falls. So as many of the cells that such
- * edges cut are filled as their parts inside the shape add up to. Then the particles there are moved until
- * a uniform pressure pushes none of them (T-80; particle packing, Colagrossi et al. 2012). */
+ * Fluid beside edges that are not along its lattice. The cells with their centre inside the shape
+ * and not too near to a wall cover less than its area, and the level falls. So as many of the
+ * cells that such edges cut are filled as their parts inside the shape add up to. Then the
+ * particles there are moved until a uniform pressure pushes none of them (T-80; particle packing,
+ * Colagrossi et al. 2012). */
 #include "geometry/sampling.h"
 
 #include "base/elementary.h"
@@ -12,16 +13,18 @@
 
 #include <math.h>
 
-/* Parts per spacing that edges are divided into; lines through a cell, for its area in the shape. */
+/* Parts per spacing that edges are divided into; lines through a cell, for its area in the
+ * shape. */
 enum { PARTS = 8, LINES = 16 };
 /* Slope of an edge that counts as one along the lattice. */
 static const double along_lattice = 1e-6;
-/* A shift is this times h^2 grad C, below the limit of 0.5 of Lind et al. 2012, and at most `longest` dp.
- * The shifts end when all are below `still` dp. */
+/* A shift is this times h^2 grad C, below the limit of 0.5 of Lind et al. 2012, and at most
+ * `longest` dp. The shifts end when all are below `still` dp. */
 static const double shift_factor = 0.2, longest = 0.1, still = 1e-4;
 static const int most_shifts = 1000;
 
-/* The cells that slanted edges of a region cut, in the order of the edges; in cells of the lattice. */
+/* The cells that slanted edges of a region cut, in the order of the edges; in cells of the
+ * lattice. */
 struct cut_cells {
     const struct region *region;
     struct point_grid grid; /* their centres */
@@ -47,7 +50,8 @@ static bool in_shape(const struct sampler *g, const struct region *r, double x, 
     return false;
 }
 
-/* Adds the cell of a point of an edge with this normal, unless the shape is on both of its sides. */
+/* Adds the cell of a point of an edge with this normal, unless the shape is on both of its
+ * sides. */
 static enum err visit(struct cut_cells *c, struct sampler *g, const double at[2],
                       const double normal[2])
 {
@@ -100,7 +104,8 @@ static enum err visit_outlines(struct cut_cells *c, struct sampler *g, const str
     return ERR_OK;
 }
 
-/* Share of the cell with this centre, and the middle of it. `line` and `scratch` as for outlines_union. */
+/* Share of the cell with this centre, and the middle of it. `line` and `scratch` as for
+ * outlines_union. */
 static double share_of(const struct region *r, const double centre[2], double middle[2],
                        double *line, double *scratch)
 {
@@ -151,8 +156,8 @@ struct packing {
     int64_t *particle; /* of a free point: its index */
 };
 
-/* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is filled when the
- * sum of the shares exceeds the number of filled cells by a half. */
+/* Copies the particles of a region, with new ones in its cut cells. Along the edge a cell is
+ * filled when the sum of the shares exceeds the number of filled cells by a half. */
 static enum err refill(struct packing *p, const struct cut_cells *c, struct scene_points *to)
 {
     const struct scene_points *const from = &p->g->scene->points[KIND_FLUID];
@@ -208,9 +213,10 @@ static enum cover cover_of(const struct sampler *g, const double cell[2], double
     return found;
 }
 
-/* Share of the cell with this centre that is air. Beside fluid alone its centre decides, as for fluid. Beside
- * walls and bodies, whose particles are not in the lattice, it is the share of points in it. Their rows
- * and columns differ in number, so that an edge along the diagonal meets one of them at most. */
+/* Share of the cell with this centre that is air. Beside fluid alone its centre decides, as for
+ * fluid. Beside walls and bodies, whose particles are not in the lattice, it is the share of
+ * points in it. Their rows and columns differ in number, so that an edge along the diagonal meets
+ * one of them at most. */
 static double air_share(const struct sampler *g, const double cell[2], double at[2])
 {
     enum { COLUMNS = 8, ROWS_OF_CELL = 7 };
@@ -226,8 +232,8 @@ static double air_share(const struct sampler *g, const double cell[2], double at
     return body ? (double)air / (COLUMNS * ROWS_OF_CELL) : centre == COVER_NONE;
 }
 
-/* Cells of the lattice count as points by their share outside all shapes, so that nothing moves into the
- * air. */
+/* Cells of the lattice count as points by their share outside all shapes, so that nothing moves
+ * into the air. */
 static enum err add_air(struct packing *p)
 {
     const struct sampler *const g = p->g;
@@ -249,7 +255,8 @@ static void add_point(struct packing *p, double x, double y, double volume)
     p->volume[p->n++] = volume;
 }
 
-/* The points that take part: fluid within the kernel's reach of a cut cell moves, all else stays. */
+/* The points that take part: fluid within the kernel's reach of a cut cell moves, all else
+ * stays. */
 static enum err gather(struct packing *p)
 {
     const struct sampler *const g = p->g;

@@ -53,9 +53,9 @@ struct samples {
     uint8_t *clamped;
 };
 
-/* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next section; the
- * error itself after CASE_MAX_PROBLEMS of them and of the case's values. geometry_problems then ends what
- * needs sound input. */
+/* ERR_OK after bad input whose sentence is in the diag, so that a check can go on to the next
+ * section; the error itself after CASE_MAX_PROBLEMS of them and of the case's values.
+ * geometry_problems then ends what needs sound input. */
 SPHFSI_INLINE enum err geometry_go_on(struct sampler *g, enum err e)
 {
     g->problems += e == ERR_INPUT;
@@ -81,8 +81,8 @@ enum err geometry_clamp(struct sampler *g, struct region *region, int64_t from, 
 
 /* Refuses bodies of one row of particles, and finds the area that a body's particles cover. */
 enum err geometry_check_bodies(struct sampler *g) SPHFSI_CHECKED;
-/* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates; the smallest number of them
- * across a body. */
+/* Rows (c = 1) or columns (c = 0) of a region's lattice between two coordinates; the smallest
+ * number of them across a body. */
 double geometry_rows_between(const struct region *region, int c, double low, double high);
 double geometry_rows_across(const struct region *region);
 
@@ -92,11 +92,12 @@ enum err geometry_draw(struct sampler *g) SPHFSI_CHECKED;
 /* Applies the rules of overlap and stores the points that remain in the scene. */
 enum err geometry_merge(struct sampler *g, const struct samples *p) SPHFSI_CHECKED;
 
-/* Packs fluid beside edges that are not along its lattice, with `scheme = standard` (geometry/pack.c). */
+/* Packs fluid beside edges that are not along its lattice, with `scheme = standard`
+ * (geometry/pack.c). */
 enum err geometry_pack(struct sampler *g) SPHFSI_CHECKED;
 
-/* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or -1; and
- * whether there is one. */
+/* The first of a region's shapes that has a point inside, with the rounding of geometry_sample, or
+ * -1; and whether there is one. */
 int geometry_shape_at(const struct sampler *g, const struct region *region, double x, double y);
 bool geometry_covers(const struct sampler *g, const struct region *region, double x, double y);
 

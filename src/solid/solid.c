@@ -118,18 +118,6 @@ static const struct solid_sweeps *choose_sweeps(const struct solid *s, const str
     return &solid_sweeps_mixed;
 }
 
-static enum err far_apart(const struct solid *s, const struct scene *scene, int body,
-                          struct diag *d)
-{
-    const struct scene_solid *const b = &scene->solid[body];
-    char place[LOCATION_TEXT];
-    scene_location(scene, scene_line(scene, SECTION_solid, body, "joined"), place);
-    return diag_fail(d, ERR_INPUT,
-                     "%s: [solid %s] is joined to [solid %s], but lies more than 2 h = %g m away "
-                     "from it; move it, or leave `joined` out",
-                     place, b->common.name, b->joined, KERNEL_REACH * s->body[body].h);
-}
-
 enum err solid_create(struct solid *s, struct arena *a, const struct scene *scene,
                       struct particles *p, struct diag *d)
 {
@@ -155,8 +143,6 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->sweeps = choose_sweeps(s, scene, p, d);
     TRY(solid_packed_create(s, a, p, d));
     TRY(solid_stencil_create(s, a, p, d));
-    for (int k = 0; k < s->n_bodies; k++)
-        if (scene->solid[k].joined[0] && !s->body[k].touches) return far_apart(s, scene, k, d);
     for (int k = 0; k < (int)COUNT_OF(s->scratch); k++) {
         s->scratch[k] = arena_alloc(a, (size_t)p->n, sizeof(double), "search of the step", d);
         if (!s->scratch[k]) return ERR_MEMORY;

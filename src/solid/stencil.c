@@ -305,8 +305,6 @@ static enum err all_moments(struct solid *s, const struct point_grid *g, const s
                 "the solid particle at (%.6g, %.6g) m has more than %d neighbours within 2h; "
                 "use a smaller h_over_dp; bodies that overlap also cause this",
                 p->X[i], p->Y[i], MAX_NEIGHBOURS);
-        for (int k = 0; k < n; k++)
-            if (p->body[found[k]] != p->body[i]) s->body[p->body[i]].touches = true;
         const bool quadratic = s->body[p->body[i]].gradient == GRADIENT_QUADRATIC;
         if (!find_moments(s, p, i, found, n, quadratic, &moments[i]))
             return diag_fail(

@@ -25,7 +25,6 @@ struct solid_body {
     int bond;       /* the same number for bodies joined to each other: that of the first of them */
     bool symmetric; /* viscous force with both particles' tensors */
     bool variational; /* hourglass force from an energy */
-    bool touches;     /* has a neighbour in a body it is joined to */
     bool mixed;       /* joined to a body of another viscosity: pairs use the mean of both */
 };
 
