@@ -7,37 +7,28 @@
 
 #include <math.h>
 
-static void include(double low[2], double high[2], const double point[2])
-{
-    for (int c = 0; c < 2; c++) {
-        low[c] = min2(low[c], point[c]);
-        high[c] = max2(high[c], point[c]);
-    }
-}
-
-/* The box of a kind's points, including the displacement of moving walls. */
-static void include_points(const struct scene *s, int kind, double low[2], double high[2])
+static struct box2 box_of(const struct scene *s, int kind, int body)
 {
     const struct scene_points *p = &s->points[kind];
-    for (int64_t k = 0; k < p->n; k++) include(low, high, (const double[]){p->x[k], p->y[k]});
+    struct box2 box = box2_empty();
+    for (int64_t k = 0; k < p->n; k++)
+        if (body < 0 || p->body[k] == body) box2_include(&box, p->x[k], p->y[k]);
+    return box;
 }
 
-static void include_motion(const struct scene *s, int wall, double low[2], double high[2])
+static void include_motion(const struct scene *s, int wall, struct box2 *box)
 {
     enum { TIMES = 257 };
     const int motion = scene_find_motion(s, s->wall[wall].motion);
     if (motion < 0) return;
-    double at_low[2] = {HUGE_VAL, HUGE_VAL}, at_high[2] = {-HUGE_VAL, -HUGE_VAL};
-    const struct scene_points *p = &s->points[KIND_WALL];
-    for (int64_t k = 0; k < p->n; k++)
-        if (p->body[k] == wall) include(at_low, at_high, (const double[]){p->x[k], p->y[k]});
-    if (at_low[0] > at_high[0]) return;
-    for (int k = 0; k < TIMES; k++) {
+    const struct box2 start = box_of(s, KIND_WALL, wall);
+    for (int k = 0; k < TIMES && start.low[0] <= start.high[0]; k++) {
         const struct motion_state m = motion_at(s, motion, s->top.end_time * k / (TIMES - 1));
         for (int corner = 0; corner < 4; corner++) {
-            const double x = corner & 1 ? at_high[0] : at_low[0];
-            const double y = corner & 2 ? at_high[1] : at_low[1];
-            include(low, high, motion_of_point(&m, x, y).x);
+            double at[2];
+            box2_corner(&start, corner, at);
+            const struct motion_point moved = motion_of_point(&m, at[0], at[1]);
+            box2_include(box, moved.x[0], moved.x[1]);
         }
     }
 }
@@ -46,18 +37,17 @@ static void include_motion(const struct scene *s, int wall, double low[2], doubl
  * of the largest solid, which may swing that far; above them the scene's height once more. */
 static void default_domain(struct scene *s)
 {
-    double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
-    double solid_low[2] = {HUGE_VAL, HUGE_VAL}, solid_high[2] = {-HUGE_VAL, -HUGE_VAL};
-    for (int kind = 0; kind < KIND_COUNT; kind++) include_points(s, kind, low, high);
-    include_points(s, KIND_SOLID, solid_low, solid_high);
-    for (int k = 0; k < s->n_wall; k++) include_motion(s, k, low, high);
+    struct box2 all = box2_empty();
+    for (int kind = 0; kind < KIND_COUNT; kind++)
+        for (int64_t k = 0; k < s->points[kind].n; k++)
+            box2_include(&all, s->points[kind].x[k], s->points[kind].y[k]);
+    for (int k = 0; k < s->n_wall; k++) include_motion(s, k, &all);
+    const struct box2 solids = box_of(s, KIND_SOLID, -1);
     double margin = 2 * s->h + s->top.dp;
-    for (int c = 0; c < 2 && s->points[KIND_SOLID].n; c++)
-        margin = max2(margin, solid_high[c] - solid_low[c]);
-    const double height = high[1] - low[1];
+    for (int c = 0; c < 2; c++) margin = max2(margin, solids.high[c] - solids.low[c]);
     for (int c = 0; c < 2; c++) {
-        s->domain_lower[c] = low[c] - margin;
-        s->domain_upper[c] = high[c] + margin + (c == 1 ? height : 0);
+        s->domain_lower[c] = all.low[c] - margin;
+        s->domain_upper[c] = all.high[c] + margin + (c == 1 ? all.high[1] - all.low[1] : 0);
     }
 }
 
@@ -71,25 +61,24 @@ static bool in_domain(const struct scene *s, int axis, double x)
 
 static enum err given_domain(struct scene *s, struct diag *d)
 {
-    char place[LOCATION_TEXT];
-    scene_location(s, s->domain.common.line, place);
+    const int line = s->domain.common.line;
     for (int c = 0; c < 2; c++) {
         s->domain_lower[c] = s->domain.lower[c];
         s->domain_upper[c] = s->domain.upper[c];
         if (!(s->domain.lower[c] < s->domain.upper[c]))
-            return diag_add(d, ERR_INPUT,
-                            "%s: [domain] lower must lie below and left of upper; here "
-                            "%c is %g and %g m",
-                            place, "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
+            return fail_at(d, s, line,
+                           "[domain] lower must lie below and left of upper; here %c is %g and "
+                           "%g m",
+                           "xy"[c], s -> domain.lower[c], s->domain.upper[c]);
     }
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const struct scene_points *p = &s->points[kind];
         for (int64_t k = 0; k < p->n; k++) {
             if (in_domain(s, 0, p->x[k]) && in_domain(s, 1, p->y[k])) continue;
-            return diag_add(d, ERR_INPUT,
-                            "%s: a %s particle at (%g, %g) m lies outside [domain]; enlarge "
-                            "[domain] or change the shape",
-                            place, kind_names[kind], p->x[k], p->y[k]);
+            return fail_at(d, s, line,
+                           "a %s particle at (%g, %g) m lies outside [domain]; enlarge "
+                           "[domain] or change the shape",
+                           kind_names[kind], p->x[k], p->y[k]);
         }
     }
     return ERR_OK;
@@ -98,53 +87,46 @@ static enum err given_domain(struct scene *s, struct diag *d)
 /* --- periodic sides --- */
 
 /* The lattice must continue through the side without a seam. */
-static enum err check_period(const struct scene *s, int axis, const char *place, struct diag *d)
+static enum err check_period(const struct scene *s, int axis, struct diag *d)
 {
     const double period = s->domain.upper[axis] - s->domain.lower[axis];
     const double n = period / s->top.dp;
     if (fabs(n - round(n)) <= 1e-6) return ERR_OK;
-    return diag_add(d, ERR_INPUT,
-                    "%s: [domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
-                    "must be a whole number of them; %.9g m would fit",
-                    place, "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
+    return fail_at(d, s, s->domain.common.line,
+                   "[domain] periodic: the period in %c, %.9g m, is %.6g times dp = %g m and "
+                   "must be a whole number of them; %.9g m would fit",
+                   "xy"[axis], period, n, s -> top.dp, round(n) * s->top.dp);
 }
 
 /* Bodies are bonded within the domain only: a body through a periodic side would be cut there. */
-static enum err check_span(const struct scene *s, int axis, int body, const char *place,
-                           struct diag *d)
+static enum err check_span(const struct scene *s, int axis, int body, struct diag *d)
 {
-    const struct scene_points *p = &s->points[KIND_SOLID];
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (int64_t k = 0; k < p->n; k++) {
-        if (p->body[k] != body) continue;
-        low = min2(low, axis ? p->y[k] : p->x[k]);
-        high = max2(high, axis ? p->y[k] : p->x[k]);
-    }
-    const double gap = s->domain.upper[axis] - s->domain.lower[axis] - (high - low);
+    const struct box2 box = box_of(s, KIND_SOLID, body);
+    const double period = s->domain.upper[axis] - s->domain.lower[axis];
+    const double gap = period - (box.high[axis] - box.low[axis]);
     if (gap >= 2 * s->h) return ERR_OK;
-    return diag_add(d, ERR_INPUT,
-                    "%s: [domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
-                    "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
-                    "needed",
-                    place, s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
+    return fail_at(d, s, s->domain.common.line,
+                   "[domain] periodic: [solid %s] and its own image in %c are %.3g m apart, "
+                   "and solids are not bonded through a periodic side: at least 2 h = %.3g m are "
+                   "needed",
+                   s->solid[body].common.name, "xy"[axis], gap, 2 * s -> h);
 }
 
 static enum err check_periodic(const struct scene *s, struct diag *d)
 {
     if (s->domain.periodic == PERIODIC_NONE) return ERR_OK;
-    char place[LOCATION_TEXT];
-    scene_location(s, s->domain.common.line, place);
+    const int line = s->domain.common.line;
     if (s->lattice.angle != 0)
-        return diag_add(d, ERR_INPUT,
-                        "%s: [domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
-                        "at the sides; it must be 0",
-                        place, s->numerics.lattice_angle);
+        return fail_at(d, s, line,
+                       "[domain] periodic: numerics.lattice_angle = %g rad would leave a seam "
+                       "at the sides; it must be 0",
+                       s->numerics.lattice_angle);
     for (int axis = 0; axis < 2; axis++) {
         if (!scene_periodic(s, axis)) continue;
         if (s->domain.lower[axis] >= s->domain.upper[axis])
-            return diag_add(d, ERR_INPUT, "%s: [domain] periodic needs `lower` and `upper`", place);
-        TRY(check_period(s, axis, place, d));
-        for (int k = 0; k < s->n_solid; k++) TRY(check_span(s, axis, k, place, d));
+            return fail_at(d, s, line, "[domain] periodic needs `lower` and `upper`");
+        TRY(check_period(s, axis, d));
+        for (int k = 0; k < s->n_solid; k++) TRY(check_span(s, axis, k, d));
     }
     return ERR_OK;
 }
@@ -164,13 +146,9 @@ static enum err check_body_probe(const struct sampler *g, const struct scene_pro
     /* A corner of a body is sqrt(1/2) dp from its particle's centre. */
     const double dp = scene_solid_dp(s, body), outside = nearest - sqrt(0.5) * dp;
     if (outside <= 0.5 * dp) return ERR_OK;
-    char place[LOCATION_TEXT];
-    scene_location(s, probe->common.line, place);
-    return diag_add(g->diag, ERR_INPUT,
-                    "%s: [probe %s] point (%g, %g) lies about %.3g m outside of "
-                    "[solid %s]",
-                    place, probe->common.name, probe->point[0], probe->point[1], outside,
-                    probe->body);
+    return fail_at(g->diag, s, probe->common.line,
+                   "[probe %s] point (%g, %g) lies about %.3g m outside of [solid %s]",
+                   probe->common.name, probe->point[0], probe->point[1], outside, probe->body);
 }
 
 static enum err check_place(const struct sampler *g, const struct scene_probe *probe,
@@ -181,13 +159,10 @@ static enum err check_place(const struct sampler *g, const struct scene_probe *p
     for (int c = 0; c < 2; c++)
         inside &= at[c] >= s->domain_lower[c] && at[c] <= s->domain_upper[c];
     if (inside) return ERR_OK;
-    char place[LOCATION_TEXT];
-    scene_location(s, probe->common.line, place);
-    return diag_add(g->diag, ERR_INPUT,
-                    "%s: [probe %s] %s (%g, %g) lies outside of the domain, "
-                    "(%g, %g) to (%g, %g) m",
-                    place, probe->common.name, key, at[0], at[1], s->domain_lower[0],
-                    s->domain_lower[1], s->domain_upper[0], s->domain_upper[1]);
+    return fail_at(g->diag, s, probe->common.line,
+                   "[probe %s] %s (%g, %g) lies outside of the domain, (%g, %g) to (%g, %g) m",
+                   probe->common.name, key, at[0], at[1], s->domain_lower[0], s->domain_lower[1],
+                   s->domain_upper[0], s->domain_upper[1]);
 }
 
 static enum err check_probes(struct sampler *g)
@@ -215,11 +190,9 @@ static enum err check_field(const struct sampler *g, const struct scene_expr *fi
         for (int64_t k = 0; k < p->n; k++) {
             if (p->body[k] != body || isfinite(scene_expr_at(field->e[c], p->x[k], p->y[k])))
                 continue;
-            char place[LOCATION_TEXT];
-            scene_location(g->scene, common->line, place);
-            return diag_add(g->diag, ERR_INPUT,
-                            "%s: [%s %s] %s is not finite at (%g, %g) m; change the expression",
-                            place, kind_names[kind], common->name, key, p->x[k], p->y[k]);
+            return fail_at(g->diag, g->scene, common->line,
+                           "[%s %s] %s is not finite at (%g, %g) m; change the expression",
+                           kind_names[kind], common->name, key, p->x[k], p->y[k]);
         }
     }
     return ERR_OK;

@@ -15,10 +15,8 @@
 static enum err refuse(const struct sampler *g, const struct scene_open *o, const char *what,
                        const double x[2], const char *mend)
 {
-    char place[LOCATION_TEXT];
-    scene_location(g->scene, o->common->line, place);
-    return diag_add(g->diag, ERR_INPUT, "%s: [%s %s] %s at (%.6g, %.6g) m: %s", place,
-                    o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
+    return fail_at(g->diag, g->scene, o->common->line, "[%s %s] %s at (%.6g, %.6g) m: %s",
+                   o->inflow ? "inflow" : "outflow", o->common->name, what, x[0], x[1], mend);
 }
 
 /* Points of a kind around a boundary's buffer. */

@@ -57,25 +57,23 @@ static bool mitre(const struct shape *p, int k, double far[2])
 static enum err cut_polyline(const struct scene *s, const struct shape *p, struct outline *pieces,
                              struct arena *a, struct diag *d)
 {
-    char place[LOCATION_TEXT];
-    scene_location(s, p->line, place);
     double(*far)[2] = arena_alloc(a, (size_t)p->n, sizeof *far, "polyline", d);
     double(*corners)[2] = arena_alloc(a, 4 * (size_t)p->n, sizeof *corners, "polyline", d);
     if (!far || !corners) return ERR_MEMORY;
     for (int k = 0; k < p->n; k++)
         if (!mitre(p, k, far[k]))
-            return diag_add(d, ERR_INPUT,
-                            "%s: the polyline turns too sharply at its point %d (%g, %g); use a "
-                            "larger angle or insert a point",
-                            place, k + 1, p->pt[k][0], p->pt[k][1]);
+            return fail_at(d, s, p->line,
+                           "the polyline turns too sharply at its point %d (%g, %g); use a "
+                           "larger angle or insert a point",
+                           k + 1, p->pt[k][0], p->pt[k][1]);
     for (int k = 0; k + 1 < p->n; k++) {
         const double along = (p->pt[k + 1][0] - p->pt[k][0]) * (far[k + 1][0] - far[k][0]) +
                              (p->pt[k + 1][1] - p->pt[k][1]) * (far[k + 1][1] - far[k][1]);
         if (along <= 0)
-            return diag_add(d, ERR_INPUT,
-                            "%s: segment %d of the polyline is too short for a "
-                            "thickness of %g m: the joints at its ends cross",
-                            place, k + 1, fabs(p->size));
+            return fail_at(d, s, p->line,
+                           "segment %d of the polyline is too short for a thickness of %g m: "
+                           "the joints at its ends cross",
+                           k + 1, fabs(p->size));
         pieces[k].n = 4;
         pieces[k].pt = corners + 4 * k;
         memcpy(pieces[k].pt[0], p->pt[k], sizeof *far);

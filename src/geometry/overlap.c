@@ -78,8 +78,6 @@ static bool has_band(const struct region *region)
 static enum err fail_overlap(struct sampler *g, const struct region *mine, const struct region *its,
                              double x, double y, int64_t count)
 {
-    char place[LOCATION_TEXT];
-    scene_location(g->scene, mine->line, place);
     const char *mend = "move one of the shapes, or subtract the overlap with `minus`";
     if (has_band(mine) || has_band(its))
         mend = "change the sign of `thickness` if the band of the polyline is on the wrong side, "
@@ -91,11 +89,10 @@ static enum err fail_overlap(struct sampler *g, const struct region *mine, const
                               : "only the clamped part of a solid may lie in a wall";
     if (mine->kind == KIND_WALL && its->kind == KIND_WALL)
         mend = "walls that move differently must not overlap";
-    return diag_add(g->diag, ERR_INPUT,
-                    "%s: %lld particles of [%s %s] lie in [%s %s], the first at "
-                    "(%.6g, %.6g) m: %s",
-                    place, (long long)count, kind_names[mine->kind], mine->name,
-                    kind_names[its->kind], its->name, x, y, mend);
+    return fail_at(g->diag, g->scene, mine->line,
+                   "%lld particles of [%s %s] lie in [%s %s], the first at (%.6g, %.6g) m: %s",
+                   (long long)count, kind_names[mine->kind], mine->name, kind_names[its->kind],
+                   its->name, x, y, mend);
 }
 
 /* Sets `kept`; fails if a region overlaps another one and must not. */

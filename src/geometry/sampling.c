@@ -229,23 +229,20 @@ static enum err count_points(struct sampler *g, struct region *region)
         for (int64_t i = 0; i < region->count[0]; i++) region->n += g->mask[i];
     }
     if (region->has_layers) TRY(lay_layers(g, region));
-    char place[LOCATION_TEXT];
     bool empty = false;
     for (int k = 0; k < region->list->n; k++) {
         if (per_shape[k]) continue;
         empty = true;
-        scene_location(g->scene, region->list->item[k].line, place);
         TRY(geometry_go_on(
-            g, diag_add(g->diag, ERR_INPUT,
-                        "%s: shape %d of [%s %s] contains no particle, because it is narrower "
-                        "than dp = %g m or lies between lattice points; enlarge or move it",
-                        place, k + 1, kind_names[region->kind], region->name, region->lattice.dp)));
+            g, fail_at(g->diag, g->scene, region->list->item[k].line,
+                       "shape %d of [%s %s] contains no particle, because it is narrower "
+                       "than dp = %g m or lies between lattice points; enlarge or move it",
+                       k + 1, kind_names[region->kind], region->name, region->lattice.dp)));
     }
     if (region->n || empty) return ERR_OK;
-    scene_location(g->scene, region->line, place);
-    return geometry_go_on(g, diag_add(g->diag, ERR_INPUT,
-                                      "%s: nothing is left of [%s %s] after its `minus`", place,
-                                      kind_names[region->kind], region->name));
+    return geometry_go_on(g, fail_at(g->diag, g->scene, region->line,
+                                     "nothing is left of [%s %s] after its `minus`",
+                                     kind_names[region->kind], region->name));
 }
 
 /* Stores a point given in the axes of its lattice. */
