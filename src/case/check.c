@@ -28,42 +28,10 @@ static enum err sound_speed(struct reader *r, const struct scene_fluid *f, doubl
                         "[fluid %s] Eq. 3 gives a speed of sound of %g m/s, above the limit of "
                         "1e7; reduce `max_speed` or `max_pressure`",
                         f->common.name, *c0);
-    if (*c0 < least * (1 - 1e-9))
-        warn_at(
-            r->diag, r->scene, line,
-            "[fluid %s] sound_speed = %g m/s is below the %g m/s of Eq. 3: the density will vary "
-            "by "
-            "more than 1 %%",
-            f->common.name, *c0, least);
     if (f->pressure.e[0] && !isnan(f->surface))
         return bad_line(r, line, "[fluid %s] has both `surface` and `pressure`; leave one out",
                         f->common.name);
-    if (!isnan(f->surface) && r->scene->top.gravity[1] == 0)
-        warn_at(
-            r->diag, r->scene, line,
-            "[fluid %s] has a `surface`, but gravity has no vertical component at t = 0, so the "
-            "initial pressure is zero",
-            f->common.name);
     return ERR_OK;
-}
-
-static void warn_of_shift(struct reader *r, const struct scene_fluid *f)
-{
-    const double *const gravity = r->scene->top.gravity, cfl = r->scene->numerics.cfl;
-    const int line = f->common.line;
-    if (f->shifting_speed != SHIFTING_LARGEST) return;
-    if (gravity[0] != 0 || gravity[1] != 0)
-        warn_at(r->diag, r->scene, line,
-                "[fluid %s] shifting_speed = largest with gravity raises a free surface and adds "
-                "energy, in proportion to `shifting`; if the fluid has a free surface, use "
-                "shifting_speed = own",
-                f->common.name);
-    if (f->shifting * cfl > 5 * (1 + 1e-9))
-        warn_at(
-            r->diag, r->scene, line,
-            "[fluid %s] shifting = %g times numerics.cfl = %g is above 5, the stability limit of "
-            "shifting_speed = largest; reduce one of them",
-            f->common.name, f->shifting, cfl);
 }
 
 /* All fluid has the same properties. */
@@ -115,7 +83,6 @@ static enum err check_fluids(struct reader *r)
     if (s->n_fluid == 0) return ERR_OK;
     TRY(sound_speed(r, &s->fluid[0], &s->c0));
     s->rho0 = s->fluid[0].density;
-    warn_of_shift(r, &s->fluid[0]);
     for (int k = 1; k < s->n_fluid; k++) {
         const enum err err = sound_speed(r, &s->fluid[k], &c0);
         TRY(case_go_on(r, err ? err : check_fluid(r, &s->fluid[k], c0)));
@@ -360,26 +327,6 @@ static enum err check_solid_h(struct reader *r)
                     value);
 }
 
-/* L-6 gives the fluid beside a surface the acceleration of the surface, also along it. */
-static void warn_of_sliding(struct reader *r)
-{
-    const struct scene *const s = r->scene;
-    if (s->numerics.sides != SIDES_ONE || s->n_fluid == 0) return;
-    for (int k = 0; k < s->n_solid + s->n_wall; k++) {
-        const bool solid = k < s->n_solid;
-        const struct scene_section_common *const c =
-            solid ? &s->solid[k].common : &s->wall[k - s->n_solid].common;
-        const int slip = solid ? s->solid[k].slip : s->wall[k - s->n_solid].slip;
-        const bool moves = solid || *s->wall[k - s->n_solid].motion;
-        if (slip != SLIP_FREE || !moves) continue;
-        warn_at(r->diag, r->scene, scene_line(r->scene, SECTION_numerics, 0, "sides"),
-                "sides = one drags the fluid that slides along [%s %s], as if the body were "
-                "larger by a spacing all round: the added mass of a cylinder of 10 spacings is "
-                "40 %% too large; use sides = both, or slip = none",
-                solid ? "solid" : "wall", c->name);
-    }
-}
-
 /* What sections say of each other, for each that is valid itself. */
 static enum err check_sections(struct reader *r)
 {
@@ -422,7 +369,6 @@ enum err case_check(struct reader *r)
         TRY(case_go_on(r, check_relax(r)));
     if (numerics && case_sound(r, SECTION_top, 0) && case_all_sound(r, SECTION_fluid))
         TRY(case_go_on(r, check_fluids(r)));
-    if (valid) warn_of_sliding(r);
     TRY(check_sections(r));
     return valid ? case_check_effects(r) : ERR_OK;
 }

@@ -105,23 +105,9 @@ static enum err check_motion_expressions(struct reader *r, const struct scene_mo
     return ERR_OK;
 }
 
-static bool is_used(const struct scene *s, const char *motion)
-{
-    for (int k = 0; k < s->n_wall; k++)
-        if (strcmp(s->wall[k].motion, motion) == 0) return true;
-    for (int k = 0; k < s->n_solid; k++)
-        if (strcmp(s->solid[k].clamp_motion, motion) == 0) return true;
-    return false;
-}
-
 enum err case_check_motion(struct reader *r, const struct scene_motion *m)
 {
     const int line = m->common.line;
-    if (r->n_problems == 0 && !is_used(r->scene, m->common.name))
-        warn_at(r->diag, r->scene, line,
-                "[motion %s] moves nothing: name it by `motion` of a [wall] or `clamp_motion` of a "
-                "[solid]",
-                m->common.name);
     if (!(m->start < m->stop))
         return bad_line(r, line, "[motion %s] start = %g s must come before stop = %g s",
                         m->common.name, m->start, m->stop);

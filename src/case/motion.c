@@ -87,21 +87,6 @@ static struct motion_state velocity_at(const struct scene_motion *motion,
     return m;
 }
 
-/* A table that ends in motion, while the run goes on: the wall stops within a step. */
-static void warn_of_end(const struct scene *s, const struct scene_motion *m,
-                        const struct scene_table *table, struct diag *d)
-{
-    const int n = table->n;
-    const double end = m->start + table->t[n - 1];
-    const bool moves = table->x[n - 1] != table->x[n - 2] || table->y[n - 1] != table->y[n - 2];
-    if (!moves || end >= min2(s->top.end_time, m->stop) * (1 - 1e-9)) return;
-    warn_at(d, s, scene_line(s, SECTION_motion, (int)(m - s->motion), "file"),
-            "[motion %s] file = %.200s ends at t = %.6g s, before end_time = %.6g s, and "
-            "still moves in its last row: what it moves stops there within a step and then "
-            "rests; continue the table, end it at rest, or use end_time = %.6g s",
-            m->common.name, m->file, end, s->top.end_time, end);
-}
-
 enum err motion_load(struct scene *s, struct diag *d)
 {
     static const struct table_kind kind = {"a motion", "time (s), dx (m), dy (m)", true};
@@ -124,7 +109,6 @@ enum err motion_load(struct scene *s, struct diag *d)
         if (e) continue;
         set_slopes(table->n, table->t, table->x, table->vx);
         set_slopes(table->n, table->t, table->y, table->vy);
-        warn_of_end(s, m, table, d);
     }
     return bad;
 }

@@ -113,27 +113,6 @@ static enum err check_given(struct reader *r, const struct scene_open *o)
     return ERR_OK;
 }
 
-/* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
-static void warn_of_absorb(struct reader *r, const struct scene_open *o)
-{
-    const struct scene *const s = r->scene;
-    const double wave = s->c0 * o->absorb / 4, reach = 2 * s->numerics.h_over_dp * s->top.dp;
-    const int line = scene_line(s, o->section, o->index, "absorb");
-    if (!(o->absorb > 0) || o->kind != OPEN_PRESSURE || !(s->c0 > 0)) return;
-    if (wave < reach)
-        warn_at(r->diag, r->scene, line,
-                "[%s %s] absorb = %g s lets out waves below c0 absorb/4 = %.3g m only. The "
-                "fluid resolves none below 2 h = %.3g m, so sound is reflected; 4 L/c0 lets out "
-                "waves of up to the length L",
-                o->word, o->common->name, o->absorb, wave, reach);
-    if (o->absorb > s->top.end_time)
-        warn_at(r->diag, r->scene, line,
-                "[%s %s] absorb = %g s is longer than end_time = %g s, so a flow that sets in is "
-                "taken for sound. It is held back by rho0 c0 = %.3g Pa for each m/s; use a "
-                "shorter time",
-                o->word, o->common->name, o->absorb, s->top.end_time, s->rho0 * s->c0);
-}
-
 /* Where the guards would warn of the flow itself (time/guards.c), the case is told before it runs. `largest`:
  * of the given speed, m/s, or pressure, Pa, which changes the density by P/(rho0 c0^2) in Eq. 2. */
 static void warn_of_sound(struct reader *r, const struct scene_open *o, double largest)
@@ -204,17 +183,9 @@ static enum err check_profile(struct reader *r, const struct scene_open *o)
 enum err case_check_open(struct reader *r)
 {
     const struct scene *const s = r->scene;
-    if (scene_open_count(s) > 0 && s->n_fluid > 0 && s->fluid[0].density_diffusion == 0) {
-        const struct scene_open o = scene_open_at(s, 0);
-        warn_at(r->diag, s, o.common->line,
-                "[%s %s] adjoins fluid without density_diffusion, so pressure noise grows at this "
-                "boundary; use density_diffusion = 0.1",
-                o.word, o.common->name);
-    }
     for (int k = 0; k < scene_open_count(s) && s->n_fluid > 0; k++) {
         const struct scene_open o = scene_open_at(s, k);
         TRY(check_given(r, &o));
-        warn_of_absorb(r, &o);
         TRY(check_profile(r, &o));
     }
     return ERR_OK;

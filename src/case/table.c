@@ -7,9 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A table this many times as long as the run has mostly another unit of time. */
-enum { LONG_TABLE = 100 };
-
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d)
 {
@@ -66,14 +63,7 @@ enum err table_load(struct scene *scene, struct scene_table *table, const struct
     enum err e = table_open(scene, &csv, name, line, key, d);
     if (!e) e = read_table(scene, table, kind, &csv);
     csv_close(&csv);
-    if (e) return e;
-    const double last = table->t[table->n - 1];
-    if (last > LONG_TABLE * scene->top.end_time)
-        warn_at(d, scene, line,
-                "%s = %.200s lasts until t = %g s, of which the run uses the first %g s "
-                "(end_time): its times are in seconds, not in milliseconds",
-                key, name, last, scene->top.end_time);
-    return ERR_OK;
+    return e;
 }
 
 int table_row(const struct scene_table *table, double t)

@@ -4,6 +4,7 @@
 enum err check_scene(struct scene *scene, struct diag *d)
 {
     struct check c = {.scene = scene, .diag = d, .shapes = {.scene = scene, .diag = d}};
+    warn_of_values(&c);
     enum err e = geometry_draw(&c.shapes);
     if (!e) e = list_points(&c);
     if (!e) e = warn_of_shapes(&c);

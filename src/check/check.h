@@ -54,6 +54,7 @@ double extent_along(const struct scene *scene, enum kind kind, int section, cons
 double start_speed(const struct scene *scene, enum kind kind, int section,
                    const struct scene_expr *velocity);
 
+void warn_of_values(struct check *c);
 enum err warn_of_shapes(struct check *c) SPHFSI_CHECKED;
 enum err warn_of_fluid(struct check *c) SPHFSI_CHECKED;
 enum err warn_of_solids(struct check *c) SPHFSI_CHECKED;

@@ -3,6 +3,7 @@
  * wrong. */
 #include "case/params.h"
 #include "case/scene.h"
+#include "check/check.h"
 #include "geometry/load.h"
 #include "unity.h"
 
@@ -50,6 +51,7 @@ static void refuses(const char *text, const char *message)
 static void takes(const char *text)
 {
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, load(text), diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, check_scene(&scene, &diag), diag.text);
     scene_free(&scene);
 }
 

@@ -2,6 +2,7 @@
  * Prescribed motion: at rest before and after, velocity and acceleration the derivatives of the
  * displacement in between. */
 #include "case/scene.h"
+#include "check/check.h"
 #include "geometry/load.h"
 #include "unity.h"
 
@@ -113,7 +114,7 @@ static void test_sine(void)
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, -0.2, motion_at(&scene, 0, 0.25).d[1]);
 }
 
-static struct motion_point point_at(double t, double X, double Y)
+static struct motion_point moved_point(double t, double X, double Y)
 {
     const struct motion_state m = motion_at(&scene, 0, t);
     return motion_of_point(&m, X, Y);
@@ -124,14 +125,15 @@ static struct motion_point point_at(double t, double X, double Y)
 static void test_rotation_by_hand(void)
 {
     must_read("kind = rotation\ncentre = 1, 2\nangle = pi/2\nstop = 2\n");
-    const struct motion_point p = point_at(1, 3, 2);
+    const struct motion_point p = moved_point(1, 3, 2);
     const double x[2] = {1, 4}, v[2] = {-M_PI, 0}, a[2] = {0, -M_PI * M_PI / 2};
     for (int c = 0; c < 2; c++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, x[c], p.x[c]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, v[c], p.v[c]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-12, a[c], p.a[c]);
     }
-    const struct motion_point late = point_at(7, 3, 2); /* after the stop: half a turn, at rest */
+    const struct motion_point late =
+        moved_point(7, 3, 2); /* after the stop: half a turn, at rest */
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, -1, late.x[0]);
     TEST_ASSERT_TRUE(late.v[0] == 0 && late.v[1] == 0 && late.a[0] == 0 && late.a[1] == 0);
 }
@@ -145,8 +147,9 @@ static void test_rotation_is_rigid_and_smooth(void)
               "period = 1\nphase = 0.3\nfile = test_motion.tmp\n");
     const double h = 1e-4;
     for (double t = 0.1; t < 0.95; t += 0.17) {
-        const struct motion_point before = point_at(t - h, 0.3, -0.1), p = point_at(t, 0.3, -0.1);
-        const struct motion_point after = point_at(t + h, 0.3, -0.1), q = point_at(t, 0, 0.2);
+        const struct motion_point before = moved_point(t - h, 0.3, -0.1),
+                                  p = moved_point(t, 0.3, -0.1);
+        const struct motion_point after = moved_point(t + h, 0.3, -0.1), q = moved_point(t, 0, 0.2);
         for (int c = 0; c < 2; c++) {
             TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.x[c] - before.x[c]) / (2 * h), p.v[c]);
             TEST_ASSERT_DOUBLE_WITHIN(1e-5, (after.v[c] - before.v[c]) / (2 * h), p.a[c]);
@@ -159,7 +162,7 @@ static void test_rotation_is_rigid_and_smooth(void)
 static void test_no_rotation_is_the_limit(void)
 {
     must_read("kind = rotation\ncentre = 0.1, 0.7\nangle = 0\n");
-    const struct motion_point p = point_at(0.5, 0.3, 1.0 / 3);
+    const struct motion_point p = moved_point(0.5, 0.3, 1.0 / 3);
     TEST_ASSERT_TRUE(p.x[0] == 0.3 && p.x[1] == 1.0 / 3 && p.v[0] == 0 && p.a[1] == 0);
 }
 
@@ -203,10 +206,10 @@ static void test_expression_by_hand(void)
 static void test_expression_as_rotation_and_polynomial(void)
 {
     must_read("kind = rotation\ncentre = 1, 2\nangle = 0.5, -1\n");
-    const struct motion_point turned = point_at(0.7, 0.3, -0.1);
+    const struct motion_point turned = moved_point(0.7, 0.3, -0.1);
     scene_free(&scene);
     must_read("kind = expression\ncentre = 1, 2\nturn = 0.5*t - t^2\n");
-    const struct motion_point p = point_at(0.7, 0.3, -0.1);
+    const struct motion_point p = moved_point(0.7, 0.3, -0.1);
     for (int c = 0; c < 2; c++) {
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.x[c], p.x[c]);
         TEST_ASSERT_DOUBLE_WITHIN(1e-14, turned.v[c], p.v[c]);
@@ -388,6 +391,7 @@ static void read_warned(const char *text, const char *table)
     TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK,
                                   scene_load_text(&scene, text, "motion.cfg", 0, NULL, &diag),
                                   diag.text);
+    TEST_ASSERT_EQUAL_INT_MESSAGE(ERR_OK, check_scene(&scene, &diag), diag.text);
     scene_free(&scene);
 }
 
