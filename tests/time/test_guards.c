@@ -258,7 +258,7 @@ static enum err check_with_gain(enum energy_term term, double share)
     rig.sim.gain = energy_find_gain(&rig.sim);
     rig.sim.gain_found = true;
     rig.sim.state.gain_since = rig.sim.state.time - 3e-3;
-    return energy_guard(&rig.sim, &rig.diag);
+    return guards_energy(&rig.sim, &rig.diag);
 }
 
 /* A gain of a hundredth is a warning, once; nine tenths are the end, but not at the
@@ -297,13 +297,13 @@ static void test_a_gain_that_lasts(void)
         rig.sim.gain = (struct energy_gain){.entry = 0, .energy = seen[k].share, .available = 1};
         rig.sim.gain_found = true;
         rig.sim.state.gain_since = rig.sim.state.time - seen[k].since;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
         TEST_ASSERT_EQUAL_INT(seen[k].warned, warnings);
     }
     rig.sim.gain.energy = 0.005;
     rig.sim.gain_found = true;
     rig.sim.state.gain_since = 0;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
     TEST_ASSERT_TRUE(rig.sim.state.gain_since == rig.sim.state.time);
 }
 
@@ -338,7 +338,7 @@ static void test_a_gain_between_bodies(void)
         rig.sim.contact.near = near;
         rig.sim.gain = (struct energy_gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
         rig.sim.gain_found = true;
-        TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
+        TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
         TEST_ASSERT_NOT_NULL_MESSAGE(
             strstr(warning, near ? "; a smaller dp or a larger gap in [contact] may help"
                                  : "; a smaller dp may help"),
@@ -349,7 +349,7 @@ static void test_a_gain_between_bodies(void)
     rig.sim.gain = (struct energy_gain){.term = TERM_ALL, .energy = 0.2, .available = 1};
     rig.sim.contact.near = false;
     rig.sim.gain_found = true;
-    TEST_ASSERT_EQUAL_INT(ERR_OK, energy_guard(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_OK, guards_energy(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(warning,
                                         "; a smaller dp or numerics.suction = on may help"),
                                  warning);
@@ -367,7 +367,7 @@ static void advises(const char *text, const char *what, const char *set, const c
     simulation_refresh(&rig.sim);
     rig.sim.gain = energy_find_gain(&rig.sim);
     rig.sim.gain_found = true;
-    TEST_ASSERT_EQUAL_INT(ERR_GUARD, energy_guard(&rig.sim, &rig.diag));
+    TEST_ASSERT_EQUAL_INT(ERR_GUARD, guards_energy(&rig.sim, &rig.diag));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(rig.diag.text, what), rig.diag.text);
 }
 
