@@ -89,6 +89,21 @@ double extent_along(const struct scene *scene, enum kind kind, int section, cons
     return max2(0, high - low);
 }
 
+double start_speed(const struct scene *scene, enum kind kind, int section,
+                   const struct scene_expr *velocity)
+{
+    const struct scene_points *const p = &scene->points[kind];
+    double most = 0;
+    for (int64_t k = 0; k < p->n && velocity->e[0]; k++) {
+        if (p->body[k] != section) continue;
+        double v[2];
+        for (int c = 0; c < 2; c++)
+            v[c] = velocity->e[c] ? scene_expr_at(velocity->e[c], p->x[k], p->y[k]) : 0;
+        most = max2(most, elementary_hypot(v[0], v[1]));
+    }
+    return most;
+}
+
 /* --- off the lattice --- */
 
 static double cells_to(const struct region *region, int c, double x)
