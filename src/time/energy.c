@@ -409,7 +409,7 @@ struct energy_gain energy_find_gain(struct simulation *sim)
 }
 
 /* Steps and time between two tests. A test costs about two steps of a solid. */
-enum { TEST_STEPS = 32, SOLID_ONLY_TEST_STEPS = 256 };
+enum { TEST_STEPS = 64, SOLID_ONLY_TEST_STEPS = 256 };
 #define TEST_TIME 2.5e-3
 
 void energy_test_due(struct simulation *sim)

@@ -23,7 +23,7 @@ enum quantity { POWER, BODY_POWER, STATIC_ENERGY };
 
 /* Eight particles abreast, over a fixed number of slices: the order of the sums is the same on
  * every machine and with any number of threads. */
-enum { ABREAST = 8, SLICES = 16 };
+enum { ABREAST = 8, BLOCK = 64, SLICES = 16 };
 
 /* P/rho^2 rho0, m^2/s^2: the rate at which the energy of compression changes with the density. */
 SPHFSI_INLINE double compression_rate(double dens, double c0)
@@ -32,13 +32,14 @@ SPHFSI_INLINE double compression_rate(double dens, double c0)
 }
 
 /* The quantity of `count` particles from i on. */
-SPHFSI_INLINE void find_values(const struct simulation *sim, enum quantity quantity, int64_t i,
-                               int count, double *value)
+static void find_values(const struct simulation *sim, enum quantity quantity, int64_t i, int count,
+                        double *value)
 {
     const struct particles p = sim->kind[KIND_FLUID];
     const double c0 = sim->fluid.k.c0, mass = sim->fluid.k.mass;
     const double gx = sim->scene->top.gravity[0], gy = sim->scene->top.gravity[1];
     if (quantity == BODY_POWER) {
+#pragma omp simd
         for (int r = 0; r < count; r++) value[r] = p.body_power[i + r];
         return;
     }
@@ -52,7 +53,9 @@ SPHFSI_INLINE void find_values(const struct simulation *sim, enum quantity quant
         for (int64_t k = i; k < i + count; k++)
             value[k - i] = mass * (eos_energy(p.dens[k], c0) - gx * p.x[k] - gy * p.y[k]);
     }
-    for (int r = 0; r < count && p.m; r++) value[r] *= p.m[i + r];
+    if (!p.m) return;
+#pragma omp simd
+    for (int r = 0; r < count; r++) value[r] *= p.m[i + r];
 }
 
 static void sum_slice(const struct simulation *sim, enum quantity quantity, int64_t from,
@@ -60,16 +63,16 @@ static void sum_slice(const struct simulation *sim, enum quantity quantity, int6
 {
     const int32_t *const section = sim->kind[KIND_FLUID].body;
     const bool one = sim->scene->n_fluid == 1;
-    double value[ABREAST], sum[ABREAST] = {0};
-    int64_t i = from;
-    for (; i + ABREAST <= end; i += ABREAST) {
-        find_values(sim, quantity, i, ABREAST, value);
-        for (int r = 0; r < ABREAST && one; r++) sum[r] += value[r];
-        for (int r = 0; r < ABREAST && !one; r++) of[section[i + r]] += value[r];
+    double value[BLOCK], sum[ABREAST] = {0};
+    for (int64_t i = from; i < end; i += BLOCK) {
+        const int count = end - i < BLOCK ? (int)(end - i) : BLOCK;
+        const int whole = one ? count / ABREAST * ABREAST : 0;
+        find_values(sim, quantity, i, count, value);
+        for (int r = 0; r < whole; r += ABREAST)
+            for (int lane = 0; lane < ABREAST; lane++) sum[lane] += value[r + lane];
+        for (int r = whole; r < count; r++) of[section[i + r]] += value[r];
     }
-    find_values(sim, quantity, i, (int)(end - i), value);
-    for (int r = 0; r < end - i; r++) of[section[i + r]] += value[r];
-    for (int r = 0; r < ABREAST; r++) of[0] += sum[r];
+    for (int lane = 0; lane < ABREAST; lane++) of[0] += sum[lane];
 }
 
 static void sum_fluid(const struct simulation *sim, enum quantity quantity,

@@ -277,7 +277,7 @@ static void test_an_unstable_solid_is_named(void)
     }
 }
 
-/* Energy that comes from nowhere at the interface. */
+/* Spurious energy at the interface. */
 static void test_a_gain_at_the_interface_is_named(void)
 {
     begin(tanks, "integrator=leapfrog", NULL, NULL);
