@@ -17,7 +17,7 @@
 _Static_assert((int)SPHFSI_INTERRUPT == (int)ERR_INTERRUPT && (int)SPHFSI_INPUT == (int)ERR_INPUT &&
                    (int)SPHFSI_MEMORY == (int)ERR_MEMORY && (int)SPHFSI_IO == (int)ERR_IO &&
                    (int)SPHFSI_GUARD == (int)ERR_GUARD,
-               "the public results are the rows of errors.def");
+               "the public results are those of base/error.h");
 _Static_assert((int)SPHFSI_PROBE_COLUMNS == (int)PROBE_MAX_COLUMNS, "values of a probe");
 _Static_assert((int)SPHFSI_FLUID == (int)KIND_FLUID && (int)SPHFSI_WALL == (int)KIND_WALL &&
                    (int)SPHFSI_SOLID == (int)KIND_SOLID,

@@ -4,7 +4,7 @@
 #ifndef SPHFSI_TIME_CALL_H
 #define SPHFSI_TIME_CALL_H
 
-#include "base/host.h"
+#include "base/threads.h"
 #include "sphfsi.h"
 
 struct call {

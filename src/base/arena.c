@@ -18,15 +18,16 @@ enum { BLOCK_HEADER = ARENA_ALIGN };
 _Static_assert(sizeof(struct arena_block) <= BLOCK_HEADER && ARENA_MARGIN % ARENA_ALIGN == 0,
                "arrays are aligned");
 
-/* malloc starts large arrays at the same offset in a page. Loops over many arrays would then use the same
- * sets of the first-level cache and evict each other. Each array starts STAGGER_STEP bytes later instead. */
+/* malloc starts large arrays at the same offset in a page. Loops over many arrays would then use
+ * the same sets of the first-level cache and evict each other. Each array starts STAGGER_STEP
+ * bytes later instead. */
 enum { STAGGER_STEP = 3 * ARENA_ALIGN, STAGGER_RANGE = 4096 };
 
 enum { LARGE_PAGE = 1 << 21 };
 
-/* Asks for large pages where the array fills them. Loops over a million particles read some twenty arrays
- * at once: with 4 kB pages that exceeds the TLB. The remainder stays in small pages, so that no memory is
- * wasted. Without support by the system nothing happens. */
+/* Asks for large pages where the array fills them. Loops over a million particles read some
+ * twenty arrays at once: with 4 kB pages that exceeds the TLB. The remainder stays in small
+ * pages, so that no memory is wasted. Without support by the system nothing happens. */
 static void request_large_pages(unsigned char *raw, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE
@@ -45,8 +46,8 @@ void arena_fail_after(long n) { fail_countdown = n; }
 
 static bool failure_injected(void) { return fail_countdown >= 0 && fail_countdown-- == 0; }
 
-/* Zeroes the memory in parallel, split among the threads as in a static loop: on NUMA machines the system
- * places a page near the core that first touches it. */
+/* Zeroes the memory in parallel, split among the threads as in a static loop: on NUMA machines
+ * the system places a page near the core that first touches it. */
 static void first_touch(unsigned char *raw, size_t bytes)
 {
     enum { PARALLEL_FROM = 1 << 20 };

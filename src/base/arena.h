@@ -18,8 +18,9 @@ struct arena {
     size_t limit;  /* largest allowed `bytes`; 0: no limit */
 };
 
-/* Allocates `count` zeroed items of `size` bytes; NULL, with the sizes in d, if that fails. Never NULL for
- * count == 0. A vector load or store may cross either end of the array by up to ARENA_MARGIN bytes. */
+/* Allocates `count` zeroed items of `size` bytes; NULL, with the sizes in d, if that fails.
+ * Never NULL for count == 0. A vector load or store may cross either end of the array by up to
+ * ARENA_MARGIN bytes. */
 void *arena_alloc(struct arena *a, size_t count, size_t size, const char *what, struct diag *d)
     SPHFSI_CHECKED;
 void arena_free(struct arena *a);

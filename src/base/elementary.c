@@ -5,8 +5,8 @@
 
 #include <math.h>
 
-/* The number hi + lo, hi being its nearest double (Dekker 1971). Operations on pairs have relative errors of
- * some 2^-104. */
+/* The number hi + lo, hi being its nearest double (Dekker 1971). Operations on pairs have
+ * relative errors of some 2^-104. */
 struct pair {
     double hi, lo;
 };
@@ -51,8 +51,8 @@ static struct pair by(struct pair a, double b)
     return sum(q, (__builtin_fma(-q, b, a.hi) + a.lo) / b);
 }
 
-/* 1 + s z/(n + 1)(n + 2) (1 + s z/(n + 3)(n + 4) (1 + ...)), z = x^2, |x| < 1. With s = -1 that is cos x for
- * n = 0 and sin x/x for n = 1, with s = 1 it is cosh x and sinh x/x. */
+/* 1 + s z/(n + 1)(n + 2) (1 + s z/(n + 3)(n + 4) (1 + ...)), z = x^2, |x| < 1. With s = -1 that
+ * is cos x for n = 0 and sin x/x for n = 1, with s = 1 it is cosh x and sinh x/x. */
 static struct pair series(struct pair x, int n, double s)
 {
     enum { TERMS = 11 };
@@ -185,8 +185,8 @@ double elementary_tanh(double x)
 
 /* --- geometry --- */
 
-/* The angle of (x, y), 0 < y <= x. A guess by a polynomial is mended three times: it lacks e - e^3/3 + ...,
- * where e = (y cos t - x sin t)/(x cos t + y sin t). */
+/* The angle of (x, y), 0 < y <= x. A guess by a polynomial is mended three times: it lacks e -
+ * e^3/3 + ..., where e = (y cos t - x sin t)/(x cos t + y sin t). */
 static struct pair angle_below_45(double y, double x)
 {
     const double q = y / x;

@@ -6,12 +6,15 @@
 #include "base/macros.h"
 
 enum err {
-#define ERROR(name, status, meaning) ERR_##name,
-#include "base/errors.def"
-#undef ERROR
+    ERR_OK,
+    ERR_INPUT,    /* the case, a file it names, or the command line is wrong; nothing was started */
+    ERR_MEMORY,   /* not enough */
+    ERR_IO,       /* a file could not be written or read */
+    ERR_GUARD,    /* a guard stopped the run: the numerical state is no longer valid */
+    ERR_INTERRUPT /* stopped by a signal */
 };
 
-/* Exit status of the program for an error, from base/errors.def. */
+/* Exit status of the program for an error. */
 int err_status(enum err e);
 
 /* The first failure, and the receiver of warnings. */
@@ -24,7 +27,8 @@ struct diag {
     char more[8192]; /* further failures of the same input, a sentence a line */
 };
 
-/* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO, ...)`. */
+/* Records a failure unless d holds one already; returns `code`: `return diag_fail(d, ERR_IO,
+ * ...)`. */
 enum err diag_fail(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);
 /* The same, but where d holds a failure already, the sentence is added to `more`. */
 enum err diag_add(struct diag *d, enum err code, const char *format, ...) SPHFSI_PRINTF(3, 4);

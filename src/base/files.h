@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Files: paths, whole-file reads, and atomic replacement (a reader sees the old file or the new one). */
+ * Files: paths, whole-file reads, and atomic replacement (a reader sees the old file or the new
+ * one). */
 #ifndef SPHFSI_BASE_FILES_H
 #define SPHFSI_BASE_FILES_H
 
@@ -13,8 +14,8 @@ enum { PATH_BYTES = 4096 };
 enum err path_join(char path[PATH_BYTES], const char *folder, const char *name, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Opens a file for writing, as open() does, but fails with ELOOP on a symbolic link: a link in the folder of
- * a run must not redirect output to another place. */
+/* Opens a file for writing, as open() does, but fails with ELOOP on a symbolic link: a link in
+ * the folder of a run must not redirect output to another place. */
 int file_open_no_follow(const char *path, int flags);
 
 /* strerror(), except that ELOOP is explained as file_open_no_follow means it. */
@@ -26,8 +27,8 @@ enum err directory_sync(const char *path, struct diag *d) SPHFSI_CHECKED;
 /* Reads a whole file; `bytes` is malloc'd and followed by a 0 that `size` does not count. */
 enum err file_read(const char *path, char **bytes, size_t *size, struct diag *d) SPHFSI_CHECKED;
 
-/* Reads a whole text file, ending with a 0; `shown` is its name in messages, `what` says what it should
- * be. Any failure but of memory is ERR_INPUT. */
+/* Reads a whole text file, ending with a 0; `shown` is its name in messages, `what` says what it
+ * should be. Any failure but of memory is ERR_INPUT. */
 enum err text_read(const char *path, const char *shown, const char *what, char **text,
                    struct diag *d) SPHFSI_CHECKED;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * FNV-1a hashes (Fowler, Noll and Vo), 64 bits. Every step is invertible: one changed byte always changes
- * the hash. */
+ * FNV-1a hashes (Fowler, Noll and Vo), 64 bits. Every step is invertible: one changed byte
+ * always changes the hash. */
 #ifndef SPHFSI_BASE_HASH_H
 #define SPHFSI_BASE_HASH_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Names of the arithmetic in sweeps and pair laws that are compiled for double precision. A file includes
- * this header or base/real_float.h. */
+ * Names of the arithmetic in sweeps and pair laws that are compiled for double precision. A file
+ * includes this header or base/real_float.h. */
 #ifndef SPHFSI_BASE_REAL_DOUBLE_H
 #define SPHFSI_BASE_REAL_DOUBLE_H
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Names of the arithmetic in sweeps and pair laws that are compiled for mixed precision: pairs in float. A
- * file includes this header or base/real_double.h. */
+ * Names of the arithmetic in sweeps and pair laws that are compiled for mixed precision: pairs
+ * in float. A file includes this header or base/real_double.h. */
 #ifndef SPHFSI_BASE_REAL_FLOAT_H
 #define SPHFSI_BASE_REAL_FLOAT_H
 

@@ -86,8 +86,8 @@ static enum err fail_locked(const struct run_dir *dir, int fd, struct diag *d)
                      dir->path, owner[0] ? owner : "unknown");
 }
 
-/* Locks the lock file. Its owner may unlink it, when it ends, after it was opened here: then the lock is on
- * a file without a name, and the loop tries again. */
+/* Locks the lock file. Its owner may unlink it, when it ends, after it was opened here: then the
+ * lock is on a file without a name, and the loop tries again. */
 static enum err lock_run_dir(struct run_dir *dir, struct diag *d)
 {
     char path[PATH_BYTES];

@@ -19,8 +19,8 @@ struct run_dir {
 /* Whether the folder may be used so; changes nothing. */
 enum err run_dir_check(const char *path, enum run_dir_use use, struct diag *d) SPHFSI_CHECKED;
 
-/* Creates the folder and its parents, checks it as run_dir_check does, and locks it until run_dir_close or
- * the end of the process. */
+/* Creates the folder and its parents, checks it as run_dir_check does, and locks it until
+ * run_dir_close or the end of the process. */
 enum err run_dir_open(struct run_dir *dir, const char *path, enum run_dir_use use, struct diag *d)
     SPHFSI_CHECKED;
 void run_dir_close(struct run_dir *dir);

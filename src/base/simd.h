@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * SIMD: compiler vector types (+ - * / are C operators on them) and the few operations that C lacks.
- * vfloat and vdouble fill the widest register: 512, 256 or 128 bits. Sums over lanes follow one fixed tree
- * and fma is explicit, so the bits do not depend on compiler or instruction set (-ffp-contract=off).
- * -DSPHFSI_LANES=8 gives an AVX-512 machine the 8 float lanes of AVX2. */
+ * SIMD: compiler vector types (+ - * / are C operators on them) and the few operations that C
+ * lacks. vfloat and vdouble fill the widest register: 512, 256 or 128 bits. Sums over lanes
+ * follow one fixed tree and fma is explicit, so the bits do not depend on compiler or
+ * instruction set (-ffp-contract=off). -DSPHFSI_LANES=8 gives an AVX-512 machine the 8 float
+ * lanes of AVX2. */
 #ifndef SPHFSI_BASE_SIMD_H
 #define SPHFSI_BASE_SIMD_H
 
@@ -35,9 +36,9 @@ typedef float vfloat __attribute__((vector_size(SIMD_BYTES)));
 typedef double vdouble __attribute__((vector_size(SIMD_BYTES)));
 typedef int64_t vlong __attribute__((vector_size(SIMD_BYTES), may_alias)); /* lanes of vdouble */
 
-/* Groups of four lanes. In a sweep each lane of a group is another neighbour j, and each group another
- * particle i. So sums over j do not depend on the width of a vector. A vector of two doubles is half a
- * group. */
+/* Groups of four lanes. In a sweep each lane of a group is another neighbour j, and each group
+ * another particle i. So sums over j do not depend on the width of a vector. A vector of two
+ * doubles is half a group. */
 enum {
     LANES_FLOAT = SIMD_BYTES / 4,
     LANES_DOUBLE = SIMD_BYTES / 8,
@@ -46,8 +47,8 @@ enum {
     GROUPS_DOUBLE = LANES_DOUBLE < GROUP ? 1 : LANES_DOUBLE / GROUP,
 };
 
-/* Four doubles or floats (the particles of a group) and eight floats or words, on any register width.
- * Types that end in _at may be at any address and alias the arrays that they load from. */
+/* Four doubles or floats (the particles of a group) and eight floats or words, on any register
+ * width. Types that end in _at may be at any address and alias the arrays that they load from. */
 typedef double four_double __attribute__((vector_size(32)));
 typedef float four_float __attribute__((vector_size(16)));
 typedef double four_double_at __attribute__((vector_size(32), aligned(8), may_alias));
@@ -66,8 +67,8 @@ SPHFSI_INLINE void vstore_double(double *p, vdouble a) { *(vdouble_at *)p = (vdo
 SPHFSI_INLINE vfloat vset_float(float a) { return (vfloat){0} + a; }
 SPHFSI_INLINE vdouble vset_double(double a) { return (vdouble){0} + a; }
 
-/* Keeps a loaded vector in a register, on machines with 32 of them. gcc would repeat the load at each use,
- * and unaligned loads limit the solid's loops. */
+/* Keeps a loaded vector in a register, on machines with 32 of them. gcc would repeat the load at
+ * each use, and unaligned loads limit the solid's loops. */
 #if defined SIMD_AVX512
 #define vhold(a) __asm__("" : "+v"(a))
 #elif defined SIMD_NEON
@@ -102,7 +103,8 @@ SPHFSI_INLINE void vwiden_float(double *p, vfloat a, int n)
                     n < LANES_DOUBLE ? n : LANES_DOUBLE);
 }
 
-/* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a : b. */
+/* vfma(a, b, c) = a b + c with one rounding; vmin(a, b) = a < b ? a : b; vmax(a, b) = a > b ? a
+ * : b. */
 #ifdef SIMD_AVX2
 #ifdef SIMD_AVX512
 #define X86(op) _mm512_##op
@@ -184,8 +186,8 @@ SPHFSI_INLINE vdouble vabs_double(vdouble a) { return (vdouble)vabsq_f64((float6
 SPHFSI_INLINE vfloat vsqrt_float(vfloat a) { return (vfloat)vsqrtq_f32((float32x4_t)a); }
 SPHFSI_INLINE vdouble vsqrt_double(vdouble a) { return (vdouble)vsqrtq_f64((float64x2_t)a); }
 #elif defined SIMD_WASM
-/* relaxed_madd rounds once or twice, as the machine does: a program tests that before it relies on it
- * (web/exports.c). pmin(b, a) = a < b ? a : b. */
+/* relaxed_madd rounds once or twice, as the machine does: a program tests that before it relies
+ * on it (web/exports.c). pmin(b, a) = a < b ? a : b. */
 SPHFSI_INLINE vfloat vfma_float(vfloat a, vfloat b, vfloat c)
 {
     return (vfloat)wasm_f32x4_relaxed_madd((v128_t)a, (v128_t)b, (v128_t)c);
@@ -293,8 +295,8 @@ SPHFSI_INLINE double vtop_double(vdouble a)
     return top;
 }
 
-/* vfour(p): p[0..3] (or as many as there are lanes) in every group. vspread(p): p[g] in all lanes of group
- * g. vsum_four(a, out): out[g] = sum of group g by halving. */
+/* vfour(p): p[0..3] (or as many as there are lanes) in every group. vspread(p): p[g] in all
+ * lanes of group g. vsum_four(a, out): out[g] = sum of group g by halving. */
 #ifdef SIMD_AVX512
 SPHFSI_INLINE vfloat vfour_float(const float *p)
 {
@@ -358,8 +360,8 @@ SPHFSI_INLINE void vsum_four_double(vdouble a, double out[GROUPS_DOUBLE])
 }
 #endif
 
-/* Stores to `out`, in order, the items whose lane of a is below the limit; returns their number. Always
- * writes LANES_FLOAT items. */
+/* Stores to `out`, in order, the items whose lane of a is below the limit; returns their number.
+ * Always writes LANES_FLOAT items. */
 SPHFSI_INLINE int vkeep_below(uint32_t *out, const uint32_t *item, vfloat a, float limit)
 {
 #ifdef SIMD_AVX512

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * 2x2 tensors over an arithmetic type T, inlined by hand. The macro defines the struct and its routines for
- * double and for vectors of `real`, which is double unless the file includes base/real_float.h. */
+ * 2x2 tensors over an arithmetic type T, inlined by hand. The macro defines the struct and its
+ * routines for double and for vectors of `real`, which is double unless the file includes
+ * base/real_float.h. */
 #ifndef SPHFSI_BASE_TENSOR2_H
 #define SPHFSI_BASE_TENSOR2_H
 

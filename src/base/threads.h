@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: MIT
- * Number and index of OpenMP threads; one thread in a build without OpenMP. And the wall clock. */
+ * Number and index of OpenMP threads; one thread in a build without OpenMP. The wall clock, and
+ * what the library sets in the calling thread. */
 #ifndef SPHFSI_BASE_THREADS_H
 #define SPHFSI_BASE_THREADS_H
 
+#include "base/error.h"
+
+#include <locale.h>
 #include <stdint.h>
+#if defined __APPLE__
+#include <xlocale.h>
+#endif
 
 /* Threads of one core, at most. */
 enum { THREADS_PER_CORE = 4 };
@@ -12,13 +19,13 @@ enum { THREADS_PER_CORE = 4 };
 int thread_count(void);
 void thread_use(int n);
 
-/* Cores that this process may use, and how many of them are idle now, at least 1. The second takes some
- * milliseconds; where the system does not tell, all are idle. */
+/* Cores that this process may use, and how many of them are idle now, at least 1. The second
+ * takes some milliseconds; where the system does not tell, all are idle. */
 int thread_cores(void);
 int thread_idle_cores(void);
 
-/* Of `cores` that may be used on a machine of `online`, those idle while `running` threads run, this one
- * among them. */
+/* Of `cores` that may be used on a machine of `online`, those idle while `running` threads run,
+ * this one among them. */
 int thread_idle_of(int cores, int online, int running);
 
 /* Threads that n particles keep busy; the most that they may be asked to occupy. */
@@ -31,5 +38,19 @@ int thread_index(void);
 
 /* Seconds of the monotonic clock. */
 double wall_clock(void);
+
+/* Settings of the calling thread that the library changes during a call: the locale, since numbers
+ * in files have a decimal point, and the number of threads of parallel regions. */
+struct host {
+    locale_t locale;
+    int threads;
+};
+
+/* Puts settings in effect for this thread; returns those that were. */
+struct host host_use(struct host settings);
+
+/* Puts the locale "C" in effect and, unless it is 0, a number of threads; what was goes to
+ * *before. */
+enum err host_enter(struct host *before, int threads, struct diag *d) SPHFSI_CHECKED;
 
 #endif

@@ -58,8 +58,9 @@ enum packed_field {
     PACKED_P,
     PACKED_DENS,
     PACKED_FIELDS,
-    /* Of walls and solids, where fluid sticks to some of them: the mirrored velocity (Adami et al. 2012,
-     * Eq. 23) and its weight: 1 or 2 (L-6b) where it acts, 0 where the surface is free-slip. */
+    /* Of walls and solids, where fluid sticks to some of them: the mirrored velocity (Adami et
+     * al. 2012, Eq. 23) and its weight: 1 or 2 (L-6b) where it acts, 0 where the surface is
+     * free-slip. */
     PACKED_MIRROR_U = PACKED_FIELDS,
     PACKED_MIRROR_V,
     PACKED_STICKS,
@@ -71,7 +72,8 @@ enum packed_field {
     /* Of walls and solids with repulsion: (r0^2 + eta^2)/h^2 of fx_repulsion. */
     PACKED_NEAR = PACKED_ONE_SIDED_FIELDS,
     PACKED_REPULSION_FIELDS,
-    /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times h. */
+    /* Of the fluid, where density diffuses by Antuono et al. 2010: the gradient of dens, times
+     * h. */
     PACKED_SLOPE_X = PACKED_FIELDS,
     PACKED_SLOPE_Y,
     PACKED_SLOPE_FIELDS,
@@ -88,8 +90,8 @@ struct packed_fields {
 
 struct fluid;
 
-/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, for a set of pair effects,
- * and their extremes. */
+/* The rates of the fluid (Eqs. 4, 6, 7, 21a) in the active cells first to end - 1, for a set of
+ * pair effects, and their extremes. */
 struct fluid_kernel {
     const char *name;
     effect_set effects; /* ANY_EFFECTS: generic */
@@ -107,8 +109,8 @@ struct fluid_sweeps {
     /* Renormalised gradient of the fluid's density, and its packed fields. */
     void (*slopes)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                    const struct cells *c);
-    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed fields.
-     * The fluid's force on them: coupling/force.h. */
+    /* Pressure and density of wall or solid particles near fluid (Eqs. 19-20), and their packed
+     * fields. The fluid's force on them: coupling/force.h. */
     void (*dummies)(const struct fluid *f, struct particles kinds[KIND_COUNT],
                     const struct cells *c, enum kind kind);
     const struct fluid_kernel *kernels; /* the generic one is the last */
@@ -184,7 +186,8 @@ double fluid_shift(const struct fluid *f, struct particles *p, double dt);
 /* The density that the acoustic damper remembers moves towards the present one. */
 void fluid_follow_density(const struct fluid *f, struct particles *p, double dt);
 
-/* After sorting: finds the cells of walls and solids that have fluid within reach, and the reverse. */
+/* After sorting: finds the cells of walls and solids that have fluid within reach, and the
+ * reverse. */
 void fluid_find_near(struct fluid *f, const struct cells *c);
 
 /* Most particles of any kind in one cell. */

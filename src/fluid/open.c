@@ -8,8 +8,9 @@
 
 #include <math.h>
 
-/* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this far in front
- * of it is relabelled without delay. Fluid that oscillates about the line by less creates no copies. */
+/* Distance in spacings: fluid this far behind the line joins the buffer, a buffer particle this
+ * far in front of it is relabelled without delay. Fluid that oscillates about the line by less
+ * creates no copies. */
 #define BAND 0.5
 
 int64_t open_places(const struct scene *s)
@@ -37,8 +38,8 @@ static enum err copy_boundary(struct open *o, int n, struct arena *a, struct dia
     return ERR_OK;
 }
 
-/* The times at which an evaluation takes the given velocities. Their rate is that over the time in which
- * sound crosses h. */
+/* The times at which an evaluation takes the given velocities. Their rate is that over the time
+ * in which sound crosses h. */
 static void find_times(const struct fluid_constants *k, double time, double t[OPEN_TIMES])
 {
     t[OPEN_BEFORE] = max2(0, time - 0.5 * k->h / k->c0);
@@ -400,8 +401,9 @@ static enum err make_copy(struct open *o, const struct fluid_constants *k, struc
     return ERR_OK;
 }
 
-/* The strip of a buffer, one spacing wide along the normal, that a particle lies in, and its distance from
- * the line. Every place on the line belongs to one strip, so fluid that returns adds none. */
+/* The strip of a buffer, one spacing wide along the normal, that a particle lies in, and its
+ * distance from the line. Every place on the line belongs to one strip, so fluid that returns
+ * adds none. */
 static int strip_of(const struct scene_open *b, const struct particles *p, int64_t i, double dp,
                     double *in)
 {
@@ -410,7 +412,8 @@ static int strip_of(const struct scene_open *b, const struct particles *p, int64
     return (int)floor(along / strip_width(b, dp));
 }
 
-/* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are new. */
+/* Distance of the last particle in the strip of i from the line. Particles from `fresh` on are
+ * new. */
 static double last_of_strip(const struct open *o, const struct particles *p, int64_t i,
                             int64_t fresh, double dp)
 {
@@ -437,8 +440,8 @@ static enum err fill_strip(struct open *o, const struct fluid_constants *k, stru
     return ERR_OK;
 }
 
-/* Whether the buffer has no space for fluid that has come in: above its level, or close to a buffer particle
- * that moves inward. Two particles in one place would burst apart. */
+/* Whether the buffer has no space for fluid that has come in: above its level, or close to a
+ * buffer particle that moves inward. Two particles in one place would burst apart. */
 static bool strip_is_full(const struct open *o, const struct particles *p, int64_t i, double dp)
 {
     const struct scene_open *const b = &o->boundary[p->open[i] - 1];

@@ -49,8 +49,8 @@ SPHFSI_INLINE four_double pressure_of(four_double dens, const struct fluid_const
     return pressure;
 }
 
-/* Acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a): the pressure psi of four, where `excess` is
- * dens less the value with delay. */
+/* Acoustic damper (Fourtakas, Vacondio and Rogers 2025; T-9a): the pressure psi of four, where
+ * `excess` is dens less the value with delay. */
 SPHFSI_INLINE four_double damper_pressure(four_double excess, const struct fluid_constants *k)
 {
     return k->rho0 * square(k->c0) * excess;
@@ -127,8 +127,9 @@ static void SWEEP(packed)(const struct fluid *f, const struct particles kinds[KI
     for (int32_t k = 0; k < n; k++) pack(f, &kinds[KIND_FLUID], c, c->kind[KIND_FLUID].active[k]);
 }
 
-/* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the neighbours
- * span no plane (a determinant below a thousandth of the trace squared) its inverse is taken as 0. */
+/* Moments of the neighbours: the symmetric matrix of the sums of V t^3 xi (x) xi. If the
+ * neighbours span no plane (a determinant below a thousandth of the trace squared) its inverse
+ * is taken as 0. */
 struct moments {
     double xx, xy, yy, det;
 };

@@ -3,10 +3,10 @@
  * text is compiled once for float and once for double lanes: the including file defines `real`,
  * `vreal`, the verbs and lane(). Lengths are in units of h, so that
  *   grad_a W_ab = -(PAIR_SLOPE/h^3) t^3 xi_ab,  xi = x/h,  t = max(0, 2 - |xi|),
- * and every sum below is to be multiplied by -PAIR_SLOPE/h and, since a pair has the volumes of both,
- * divided by that of the particle it is for. The clamp of t removes pairs beyond the
- * support without a mask. Only commutative sums and odd differences are used, so that exchanging a and
- * b flips the sign of a force and nothing else. */
+ * and every sum below is to be multiplied by -PAIR_SLOPE/h and, since a pair has the volumes of
+ * both, divided by that of the particle it is for. The clamp of t removes pairs beyond the
+ * support without a mask. Only commutative sums and odd differences are used, so that exchanging
+ * a and b flips the sign of a force and nothing else. */
 
 #define PAIR_SLOPE (KERNEL_SLOPE / 8)
 
@@ -80,7 +80,8 @@ SPHFSI_INLINE vreal fx_viscosity(const struct receiver *a, const struct pair *q,
     return vfma(vmin(q->vx, vset(0)), both * damping, stress);
 }
 
-/* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|) (W_ab/W(dp))^4, Pa. */
+/* Monaghan 2000, Sec. 3, for negative pressures: a repulsion epsilon (|P_a| + |P_b|)
+ * (W_ab/W(dp))^4, Pa. */
 SPHFSI_INLINE vreal fx_tensile(const struct receiver *a, const struct pair *q,
                                const struct vector_constants *k)
 {
@@ -113,8 +114,8 @@ SPHFSI_INLINE vreal fx_repulsion(vreal near, vreal inv, const struct vector_cons
     return k->repulsion * vmax(vset(0), vfma(near, inv, vset(-1)));
 }
 
-/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the one-sided Riemann
- * problem of Zhang, Hu and Adams 2017, in place of beta rho0 c0^2. */
+/* The same where the pair approaches at a speed u: zeta rho0 c0 u, the pressure of the one-sided
+ * Riemann problem of Zhang, Hu and Adams 2017, in place of beta rho0 c0^2. */
 SPHFSI_INLINE vreal fx_wall_damping(vreal near, vreal inv, vreal vx,
                                     const struct vector_constants *k)
 {
@@ -133,17 +134,17 @@ SPHFSI_INLINE vreal fx_laminar(const struct pair *q, vreal inv, const struct vec
 /* Eq. 28b: the pair's rate of approach or separation. */
 SPHFSI_INLINE vreal fx_approach(const struct pair *q, vreal inv) { return vabs(q->vx * inv); }
 
-/* L-5b: the diffusivity over h. It is delta c0, but at most (C_delta l)^2/h times the rate of strain of the
- * pair along its line (Meringolo et al. 2019). */
+/* L-5b: the diffusivity over h. It is delta c0, but at most (C_delta l)^2/h times the rate of
+ * strain of the pair along its line (Meringolo et al. 2019). */
 SPHFSI_INLINE vreal fx_limiter(const struct pair *q, vreal inv, const struct vector_constants *k)
 {
     return vmin(vset(STRAIN_DIFFUSION) * fx_approach(q, inv), k->diffusion);
 }
 
-/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2). With
- * FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the difference,
- * g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its linear part, by the mean
- * of both particles' gradients. */
+/* Eq. 6: D_a = 2 delta h c0 rho0 sum of V_b (dens_a - dens_b) x_ab . grad W/(|x|^2 + eta^2).
+ * With FOURTAKAS (Fourtakas et al. 2019, Eq. 10, linearised) the hydrostatic part of the
+ * difference, g . x_ba/c0^2, does not diffuse; with ANTUONO (Antuono et al. 2010, Eq. 3) its
+ * linear part, by the mean of both particles' gradients. */
 SPHFSI_INLINE vreal fx_diffusion(const struct receiver *a, const struct pair *q, vreal inv,
                                  const struct vector_constants *k, struct pair_set fx)
 {

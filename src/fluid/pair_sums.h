@@ -31,7 +31,8 @@ SPHFSI_INLINE void add_exchange(struct cluster_sums *s, int row, int part, const
     if (PAIR_HAS(fx, SHIFTING)) add_concentration(s, row, part, e);
 }
 
-/* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the candidates. */
+/* Pairs with the volumes of both sides, as an exchange has them, and the pressure of the
+ * candidates. */
 SPHFSI_INLINE struct pair pair_between(const struct receiver *a, uint32_t code, const real *b)
 {
     struct pair q = pair_load(a, code, b);
@@ -127,7 +128,8 @@ SPHFSI_INLINE void sum_fluid(const struct neighbours *neighbours, const struct r
         }
 }
 
-/* With walls and structures: pressure and continuity, and laminar viscosity where the fluid sticks. */
+/* With walls and structures: pressure and continuity, and laminar viscosity where the fluid
+ * sticks. */
 SPHFSI_INLINE struct exchange pair_of_dummy(const struct receiver *a, uint32_t code, const real *b,
                                             const struct vector_constants *k, struct pair_set fx,
                                             vreal *approach)

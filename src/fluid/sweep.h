@@ -203,8 +203,8 @@ SPHFSI_INLINE void rates_of_chunk(const struct fluid *f, struct particles *p, co
         top->acceleration2 = max2(top->acceleration2, here.acceleration2[r]);
 }
 
-/* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a separate
- * function before it can see that fx is a constant. */
+/* Kernels are compiled outside of any parallel region: the compiler makes the body of a region a
+ * separate function before it can see that fx is a constant. */
 #define VARIANT(variant, set)                                                             \
     static void SWEEP(rates_##variant)(const struct fluid *f, struct particles *p,        \
                                        const struct cells *c, int32_t first, int32_t end, \

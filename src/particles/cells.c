@@ -32,8 +32,8 @@ static enum err list_create(struct cell_list *list, struct arena *a, const struc
     return list->order ? ERR_OK : ERR_MEMORY;
 }
 
-/* Side of a cell over the reach. In wider cells each cluster tests more boxes; in narrower ones more clusters
- * are only partly filled. LEAST_SIDE applies to domains of up to three cells. */
+/* Side of a cell over the reach. In wider cells each cluster tests more boxes; in narrower ones
+ * more clusters are only partly filled. LEAST_SIDE applies to domains of up to three cells. */
 #define SIDE 1.6
 #define LEAST_SIDE 1.05
 
@@ -105,8 +105,8 @@ static double cells_along(const struct cells *c, int axis, double x)
     return at < n ? at : 0; /* just below the lower side rounding gives n */
 }
 
-/* Wraps coordinates into the periodic domain; returns the number of crossings of the upper side, less those
- * of the lower. */
+/* Wraps coordinates into the periodic domain; returns the number of crossings of the upper side,
+ * less those of the lower. */
 static int64_t wrap_positions(const struct cells *c, int axis, double *x, int64_t n)
 {
     const double lower = c->lower[axis], period = c->side[axis] * (axis ? c->ny : c->nx);
@@ -168,8 +168,8 @@ static void radix_pass(const uint64_t *from, uint64_t *to, int64_t n, int shift,
             to[histogram[t][(from[k] >> shift) & (DIGITS - 1)]++] = from[k];
 }
 
-/* Sorts c->pair_a by key and then into clusters; returns the sorted array, c->pair_a or c->pair_b. The result
- * does not depend on the number of threads. */
+/* Sorts c->pair_a by key and then into clusters; returns the sorted array, c->pair_a or
+ * c->pair_b. The result does not depend on the number of threads. */
 static const uint64_t *sort_pairs(struct cells *c, int64_t n, const struct particles *p)
 {
     const int threads = c->sort_threads < sort_threads() ? c->sort_threads : sort_threads();
@@ -196,8 +196,9 @@ struct tally {
     int32_t cells, clusters;
 };
 
-/* Counts the cells whose first particle is among the first-th to the (end - 1)-th in cell order. With `fill`
- * it also writes them to the list; `before`: the cells and clusters of earlier chunks. */
+/* Counts the cells whose first particle is among the first-th to the (end - 1)-th in cell order.
+ * With `fill` it also writes them to the list; `before`: the cells and clusters of earlier
+ * chunks. */
 static struct tally list_chunk(struct cell_list *list, const int32_t *cell, int64_t n,
                                int64_t first, int64_t end, struct tally before, bool fill)
 {
@@ -220,7 +221,8 @@ static struct tally list_chunk(struct cell_list *list, const int32_t *cell, int6
     return found;
 }
 
-/* Start, count and first cluster of each cell, and the active cells, from the cells of the particles. */
+/* Start, count and first cluster of each cell, and the active cells, from the cells of the
+ * particles. */
 static void list_fill(struct cell_list *list, const int32_t *cell, int64_t n)
 {
     const int threads = sort_threads();

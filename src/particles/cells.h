@@ -5,14 +5,14 @@
 
 #include "particles/particles.h"
 
-/* How far particles extend beyond the left, right, lower and upper edges of their cells, m; negative: the
- * distance to the edge. */
+/* How far particles extend beyond the left, right, lower and upper edges of their cells, m;
+ * negative: the distance to the edge. */
 struct overhang {
     double side[4];
 };
 
-/* Most particles of one kind in a cell; some twenty are normal. If there are more, particles have collapsed
- * onto each other, and a guard stops the run. */
+/* Most particles of one kind in a cell; some twenty are normal. If there are more, particles
+ * have collapsed onto each other, and a guard stops the run. */
 enum { CELL_CAPACITY = 320 };
 
 /* Particles that sweeps process together. */
@@ -59,23 +59,25 @@ enum err cells_create(struct cells *c, struct arena *a, const double lower[2],
 enum err cells_make_periodic(struct cells *c, int axis, double reach, struct diag *d)
     SPHFSI_CHECKED;
 
-/* Sorts the particles of one kind by the Morton key of their cell, then into clusters of close particles
- * (particles/cells_order.c), and builds the cell list. Fluid is permuted in memory. Returns the number of
- * particles outside the grid (or at a non-finite position): they come last, by id, in no cell, and p->n still
- * counts them. */
+/* Sorts the particles of one kind by the Morton key of their cell, then into clusters of close
+ * particles (particles/cells_order.c), and builds the cell list. Fluid is permuted in memory.
+ * Returns the number of particles outside the grid (or at a non-finite position): they come
+ * last, by id, in no cell, and p->n still counts them. */
 int64_t cells_sort(struct cells *c, enum kind kind, struct particles *p);
 
 /* Builds the cell list of particles that are already sorted, from their `cell` fields (restart). */
 void cells_rebuild(struct cells *c, enum kind kind, struct particles *p);
 
-/* Orders the particles of each cell into clusters. `pair` holds (Morton key, particle), sorted by key. */
+/* Orders the particles of each cell into clusters. `pair` holds (Morton key, particle), sorted
+ * by key. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads);
 
 /* Measures the present overhang of a kind. */
 void cells_measure_overhang(struct cells *c, enum kind kind, const struct particles *p);
 
-/* How far, m, a fluid particle and another may move, both together, from where they were measured, until they
- * can come within `reach` without being in neighbouring cells. 0 or less: sort now. */
+/* How far, m, a fluid particle and another may move, both together, from where they were
+ * measured, until they can come within `reach` without being in neighbouring cells. 0 or less:
+ * sort now. */
 double cells_skin_left(const struct cells *c, double reach);
 
 SPHFSI_INLINE int cell_x(const struct cells *c, int32_t cell) { return cell % c->nx; }
@@ -129,7 +131,8 @@ SPHFSI_INLINE double cell_centre_y(const struct cells *c, int32_t cell)
     return c->lower[1] + ((double)cell_y(c, cell) + 0.5) * c->side[1];
 }
 
-/* Whether a position is at most half a side outside a cell; no particle moves further between sorts. */
+/* Whether a position is at most half a side outside a cell; no particle moves further between
+ * sorts. */
 SPHFSI_INLINE bool cells_is_near(const struct cells *c, int32_t cell, double x, double y)
 {
     const double dx = cells_minimum_image(c, 0, x - cell_centre_x(c, cell)) / c->side[0],
@@ -140,8 +143,8 @@ SPHFSI_INLINE bool cells_is_near(const struct cells *c, int32_t cell, double x, 
 /* Called for particle i at the vector (x, y) from a point, r long, m. */
 typedef void cells_visitor(void *context, int64_t i, double x, double y, double r);
 
-/* Visits the particles p of a kind that are nearer to a point than `distance`, although they may have
- * moved by the skin since they were sorted. */
+/* Visits the particles p of a kind that are nearer to a point than `distance`, although they may
+ * have moved by the skin since they were sorted. */
 SPHFSI_INLINE void cells_each_near(const struct cells *c, enum kind kind, const struct particles *p,
                                    const double at[2], double distance, cells_visitor *visit,
                                    void *context)

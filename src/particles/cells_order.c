@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
- * The order of the particles within a cell: clusters of four close particles, the leaves of a k-d tree
- * (Bentley 1975) that halves along the longer axis. The order follows from positions and ids alone, so that a
- * restart reproduces it: positions at the sort for fluid, in the reference configuration for bodies. */
+ * The order of the particles within a cell: clusters of four close particles, the leaves of a
+ * k-d tree (Bentley 1975) that halves along the longer axis. The order follows from positions
+ * and ids alone, so that a restart reproduces it: positions at the sort for fluid, in the
+ * reference configuration for bodies. */
 #include <math.h>
 #include <string.h>
 
@@ -26,8 +27,8 @@ static int64_t key_of(double x)
     return key < 0 ? key ^ INT64_MAX : key;
 }
 
-/* Sorts points by one coordinate, then the other, then by id. A point's rank is the number of points before
- * it: n^2 comparisons, but no branches. */
+/* Sorts points by one coordinate, then the other, then by id. A point's rank is the number of
+ * points before it: n^2 comparisons, but no branches. */
 static void sort_points(const struct points *s, uint16_t *point, int n, int axis)
 {
     _Alignas(64) int64_t first[CELL_CAPACITY], second[CELL_CAPACITY], id[CELL_CAPACITY];
@@ -99,7 +100,8 @@ static void order_cell(uint64_t *pair, int n, const struct particles *p)
     for (int k = 0; k < n; k++) pair[k] = (pair[k] >> 32 << 32) | particle[point[k]];
 }
 
-/* For particles outside the grid, and for a cell above its capacity, at which a guard stops the run. */
+/* For particles outside the grid, and for a cell above its capacity, at which a guard stops the
+ * run. */
 static void order_by_id(uint64_t *pair, int64_t n, const int64_t *id)
 {
     for (int64_t k = 1; k < n; k++) {
@@ -118,7 +120,8 @@ static int64_t end_of_cell(const uint64_t *pair, int64_t n, int64_t k)
     return end;
 }
 
-/* Each thread orders whole cells. Where its range starts is found first, since ordering changes `pair`. */
+/* Each thread orders whole cells. Where its range starts is found first, since ordering changes
+ * `pair`. */
 void cells_order(uint64_t *pair, int64_t n, const struct particles *p, int threads)
 {
     int64_t first[CELLS_SORT_THREADS + 1] = {0};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * How long a cell list stays valid. Sweeps visit pairs in neighbouring cells only. Two particles of other
- * cells can be within reach only if their overhangs add up to more than the cells' side exceeds the reach. */
+ * How long a cell list stays valid. Sweeps visit pairs in neighbouring cells only. Two particles
+ * of other cells can be within reach only if their overhangs add up to more than the cells' side
+ * exceeds the reach. */
 #include <math.h>
 
 #include "particles/cells.h"

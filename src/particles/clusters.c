@@ -51,8 +51,8 @@ SPHFSI_INLINE struct sides sides_of(const struct cells *c, double h)
     return (struct sides){(float)(c->side[0] / h), (float)(c->side[1] / h)};
 }
 
-/* Appends the clusters of a cell; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a cell has four
- * or five, so wider vectors would only store more padding. */
+/* Appends the clusters of a cell; `half` is NEIGHBOUR_HALF or 0. It copies eight at a time: a
+ * cell has four or five, so wider vectors would only store more padding. */
 SPHFSI_INLINE void append(struct neighbour_clusters *s, const struct cluster_boxes *boxes,
                           const struct cell_list *list, struct sides sides, struct cell_code code,
                           uint32_t half)
@@ -146,7 +146,7 @@ void cluster_list_build_half(struct cluster_list *near, struct neighbour_cluster
     near->code[0] = own & ~(uint32_t)NEIGHBOUR_HALF;
     near->n = 1;
     append_near(near, s, boxes, neighbour_number(own));
-    /* Removes the next own cluster from the collection. Here and not at the next call: a vector load right
-     * after this scalar store would stall. */
+    /* Removes the next own cluster from the collection. Here and not at the next call: a vector
+     * load right after this scalar store would stall. */
     if (s->n-- > 0) s->side[BOX_LEFT][s->n] = FAR_AWAY;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * Cluster pair lists, as in Pall and Hess (2013): which clusters of four particles are within reach of each
- * other, by their bounding boxes. Boxes follow the present positions; an older sort makes them larger, but
- * never misses a pair. */
+ * Cluster pair lists, as in Pall and Hess (2013): which clusters of four particles are within
+ * reach of each other, by their bounding boxes. Boxes follow the present positions; an older
+ * sort makes them larger, but never misses a pair. */
 #ifndef SPHFSI_PARTICLES_CLUSTERS_H
 #define SPHFSI_PARTICLES_CLUSTERS_H
 
@@ -22,9 +22,9 @@ struct cluster_boxes {
     float *side[BOX_SIDES]; /* [clusters] */
 };
 
-/* A neighbour cluster in one word: its number, and the column and row of its cell among 3 x 3, where (1, 1)
- * is the cell of the receiving cluster. A flag says that the pair is in the half list
- * (neighbour_clusters_collect_half). */
+/* A neighbour cluster in one word: its number, and the column and row of its cell among 3 x 3,
+ * where (1, 1) is the cell of the receiving cluster. A flag says that the pair is in the half
+ * list (neighbour_clusters_collect_half). */
 enum { CLUSTERS_MOST = 1 << 27, NEIGHBOUR_HALF = 1 << 4 };
 SPHFSI_INLINE uint32_t neighbour_code(int32_t cluster, int column, int row)
 {
@@ -76,10 +76,10 @@ void neighbour_clusters_collect(struct neighbour_clusters *s, const struct clust
 void cluster_list_build(struct cluster_list *near, const struct neighbour_clusters *s,
                         const struct cluster_boxes *boxes, int32_t cluster);
 
-/* Half lists: each pair of clusters within `range` (whole cells) is listed once, flagged NEIGHBOUR_HALF, and
- * serves both clusters. Clusters outside the range are listed as before, without the flag. After collecting,
- * each call of cluster_list_build_half serves the next cluster of the cell, the last one first: first itself
- * (no flag), then its neighbours. */
+/* Half lists: each pair of clusters within `range` (whole cells) is listed once, flagged
+ * NEIGHBOUR_HALF, and serves both clusters. Clusters outside the range are listed as before,
+ * without the flag. After collecting, each call of cluster_list_build_half serves the next
+ * cluster of the cell, the last one first: first itself (no flag), then its neighbours. */
 void neighbour_clusters_collect_half(struct neighbour_clusters *s,
                                      const struct cluster_boxes *boxes, const struct cells *c,
                                      enum kind kind, int32_t cell, double h,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Particles as flat arrays (SoA), declared from particles/fields.def; one set of arrays for each kind. */
+ * Particles as flat arrays (SoA), declared from particles/fields.def; one set of arrays for each
+ * kind. */
 #ifndef SPHFSI_PARTICLES_PARTICLES_H
 #define SPHFSI_PARTICLES_PARTICLES_H
 
@@ -25,7 +26,8 @@ enum keep { KEEP_STATE, KEEP_DERIVED };
 enum kind { KIND_FLUID, KIND_WALL, KIND_SOLID, KIND_COUNT };
 extern const char *const kind_names[KIND_COUNT];
 
-/* The particles of one kind. A pointer is NULL while its group is off. The arena owns the memory. */
+/* The particles of one kind. A pointer is NULL while its group is off. The arena owns the
+ * memory. */
 struct particles {
     int64_t n;        /* particles now */
     int64_t capacity; /* items of each array; vector loads may cross its end (ARENA_MARGIN) */
