@@ -178,8 +178,11 @@ static void say_busy(int asked, const struct sphfsi_options *o)
                     idle, thread_cores(), asked, idle);
 }
 
-int session_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
-                    struct diag *d)
+/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it can use;
+ * else `offered` or fewer, as its particles and the idle cores are. A lower number than asked for is warned
+ * of, a busy machine said. */
+static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
+                          struct diag *d)
 {
     const char *name;
     const int64_t n = scene->points[KIND_FLUID].n + scene->points[KIND_SOLID].n;
@@ -250,7 +253,7 @@ enum err session_open(struct session *x, const struct sphfsi_options *o, struct 
 {
     const int offered = thread_count();
     TRY(session_read(x, o, d));
-    thread_use(session_threads(&x->scene, o, offered, d));
+    thread_use(choose_threads(&x->scene, o, offered, d));
     const enum err e = simulation_create(&x->simulation, &x->scene, d);
     if (e) {
         name_case(&x->scene, d);

@@ -17,12 +17,6 @@ struct session {
 enum err session_read(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;
 
-/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it can use;
- * else `offered` or fewer, as its particles and the idle cores are. A lower number than asked for is warned
- * of, a busy machine said. */
-int session_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
-                    struct diag *d);
-
 /* session_read, the number of threads, and the simulation at time zero. */
 enum err session_open(struct session *x, const struct sphfsi_options *o, struct diag *d)
     SPHFSI_CHECKED;

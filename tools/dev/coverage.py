@@ -34,7 +34,7 @@ BUILD = ROOT / "build" / "coverage"
 KEPT = BUILD / "taken"
 SUMMARY = ROOT / "tests" / "mutants" / "coverage.json"
 ENV = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive",
-       "PYTHON": sys.executable, "XDG_CACHE_HOME": str(ROOT / "build/coverage/cache")}
+       "PYTHON": sys.executable}
 # Tests of tools, of installing and of the set-up run no line of src/ that others do not. The audit counts
 # every file that a run opens, and gcov opens more.
 LEFT_OUT = ("tests/tools/", "test_wheel", "test_install", "test_setup", "test_audit", "test_absence")

@@ -3,8 +3,8 @@
 """Holds what --explain foresees against what runs take: steps and wall time of the shipped cases, each
 cut short by --until so that it takes about as long as --seconds says.
 
-Writes docs/forecast.json, one run a line, and the accuracy report, which shows it. The costs are
-calibrated anew, not taken from the user's cache. A case that fails is shown as that. Examples:
+Writes docs/forecast.json, one run a line, and the accuracy report, which shows it. A case
+that fails is shown as that. Examples:
 
   tools/report/forecast.py                     the cases in cases/, one thread and all
   tools/report/forecast.py --seconds 60 gate   longer, and only cases whose name begins like this
@@ -39,11 +39,10 @@ def arguments():
     return parser.parse_args()
 
 
-def foreseen(case, threads, more, cache):
+def foreseen(case, threads, more):
     """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does not."""
-    environment = dict(os.environ, XDG_CACHE_HOME=cache)
     done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
-                          capture_output=True, text=True, check=False, env=environment)
+                          capture_output=True, text=True, check=False)
     steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)
     solid = re.search(r"(?m)^ *about ([\d.e+]+) solid sub-steps", done.stdout)
     cost = re.search(r"(?m)^ *([\d.e+]+) (s|min|h) on this machine when idle", done.stdout)
@@ -79,11 +78,11 @@ def compare(case, threads, seconds):
     with tempfile.TemporaryDirectory() as folder:
         try:
             end = end_time(case)
-            whole = foreseen(case, threads, [], folder)
+            whole = foreseen(case, threads, [])
             until = float(f"{end * min(1, seconds / whole['seconds']):.2g}")
             more = ["--until", repr(until)]
             row.update(end=end, until=until, whole=whole["seconds"],
-                       foreseen=foreseen(case, threads, more, folder),
+                       foreseen=foreseen(case, threads, more),
                        taken=taken(case, threads, more, Path(folder) / "run"))
         except (BadFile, OSError, KeyError, ValueError) as problem:
             row["failed"] = str(problem)
