@@ -138,7 +138,8 @@ static void warn_of_gravity_table(struct check *c)
                 name, sum[0], sum[1], g[0] + sum[0], g[1] + sum[1]);
 }
 
-/* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within `absorb`. */
+/* T-53 lets sound out up to a wavelength of c0 absorb/4, and the mean flow follows within
+ * `absorb`. */
 static void warn_of_absorb(struct check *c, const struct scene_open *open)
 {
     const struct scene *const scene = c->scene;
