@@ -246,6 +246,21 @@ static void warn_of_turning(struct check *c, int body)
                 b->common.name, nu * c->scene->rho0);
 }
 
+/* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
+ * not depend on the step (tests/stability/test_step_bound.c). */
+static void warn_of_flutter(const struct check *c, int body)
+{
+    const struct scene_solid *const b = &c->scene->solid[body];
+    const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
+    if (b->hourglass_form == HOURGLASS_VARIATIONAL || !(b->hourglass > (quadratic ? 0 : 10)))
+        return;
+    warn_at(c->diag, c->scene, b->common.line,
+            "[solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
+            "hourglass_form = variational%s",
+            b->common.name, quadratic ? "gradient = quadratic" : "hourglass above 10",
+            quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
+}
+
 enum err warn_of_solids(struct check *c)
 {
     const struct scene *const scene = c->scene;
@@ -261,6 +276,7 @@ enum err warn_of_solids(struct check *c)
         warn_of_other_motions(c, k);
         warn_of_material(c, k);
         warn_of_turning(c, k);
+        warn_of_flutter(c, k);
     }
     return ERR_OK;
 }

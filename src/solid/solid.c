@@ -9,7 +9,6 @@
 #include "solid/loads.h"
 #include "case/effects.h"
 #include "case/params.h"
-#include "particles/kernel.h"
 #include "solid/packed.h"
 #include "solid/stencil.h"
 
@@ -57,23 +56,6 @@ static void join_bodies(struct solid *s, const struct scene *scene)
             s->body[k].mixed |=
                 s->body[j].bond == s->body[k].bond && s->body[j].density * s->body[j].viscosity !=
                                                           s->body[k].density * s->body[k].viscosity;
-}
-
-/* Eq. 17 has no potential: its operator is not symmetric, and some modes grow at a rate that does
- * not depend on the step (tests/stability/test_step_bound.c). */
-static void warn_of_flutter(const struct solid_body *b, const struct scene *scene, int body,
-                            struct diag *d)
-{
-    const struct scene_section_common *const common = &scene->solid[body].common;
-    const bool quadratic = b->gradient == GRADIENT_QUADRATIC;
-    char place[LOCATION_TEXT];
-    if (b->variational || !(b->kappa > (quadratic ? 0 : 10))) return;
-    scene_location(scene, common->line, place);
-    diag_warn(d,
-              "%s: [solid %s] hourglass_form = printed with %s is unstable at any time step%s; use "
-              "hourglass_form = variational%s",
-              place, common->name, quadratic ? "gradient = quadratic" : "hourglass above 10",
-              quadratic ? "" : " on some shapes", quadratic ? ", or gradient = linear" : "");
 }
 
 /* Float resolves the displacement gradient of a rotation to 1e-7, beside strains that may be
@@ -131,7 +113,6 @@ enum err solid_create(struct solid *s, struct arena *a, const struct scene *scen
     s->paper_step = INFINITY;
     for (int k = 0; k < s->n_bodies; k++) {
         s->body[k] = body_of(scene, k);
-        warn_of_flutter(&s->body[k], scene, k, d);
         s->variational |= s->body[k].variational;
         s->kelvin_voigt |= s->body[k].damping_time > 0;
         s->mass_damped |= s->body[k].mass_damping > 0;

@@ -293,8 +293,9 @@ static enum err store_slots(struct solid *s, struct arena *a, struct arena *scra
 }
 
 /* Moments of every particle; also checks the number of neighbours. */
-static enum err all_moments(struct solid *s, const struct point_grid *g, const struct particles *p,
-                            struct gradient_moments *moments, struct diag *d)
+static enum err all_moments(const struct solid *s, const struct point_grid *g,
+                            const struct particles *p, struct gradient_moments *moments,
+                            struct diag *d)
 {
     int32_t found[MAX_NEIGHBOURS];
     for (int64_t i = 0; i < p->n; i++) {
