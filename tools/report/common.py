@@ -149,6 +149,13 @@ def fill(template, **values):
     return (Path(__file__).parent / template).read_text(encoding="utf-8").format(**values)
 
 
+def words_of(file):
+    """A function that gives a paragraph of a Markdown file by its heading, filled with values."""
+    text = (Path(__file__).parent / file).read_text(encoding="utf-8")
+    parts = dict(part.split("\n\n", 1) for part in text.split("## ")[1:])
+    return lambda heading, **values: parts[heading].rstrip("\n").format(**values)
+
+
 def write(path, template, **values):
     path.write_text(fill(template, **values).rstrip() + "\n", encoding="utf-8")
     print(f"written {path.relative_to(ROOT) if path.is_relative_to(ROOT) else path}")

@@ -18,11 +18,13 @@ import re
 import subprocess
 from pathlib import Path
 
-from common import (ROOT, BadFile, fill, in_scratch, np, program_version, runfiles, table)
+from common import (ROOT, BadFile, fill, in_scratch, np, program_version, runfiles, table,
+                    words_of)
 from performance_targets import bench_rows, run_rows
 
 # As the Makefile says where another build folder is measured (B=...).
 BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
+paragraph = words_of("performance_words.md")
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
 # Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides, counted in the
@@ -157,13 +159,7 @@ def shared_work(threads):
             found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
     (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
     particles = sum(summary["particles"].values())
-    return (f"The first 0.02 s of the gate with dp = 0.5 mm ({particles} particles) take {one:.2f} s "
-            f"on one thread "
-            f"and {many:.2f} s on {threads}: {one / many:.2f} times as fast with output. The steps "
-            f"alone take "
-            f"{steps_one:.2f} s and {steps_many:.2f} s: {steps_one / steps_many:.2f} times as fast. "
-            f"The numbers "
-            "are medians of five alternating runs.",
+    return (paragraph("shared work", particles=particles, one=one, many=many, threads=threads, many_2=one / many, steps_one=steps_one, steps_many=steps_many, steps_many_2=steps_one / steps_many),
             {"with output": one / many, "steps alone": steps_one / steps_many})
 
 
@@ -175,17 +171,7 @@ def neighbour_words(rows):
     swept = {"clusters, pairs once": found["chunk", "list and sweep"],
              "clusters": found["cluster", "list and sweep"], "tile": found["tile", "copy and sweep"],
              "list": found["list", "sweep"]}
-    return (f"Four methods of neighbour search are compared, with the bare laws over {n} particles on one "
-            "thread (ns a particle):\n\n"
-            "* Neighbour clusters, each pair within a chunk of cells taken once: "
-            f"{swept['clusters, pairs once']:.1f} ns ({found['chunk', 'pairs']:.0f} pairs).\n"
-            f"* Neighbour clusters, all pairs from both sides: {swept['clusters']:.1f} ns "
-            f"({found['cluster', 'pairs']:.0f} pairs).\n"
-            f"* A tile of candidates around each cell: {swept['tile']:.1f} ns with its copies.\n"
-            f"* A neighbour list with a skin: {swept['list']:.1f} ns, and "
-            f"{found['list', 'build']:.0f} ns each time "
-            f"that it is built. It needs {4 * found['list', 'entries']:.0f} bytes a particle.\n\n"
-            f"The fastest method: {min(swept, key=swept.get)}.")
+    return (paragraph("neighbour words", n=n, swept=swept["clusters, pairs once"], pairs=found["chunk", "pairs"], clusters=swept["clusters"], pairs_2=found["cluster", "pairs"], tile=swept["tile"], list=swept["list"], build=found["list", "build"], entries=4 * found["list", "entries"], swept_2=min(swept, key=swept.get)))
 
 
 def bench_tables(rows):
@@ -224,28 +210,18 @@ def bench_tables(rows):
         met = value("fluid", rich, n, 1, "pairs")
         rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
         text.append(
-            f"One core reaches {peak:.0f} G lane operations a second (1 G = 10^9) in chains of fused "
-            f"multiply-add. "
-            f"The pair loop ({rich}, {n} particles) reaches {rate:.0f} G, {100 * rate / peak:.0f} % of that. "
-            f"It has {met:.0f} pairs a particle and {OPERATIONS} operations a pair, among them a square root "
-            "and a division.")
+            paragraph("bench tables", peak=peak, rich=rich, n=n, rate=rate, rate_2=100 * rate / peak, met=met, operations=OPERATIONS))
     slots = next((float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[4] == "slots"), None)
     if slots:
         ns = next(float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
         rate = slots * SOLID_OPERATIONS / ns
-        text.append(f"The solid's loops reach {rate:.0f} G in mixed precision, {100 * rate / peak:.0f} % of "
-                    f"{peak:.0f} G. They have {slots:.0f} neighbours a particle, with those that fill "
-                    f"up a pack, "
-                    f"and {SOLID_OPERATIONS} operations a neighbour.")
+        text.append(paragraph("bench tables 2", rate=rate, rate_2=100 * rate / peak, peak=peak, slots=slots, solid_operations=SOLID_OPERATIONS))
     if rich:
         bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
         copy = value("machine", "copy", 0, 1, "read + write")
-        text.append(f"One pass over the memory of a particle in each evaluation is "
-                    f"{bytes_each / ns:.1f} GB/s, "
-                    f"{100 * bytes_each / ns / copy:.0f} % of the speed of copying ({copy:.0f} GB/s, one "
-                    "thread). So arithmetic limits the sweeps, not memory.")
+        text.append(paragraph("bench tables 3", ns=bytes_each / ns, bytes_each=100 * bytes_each / ns / copy, copy=copy))
     if len(threads) > 1 and rich:
         one, many = threads[0], threads[-1]
         speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
@@ -287,10 +263,7 @@ def summary(rows, numbers, speed):
 
 def target_words(rows, numbers, speed):
     return "\n\n".join([
-        "The seconds of other programs were measured with their own solvers on two threads of an AMD "
-        "EPYC with "
-        "AVX-512. They are not measured again here. The targets were set for that machine. The measured "
-        "values are of the processor above, on all threads unless the row says one.",
+        paragraph("target words"),
         table(["work", "other programs", "target", "measured", ""],
               target_rows(rows, numbers, speed))])
 

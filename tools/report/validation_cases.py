@@ -5,7 +5,7 @@ import metrics
 from common import COLOURS, WIDTH, BadFile, Reference, np, plt
 from sphfsi.draw_probes import peak
 from validation_measures import Missing, bore, contact, front_speed, pressed_in
-from validation_report import COST, cost, ledgers, series, starting
+from validation_report import COST, cost, ledgers, series, starting, paragraph
 from validation_runs import BY_NAME, ROOT
 
 REFERENCES = ROOT / "cases" / "reference"
@@ -56,11 +56,7 @@ def cantilever(report):
     head = ["period (s)", "error (%)", "mean period, error (%)", "phase at the end (deg)", "amplitude (mm)",
             "loss (%/s)", "RMSE, elasticity (mm)", "RMSE, thin plate (mm)", *COST[1:]]
     lines = [
-        "The probe is at the free end, mid-thickness, for 1 s. `hourglass` (kappa) is 50 unless a row "
-        f"says another value. Linear two-dimensional elasticity (converged FE) gives the period {PERIOD} "
-        f"s and the amplitude {1e3 * AMPLITUDE:.2f} mm. The thin plate in plane strain gives 0.25406 s "
-        "and 23.06 mm. The two references differ by 1.0 mm (RMS over 1 s), so a smaller RMSE against the "
-        "thin plate is not the aim. A positive phase is late.", "",
+        paragraph("cantilever", period=PERIOD, amplitude=1e3 * AMPLITUDE), "",
         *report.table(head, [s for s in starting("cantilever") if "kappa" not in s.name], cells),
         *table_one(report, plate, elastic),
         *report.draw("plot_m1", ["cantilever-20", "cantilever-20-symplectic", "cantilever-40",
@@ -78,9 +74,7 @@ def table_one(report, plate, elastic):
     printed = {20: "3.76", 40: "1.71", 80: "1.68"}
     kappas = (0, 1, 10, 50)
     lines = ["### Table 1 of the paper", "",
-             "Each cell has the RMSE of the deflection over 1 s in mm, against the thin plate / against "
-             "2-D elasticity. In brackets is the error of the mean period in %. The paper's column is "
-             "against its analytic solution (presumably the thin plate), with kappa = 50.", "",
+             paragraph("table one"), "",
              "| ts/dp | paper | " + " | ".join(f"kappa = {k}" for k in kappas) + " |", "|---" * 6 + "|"]
     for ratio in (10, 20, 40, 80):
         cells = []
@@ -159,27 +153,13 @@ def plate(report):
             "half range (%)", "faster than 5 ms (%)", "first peak (1e-5 m, ms)",
             "first frequency (Hz)", *COST]
     return [
-        "The deflection is that of the mid-span, the mean over 0.5 s to 1 s, with the plate's own "
-        f"weight. Converged 2-D elasticity gives {1e5 * exact:.3f}e-5 m, the thin plate "
-        f"{1e5 * thin:.3f}e-5 m (the paper's line). The load is sudden, so the first peak is nearly twice "
-        f"that, and the plate rings near its dry frequency, {DRY:.0f} Hz. The water (c0 = 44.3 m/s) does "
-        "not lower this frequency: the acoustic wavelength is shorter than the plate, so the water "
-        "radiates sound instead of moving with the plate. The slow ripple is the acoustic quarter wave "
-        "of the column, 4H/c0 = 0.18 s.", "",
+        paragraph("plate", exact=1e5 * exact, thin=1e5 * thin, dry=DRY), "",
         *report.table(head, starting("plate"), cells), *both_integrators(report, sides),
         *plate_figure(report, exact, thin),
         *report.draw("plot_fields", ["plate-verlet", "plate"], "plate-fields",
                      "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time", 0.3),
-        "*Why the deflection fluctuates.* The start is hydrostatic, but it is not the equilibrium of the "
-        "discrete equations. The sum over the even lattice of h/dp = 1.35 gives 0.983 of a gradient "
-        "(docs/theory.md). The water at the floor is compressed by 1 %, so the column first falls by "
-        "about 3 % and then oscillates with little damping. The runs with h/dp = 1.5, whose lattice sum "
-        "is 0.997, show the part of the lattice. The fluctuation is a wave of the water, not noise of "
-        "the plate: the part faster than 5 ms is small (see the table). With the paper's alpha it has "
-        "not died out when the paper's second ends.", "",
-        "*Eq. 18 as printed.* As printed, the viscous force has the tensors of one particle only and "
-        "drives the plate's bending modes. With it the run stops, with or without water (docs/theory.md, "
-        "D8). Therefore the symmetric form is the default.", "", *ledgers(report, ["plate"])]
+        paragraph("plate 2"), "",
+        paragraph("plate 3"), "", *ledgers(report, ["plate"])]
 
 
 def both_integrators(report, sides):
@@ -191,11 +171,7 @@ def both_integrators(report, sides):
     verdict = ("Verlet's is the larger, as the paper says" if ratio > 1.2 else
                "the paper's claim that symplectic is steadier is not confirmed here" if ratio > 0.8 else
                "symplectic's is the larger, against the paper's claim")
-    return ["Symplectic and Verlet: the settled deflections differ by "
-            f"{100 * abs(b['mean'] / a['mean'] - 1):.2g} %. The standard deviation is "
-            f"{-100 * a['std'] / a['mean']:.2f} % (symplectic) and {-100 * b['std'] / b['mean']:.2f} % "
-            f"(Verlet). The part faster than 5 ms is {-100 * a['fast'] / a['mean']:.4f} % and "
-            f"{-100 * b['fast'] / b['mean']:.4f} %: {verdict}.", ""]
+    return [paragraph("both integrators", mean=100 * abs(b["mean"] / a["mean"] - 1), std=-100 * a["std"] / a["mean"], std_2=-100 * b["std"] / b["mean"], fast=-100 * a["fast"] / a["mean"], fast_2=-100 * b["fast"] / b["mean"], verdict=verdict), ""]
 
 
 def plate_figure(report, exact, thin):
@@ -250,14 +226,10 @@ def gate(report):
     show = [*(fine if len(fine) == 2 else ["gate-1mm", "gate-1mm-verlet"]), "gate-leapfrog",
             "gate-1mm-plane-stress"]
     return [
-        "The displacement is that of the free end. Antoci et al. (2007, mean of two digitisations) "
-        f"measured a peak of {top:.1f} mm at 0.16 s and 37.3 mm at 0.36 s. The RMS is over their nine "
-        "points. The displacement is compared without a shift in time.", "",
+        paragraph("gate", top=top), "",
         *report.table(["peak (mm)", "at (s)", "at 0.36 s (mm)", "RMS x (mm)", "RMS y (mm)", *COST],
                       starting("gate"), cells),
-        "Peaks of other computations of this gate, mm (at s): Antoci et al. 2007 SPH 50.1 (0.164), "
-        "Khayyer et al. 2018 ISPH 42.7 (0.115), Yang et al. 2012 SPH-FEM 39.3 (0.120), Ng et al. "
-        "2020 39.0 (0.116).", "",
+        paragraph("gate 2"), "",
         *gate_reading(report, numbers),
         *report.draw("plot_m1", show, "gate-m1", "Displacement of the free end, and its difference "
                                                  "from the measured one"),
@@ -275,9 +247,7 @@ def gate(report):
 
 def gate_reading(report, numbers):
     """What moves the curve, by the runs at 1 mm."""
-    lines = ["*Why the target is missed.* The computed gate rises like the measured one, but then falls "
-             "back while the measured one stays out. The list has what was changed and how it moved the "
-             "curve at dp = 1 mm (leapfrog), in mm at the peak and at 0.36 s:", ""]
+    lines = [paragraph("gate reading"), ""]
     try:
         base = numbers(report.run("gate-1mm-leapfrog"))
     except (Missing, BadFile) as problem:
@@ -299,25 +269,14 @@ def gate_reading(report, numbers):
                          f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} instead of {base['rms']:.1f}")
         except (Missing, BadFile) as problem:
             lines.append(f"* {words}: {problem}")
-    return [*lines, "", "Neither the resolution nor the integrator nor the fluid's constants keep the "
-                        "gate out. The stiffness of the body does: plane stress is softer by 1 - nu^2 = "
-                        "0.84. Khayyer et al. 2018 have nearly this curve, with another method and the "
-                        "same linear rubber. Antoci's own material has E = 12 MPa at small strain and "
-                        "stiffens further; 7.8 MPa is a fit. In the laboratory the water leaks past the "
-                        "sides of the gate. The paper itself reports \"a fewer agreement with "
-                        "experimental measurement\" here. No constant was tuned to the curve.", ""]
+    return [*lines, "", paragraph("gate reading 2"), ""]
 
 
 # --- interfaces, 3.4, 3.5 ---
 def interface(report, names):
     """Gaps and penetration between water and structure over the snapshots."""
     lines = ["### Interface", "",
-             "Distances are between particles of the water and of the structure over all snapshots, in "
-             "spacings (1 in the even lattice). A gap is a surface particle of the structure whose "
-             "nearest water is 1.5 to 3 spacings away. The edge of the wetted part and splashes count. "
-             "*Pressed in* has the most water particles in any snapshot that are in bodies or in walls "
-             "(deeper than about 0.8 spacings, or below the floor). The last column has the part of the "
-             "snapshots with any.", "",
+             paragraph("interface"), "",
              "| run | closest | median, wetted surface | surface with a gap (%) | pressed into bodies, "
              "walls | snapshots with any (%) |", "|---" * 6 + "|"]
     for name in names:
@@ -386,13 +345,7 @@ def baffle(report):
     coarse = report.coarse("baffle-2.5mm", "baffle-4mm")
     shown = report.shown("baffle", coarse)
     return [
-        "The laboratory's curve and parts of the geometry are not available: **no agreement with the "
-        "experiment is claimed**. What can be checked:\n\n* Stoker's bore over a wet bed has the depth "
-        f"{1e3 * depth:.1f} mm and the speed {speed:.3f} m/s if the dam vanishes. Here the plate is "
-        "lifted, so the bore comes later and starts lower.\n* The first contact is near t = 0.3 s (the "
-        f"paper).\n* The baffle's frequency is {in_air(0.08, 5.7e6):.1f} Hz in air and "
-        f"{in_air(0.064, 5.7e6):.1f} Hz with 64 mm free (Euler and Bernoulli, plane strain). It is lower "
-        f"in water.\n* The table of the interface below has gaps and penetration.\n\n{ABOUT_MEAN}", "",
+        paragraph("baffle", depth=1e3 * depth, speed=speed, in_air=in_air(0.08, 5.7e6), in_air_2=in_air(0.064, 5.7e6), about_mean=ABOUT_MEAN), "",
         *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)", "largest M1 (mm)",
                        "at (s)",
                        "frequency after 0.7 s (Hz)", "RMS (mm)", "mean after 0.7 s (mm)", *COST],
@@ -429,15 +382,7 @@ def sluice(report):
     shown = report.shown("sluice", coarse)
     window = ("--window", 0.55, 1.15, -0.01, 0.24)
     return [
-        "The laboratory's curve, the opening under the gate and the removal of the plate are not "
-        "available: **no agreement with the experiment is claimed**. What can be checked:\n\n* The front "
-        f"is slower than Ritter's 2 sqrt(gH) = {ritter:.2f} m/s.\n* The gate oscillates at "
-        f"{in_air(0.125, 4e6):.2f} Hz in air (Euler and Bernoulli, plane strain).\n* The paper reports "
-        "oscillations after t = 1 s from vortices at the gate, which depend on the numerical parameters. "
-        "Here the gate falls back once after 1 s. The frequency of the rest depends on the time window.\n\n"
-        f"{ABOUT_MEAN} Walls and gate repel fluid that comes nearer than 0.8 dp (`wall_repulsion`), "
-        "unlike in the paper. The rows without repulsion show the effect of particles that are pressed "
-        "into the bed.", "",
+        paragraph("sluice", ritter=ritter, in_air=in_air(0.125, 4e6), about_mean=ABOUT_MEAN), "",
         *report.table(["front (m/s, of Ritter's)", "first contact (s)", "largest M1 (mm)", "at (s)",
                        "mean after 1 s (mm)",
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", "RMS (mm)", *COST],

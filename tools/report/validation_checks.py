@@ -10,7 +10,7 @@ import metrics
 from sphfsi.draw_ledger import read_ledger
 from common import COLOURS, WIDTH, BadFile, check_increasing, np, plt, read_table
 from validation_measures import G, Missing, front_of, number, rest, turning
-from validation_report import COST, cost, ledgers, series, starting
+from validation_report import COST, cost, ledgers, series, starting, paragraph
 from validation_runs import BY_NAME, ROOT
 
 REFERENCES = ROOT / "cases" / "reference"
@@ -42,11 +42,7 @@ def still(report):
         *report.table(["pressure error, L2 (%)", "kinetic over potential", "slope over rho g",
                        "left the domain", "steps",
                        "solid steps", "s (threads)"], starting("still"), cells),
-        "Two things make the pressure of the paper's own scheme wrong. First, its density diffusion (Eq. "
-        "6) treats the hydrostatic gradient as noise and moves density upwards as long as the run lasts. "
-        "The form of Fourtakas et al. 2019 (`diffusion_form = fourtakas`) does not. Second, the sum over "
-        "an even lattice of h/dp = 1.35 gives 0.983 of a gradient, so the settled slope is 1.8 % too "
-        "steep. At h/dp = 1.5 it gives 0.997. The rest is the compression of the water, about g H/c0^2.", ""]
+        paragraph("still"), ""]
 
 
 def beat(run):
@@ -86,18 +82,11 @@ def wave(report):
                       lambda: finest("1.35"))
     report.try_target("standing wave", "order of convergence at least 1", converges)
     return [
-        "The tank has half a wave: H = 0.5 m, W = 1 m, amplitude 25 mm. A damped sine is fitted to the "
-        "water's momentum in x over 5 s. 2 nu k^2 is the decay with nu = alpha h c0/8 if all pairs "
-        "counted. Eq. 7 acts on approaching pairs only.", "",
+        paragraph("wave"), "",
         *report.table(["frequency over theory", "shear stiffness of the lattice (p/rho)", "decay (1/s)",
                        "2 nu k^2 (1/s)", *COST],
                       starting("wave"), cells),
-        "Under pressure the even lattice of the start resists shear like a solid until its order is "
-        "lost. Small displacements in Eq. 3b make waves across its diagonals with the squared speed of "
-        "the column above (metrics.py: lattice_shear). A fluid has no such waves. The stiffness belongs "
-        "to h/dp, not to the spacing, so its error does not fall with the spacing and no order can be "
-        "measured. The other rows change one setting each at h/dp = 1.5: integrator, sound speed, "
-        "amplitude, delta, alpha, suction.", "",
+        paragraph("wave 2"), "",
         *shear_line(report)]
 
 
@@ -110,11 +99,7 @@ def shear_line(report):
     stiff = [metrics.lattice_shear(float(number(run, "h_over_dp"))) for run in runs]
     off = [100 * (beat(run)[0] - 1) for run in runs]
     slope, rest = np.polyfit(stiff, off, 1)
-    return [f"In the {len(runs)} runs with H/dp = 20 and 40 the excess of the frequency follows the "
-            f"stiffness, "
-            f"with a correlation of {np.corrcoef(stiff, off)[0, 1]:.2f}. It is {slope / 100:.2f} % "
-            f"for each 0.01, "
-            f"and {rest:+.2f} % without stiffness.", ""]
+    return [paragraph("shear line", runs=len(runs), off=np.corrcoef(stiff, off)[0, 1], slope=slope / 100, rest=rest), ""]
 
 
 def fade(run):
@@ -137,12 +122,7 @@ def vortices(report):
         *report.table(["rate over exact", "energy over exact at 0.1 s", "at 0.25 s", "at 1 s",
                        "steps", "solid steps",
                        "s (threads)"], starting("taylor"), cells),
-        "The even lattice breaks up along the lines of stagnation between 0.1 s and 0.25 s, which takes "
-        "energy quickly. After that the first rows decay by a viscosity that acts on approaching pairs "
-        "only (Eq. 7). The finer they are, the slower they decay. The other rows have laminar viscosity "
-        "(Morris et al. 1997) and h/dp = 2, whose lattice hardly resists shear. The shifted rows "
-        "distribute the particles evenly with `shifting = 10` and `shifting_speed = largest`, which also "
-        "works at stagnation points.", ""]
+        paragraph("vortices"), ""]
 
 
 def judged_by(load, report, *targets):
@@ -211,22 +191,12 @@ def front(report):
                       "the same table read as t sqrt(g/a) of a column of height 2a, after a shift of the "
                       "time's origin", lambda: moved(report.first("front-80", "front-40", "front-20")))
     return [
-        "The table has the deviation of the front from Martin and Moyce 1952 at the ten tabulated times, "
-        "in %. *Shifted* is the largest deviation after the shift of the time's origin that fits best "
-        "(in brackets, dimensionless). The membrane needs time to open, so the origin of the measured "
-        "time is uncertain.", "",
+        paragraph("front"), "",
         *report.table(["t sqrt(2g/a)", "shifted", "t sqrt(g/a)", "shifted", "steps", "solid steps",
                        "s (threads)"],
                       starting("front"), cells),
         *front_figure(report, known_t, known_x, curve),
-        "The published table has the time t sqrt(2g/a) of a column of height 2a. With this reading the "
-        "measured front is more and more ahead of the computed one. These times do not fit other "
-        "tabulations of the experiment (examples/db_exp_data.py of PySPH, from Martin and Moyce and from "
-        "Koshizuka and Oka 1996). There the places from the third on are reached 1.3 to 1.5 times as "
-        "late, as if the times were t sqrt(g/a). With that reading, or with a square column and t "
-        "sqrt(g/a), the computed front is ahead by a constant offset from the first row on. A membrane "
-        "that needs time to open would cause such an offset; the pace is nearly the measured one. The "
-        "report gives all three readings and decides for none.", ""]
+        paragraph("front 2"), ""]
 
 
 def front_figure(report, known_t, known_x, curve):
@@ -304,15 +274,11 @@ def impact(report):
     return [
         "p/(rho g H); measured peaks (Lobovsky et al. 2014): " +
         ", ".join(f"{top:g} at {1e3 * height:.0f} mm" for _, height, top in sensors) +
-        ". Single rows (1 ms) contain the water hammer rho c0 v of a compressible fluid without air. "
-        "Only the numerical speed of sound limits it, so it has no meaning. Therefore all runs are "
-        "judged by the mean over 5 ms (0.03 in t sqrt(g/H)).", "",
+        paragraph("impact"), "",
         *report.table([*head, "time of the first", "steps", "solid steps", "s (threads)"],
                       starting("impact"), cells),
         *impact_figure(report, sensors, curve),
-        "A wider kernel (h/dp = 2) removes most of the noise. The verdict depends on the 5 ms: with 2 ms "
-        "it would be different (see the table of targets). The measured peaks are not averaged; air and "
-        "the size of the sensors smooth them.", ""]
+        paragraph("impact 2"), ""]
 
 
 # --- solids alone ---
@@ -329,11 +295,7 @@ def beam(report):
     def cells(run):
         dx, dy, x, y, off, left = measure(run)
         return [f"{dx:.4f}, {dy:.4f}", f"{x:.4f}, {y:.4f}", f"{100 * off:.2f}", f"{left:.1e}", *cost(run)]
-    return ["The tip of a cantilever is compared with the elastica. The cantilever bends far under its "
-            "own weight (w L^3/D = 5, L = 10 thicknesses), which grows over eight periods of its first "
-            "mode. The elastica is integrated here from its differential equation; it leaves out shear "
-            "and the stretch of the axis. Displacements are over the length, as the mean of the two "
-            "periods after that. The last column is the motion that remains.", "",
+    return [paragraph("beam"), "",
             *report.table(["tip", "elastica", "error (% of L)", "remaining motion", "steps", "solid steps",
                            "s (threads)"],
                           starting("elastica"), cells)]
@@ -384,9 +346,7 @@ def block(report):
         return f"{momentum:+.1e}; {strain:.1e}", abs(momentum) < 1e-6 and strain < 1e-3
     report.try_target("free rotation", "angular momentum conserved to 1e-6; strain energy below "
                                        "1e-3 of the kinetic energy", target)
-    return ["The block makes one turn. The strain energy is that of the centrifugal stress, of the order "
-            "of rho (omega L)^2/E = 1e-4. Velocities in the snapshots are single precision, which limits "
-            "the check of the angular momentum.", "",
+    return [paragraph("block"), "",
             *report.table(["angular momentum", "strain over kinetic energy", "error of the corner (of L)",
                            "steps", "solid steps",
                            "s (threads)"], starting("block"), cells)]
@@ -409,9 +369,7 @@ def bar(report):
     def cells(run):
         mean, period, rms = measure(run)
         return [f"{100 * mean:+.2f}", f"{100 * period:+.2f}", f"{100 * rms:.2f}", *cost(run)]
-    return ["The bar is clamped at its top and released (nu = 0, two periods). The mean stretch is "
-            "compared with rho g L^2/(2E), the period with 4L/c. The RMS difference is from the "
-            "parabolas of the wave equation, relative to the largest stretch.", "",
+    return [paragraph("bar"), "",
             *report.table(["mean stretch (%)", "period (%)", "RMS (%)", "steps", "solid steps",
                            "s (threads)"],
                           starting("bar"), cells)]

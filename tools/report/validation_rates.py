@@ -4,7 +4,7 @@
 from sphfsi.draw_ledger import read_ledger
 from common import BadFile, np
 from validation_measures import Missing
-from validation_report import series
+from validation_report import series, paragraph
 
 PAIRS = [("gate, dp = 1 mm, symplectic", "gate-1mm", "M1_dx_m"),
          ("gate, dp = 1 mm, Verlet", "gate-1mm-verlet", "M1_dx_m"),
@@ -49,9 +49,7 @@ def row(report, name, column):
 
 
 def rates(report):
-    lines = ["| run | solid steps in one of the fluid | RMS difference of M1 to the single rate (um, of "
-             "the largest) | to the finer run of the report | largest spurious gain of energy, "
-             "sub-steps (J/m) | single rate | steps of the single rate |", "|---" * 7 + "|"]
+    lines = [paragraph("rates"), "|---" * 7 + "|"]
     for words, name, column in PAIRS:
         try:
             off, finer, gains, cells = row(report, name, column)
@@ -64,9 +62,7 @@ def rates(report):
                       f"{1e6 * off:.3g} um, limit {1e6 * finer:.3g} um", off <= finer)
         report.target("sub-steps", f"no more spurious energy than by a single rate, {words}",
                       f"{gains[0]:.3g} J/m, limit {gains[1]:.3g} J/m", gains[0] <= gains[1])
-    return ["The solid takes sub-steps within a step of the fluid (`numerics.multirate`). The runs are "
-            "compared with runs that have one step for all, over the time that both cover: 0.4 s of the "
-            "gate, 0.1 s of the plate.", "",
+    return [paragraph("rates 2"), "",
             *lines, "", "Velocities and forces at the interface are extrapolated to the instant at which "
                         "they are used (docs/theory.md, Sec. 7). The energies are in the ledgers of 3.2 "
                         "and 3.3.",

@@ -11,14 +11,17 @@ import sys
 from pathlib import Path
 
 from palette import shrink
-from common import BadFile, Run, read_text, sentence
+from common import BadFile, Run, last_line, machine, read_text, sentence, words_of
 from validation_measures import Missing, NotRun, balance
-from validation_runs import BY_NAME, ROOT, SPECS, last_line
+from validation_runs import BY_NAME, ROOT, SPECS
 from validation_sound import ENDED, check_ended, check_standing
 
 TOOLS = Path(__file__).resolve().parents[1]
 MISSED = "**missed**"
 ORIGIN = "Runs"  # entry of a picture that says of which runs and version it is
+
+
+paragraph = words_of("validation_words.md")
 
 
 class Report:
@@ -226,14 +229,6 @@ def ledgers(report, prefixes):
             f"| {name} | {play:.4g} | {lost:.4g} | {gain:.2g} ({100 * gain / play:.2g} %) "
             f"| {along:.3g}, {up:.3g} | {mass:+.1g} | {100 * density:.2g} % |")
     return [*lines, ""]
-
-
-def machine():
-    path = Path("/proc/cpuinfo")
-    for line in path.read_text().splitlines() if path.exists() else []:
-        if line.startswith("model name"):
-            return line.split(":", 1)[1].strip()
-    return "unknown processor"
 
 
 def by_version(report, newest):

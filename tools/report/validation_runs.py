@@ -8,7 +8,7 @@ import tempfile
 import threading
 from concurrent.futures import ThreadPoolExecutor
 
-from common import ROOT, BadFile, Run, read_text, sentence
+from common import ROOT, BadFile, Run, last_line, read_text, sentence, settings
 from validation_measures import NotRun
 from validation_sound import ENDED, check_ended
 
@@ -34,7 +34,7 @@ class Spec:
         self.cost = SECONDS.get(case, 0) * across ** 3 * SLOWER.get(keys.get("integrator"), 1)
 
     def arguments(self):
-        return [part for item in self.sets for part in ("--set", item)]
+        return settings(self.sets)
 
 
 def all_integrators(name, case, sets, words, quick=False):
@@ -213,7 +213,7 @@ BY_NAME = {spec.name: spec for spec in SPECS}
 
 
 # What earlier versions wrote where nothing was named and no case can hold now.
-RETIRED = ("interface = auto", "interface = impedance")
+RETIRED = ("interface = auto", "interface = impedance", "gradients = plain")
 
 
 def physics(text):
@@ -221,11 +221,6 @@ def physics(text):
     files the place where it ran, and numerics.skin says only when particles are sorted."""
     return [line for line in text.splitlines()
             if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label ", "skin "))]
-
-
-def last_line(done):
-    """The last line of output of a failed program."""
-    return (done.stderr.strip().splitlines() or [f"no message, exit status {done.returncode}"])[-1]
 
 
 def holds_results(folder):
