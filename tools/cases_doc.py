@@ -28,7 +28,8 @@ def main():
         sys.exit(f"{PAGE}: lacks the line that marks where the written part begins: {MARKER}")
     after = before[:before.index(MARKER)] + MARKER + "\n" + keys
     if args.check and after != before:
-        sys.exit("docs/cases.md: is older than the tables in src/*/*.def; `make docs` writes it anew")
+        sys.exit("docs/cases.md: is older than the tables in src/*/*.def; `make docs` writes it "
+                 "anew")
     if after != before:
         PAGE.write_text(after, encoding="utf-8")
 

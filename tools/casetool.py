@@ -81,7 +81,8 @@ def _show(message, *_):
 
 
 def run_tool(main):
-    """Runs main(); a failure becomes one sentence and the program's exit status: 1 for a wrong input."""
+    """Runs main(); a failure becomes one sentence and the program's exit status: 1 for a wrong
+    input."""
     warnings.simplefilter("always", CaseWarning)
     warnings.showwarning = _show
     name = Path(sys.argv[0]).stem

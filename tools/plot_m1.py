@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Draws what a probe recorded against time, for several runs, with the references of their case.
-Each column has a panel, and below it its difference from the references; tools/plot_probes.py draws all."""
+Each column has a panel, and below it its difference from the references; tools/plot_probes.py draws
+all."""
 
 import plot_probes
 import runfiles

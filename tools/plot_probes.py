@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws what probes recorded against time, for several runs, with the references of their case: a panel for
-each unit, displacements above forces."""
+"""Draws what probes recorded against time, for several runs, with the references of their case: a
+panel for each unit, displacements above forces."""
 
 import argparse
 import csv
@@ -22,7 +22,8 @@ EXAMPLE = """example:
 def arguments(description, example, default, picture):
     parser = argparse.ArgumentParser(description=description, epilog=example,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of tools/refine.py")
+    parser.add_argument("run", nargs="*", metavar="RUN", help="folder of a run, or of "
+                                                              "tools/refine.py")
     parser.add_argument("--column", action="append", default=[], metavar="NAME",
                         help="column of probes.csv, such as M1_dx_m; may be repeated "
                         f"(default: {default})")

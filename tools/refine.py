@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs a case in several resolutions, coarsest first, and prints what probes and energies converge to, with
-order and error band; finished runs are not run again. Results: DIR/dp-*/ and DIR/refine.json."""
+"""Runs a case in several resolutions, coarsest first, and prints what probes and energies converge
+to, with order and error band; finished runs are not run again. Results: DIR/dp-*/ and
+DIR/refine.json."""
 
 from casetool import Parser, make_case, number, run_tool
 

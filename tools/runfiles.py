@@ -10,7 +10,8 @@ ROOT = Path(__file__).resolve().parent.parent
 
 
 def remedy():
-    """What a user does whose Python lacks a package: another Python that has it, as setup.sh records it."""
+    """What a user does whose Python lacks a package: another Python that has it, as setup.sh
+    records it."""
     record, command = ROOT / "build" / "python", shlex.join(sys.argv)
     python = record.read_text(encoding="utf-8").strip() if record.is_file() else ""
     if python and Path(python).is_file() and python != sys.executable:
@@ -26,20 +27,22 @@ try:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     import numpy as np
-    from sphfsi.files import (CASES, BadFile, Reference, Run, check_increasing, make_runs, read_case,
+    from sphfsi.files import (CASES, BadFile, Reference, Run, check_increasing, make_runs,
+                              read_case,
                               read_table, read_text, references)
     from sphfsi.style import COLOURS, STYLE, WIDTH, scaled_unit
 except ImportError as missing:
     sys.exit(f"{Path(sys.argv[0]).stem}: {missing.name} is missing in {sys.executable}; {remedy()}")
 
 __all__ = ["CASES", "COLOURS", "STYLE", "WIDTH", "BadFile", "Reference", "Run", "check_increasing",
-           "make_runs", "np", "plt", "read_case", "read_table", "read_text", "references", "run_tool",
+           "make_runs", "np", "plt", "read_case", "read_table", "read_text", "references",
+           "run_tool",
            "save", "scaled_unit", "sentence"]
 
 
 def sentence(problem):
-    """What went wrong, for the user, while an exception is handled. Of one that nobody foresaw the kind is
-    said, and the place in the program goes to stderr."""
+    """What went wrong, for the user, while an exception is handled. Of one that nobody foresaw the
+    kind is said, and the place in the program goes to stderr."""
     if isinstance(problem, BadFile):
         return str(problem)
     traceback.print_exc()

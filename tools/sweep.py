@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs a case over a grid or a sample of values: writes folders and a Snakemake workflow, which runs locally
-or on a cluster and continues after a kill, and gathers one table and one plot."""
+"""Runs a case over a grid or a sample of values: writes folders and a Snakemake workflow, which
+runs locally or on a cluster and continues after a kill, and gathers one table and one plot."""
 
 import argparse
 import itertools
@@ -37,14 +37,19 @@ def arguments():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("case", nargs="?", help="case file")
     parser.add_argument("--vary", action="append", default=[], metavar="KEY=VALUES",
-                        help="values A,B,C or a range LOW:HIGH:STEP (of a sample LOW:HIGH); may be repeated")
-    parser.add_argument("--sample", metavar="lhs:N", help="N runs by Latin hypercube instead of the grid")
+                        help="values A,B,C or a range LOW:HIGH:STEP (of a sample LOW:HIGH); may be "
+                             "repeated")
+    parser.add_argument("--sample", metavar="lhs:N", help="N runs by Latin hypercube instead of "
+                                                          "the grid")
     parser.add_argument("--seed", type=int, default=1, help="of the sample (%(default)s)")
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="in every run")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE",
+                        help="in every run")
     parser.add_argument("--until", metavar="TIME", help="end of every run, s")
     parser.add_argument("--threads", type=int, default=1, help="of a run (%(default)s)")
-    parser.add_argument("--metric", metavar="COLUMN:WHAT", help="what the plot shows: a column of the "
-                        f"probes and one of {', '.join(METRICS)} (default: the first column, largest)")
+    parser.add_argument("--metric", metavar="COLUMN:WHAT", help="what the plot shows: a column of "
+                                                                "the "
+                        f"probes and one of {', '.join(METRICS)} (default: the first column, "
+                        f"largest)")
     parser.add_argument("--out", metavar="DIR", help="(default: sweeps/NAME)")
     parser.add_argument("--program", default=str(ROOT / "sphfsi"), help="(%(default)s)")
     parser.add_argument("--go", nargs="?", const=1, type=int, metavar="CORES",
@@ -130,19 +135,21 @@ def sample(varied, how, seed):
 def command(plan, k, folder, *options):
     sets = [f"{key}={value}" for key, value in plan["runs"][k].items()] + plan["sets"]
     until = ["--until", plan["until"]] if plan["until"] else []
-    return [plan["program"], plan["case"], *itertools.chain.from_iterable(("--set", s) for s in sets), *until,
+    return [plan["program"], plan["case"],
+            *itertools.chain.from_iterable(("--set", s) for s in sets), *until,
             "--threads", str(plan["threads"]), "--out", str(folder), *options]
 
 
 def forecast(plan):
-    """Wall time (s) and memory (MB) of a run each, foreseen by --explain for some of them; and a sentence.
-    A case that is wrong is refused here, before anything is written."""
+    """Wall time (s) and memory (MB) of a run each, foreseen by --explain for some of them; and a
+    sentence. A case that is wrong is refused here, before anything is written."""
     n = len(plan["runs"])
     picked = sorted({round(k * (n - 1) / max(1, min(n, MOST_FORECASTS) - 1)) for k in
                      range(min(n, MOST_FORECASTS))})
     seconds, memory = [], []
     for k in picked:
-        said = subprocess.run(command(plan, k, "unused", "--explain"), capture_output=True, text=True)
+        said = subprocess.run(command(plan, k, "unused", "--explain"), capture_output=True,
+                              text=True)
         if said.returncode:
             raise BadFile(f"run {k}: {said.stderr.strip().splitlines()[-1].removeprefix('sphfsi: ')}")
         found = re.search(r"([\d.e+-]+) (s|min|h) on this machine when idle, memory ([\d.e+-]+) (MB|GB)",
@@ -207,7 +214,8 @@ def write_plan(args, out):
 
 
 def snakemake():
-    """The program: named by SNAKEMAKE, beside this Python, or in the path; None where there is none."""
+    """The program: named by SNAKEMAKE, beside this Python, or in the path; None where there is
+    none."""
     beside = Path(sys.executable).parent / "snakemake"
     named = os.environ.get("SNAKEMAKE")
     return named or (str(beside) if beside.is_file() else shutil.which("snakemake"))
@@ -216,11 +224,13 @@ def snakemake():
 # --- a run ---
 
 def run_one(out, k):
-    """Runs number k, from its checkpoint where there is one. A run that a guard stops is a result, too."""
+    """Runs number k, from its checkpoint where there is one. A run that a guard stops is a result,
+    too."""
     plan = json.loads(runfiles.read_text(out / "sweep.json"))
     folder = out / "runs" / str(k)
     summary = folder / "summary.json"
-    if summary.exists() and runfiles.Run(folder).summary.get("exit_reason") in ("finished", "guard"):
+    if summary.exists() and runfiles.Run(folder).summary.get("exit_reason") in ("finished",
+                                                                                "guard"):
         return 0
     if not any(folder.glob("*.ckpt")) and folder.exists():
         shutil.rmtree(folder)  # nothing to go on from
@@ -269,7 +279,8 @@ def cell(value):
 
 def write_table(path, rows):
     names = list(dict.fromkeys(name for row in rows for name in row))
-    lines = [",".join(names)] + [",".join(cell(row.get(name, "")) for name in names) for row in rows]
+    lines = [",".join(names)] + [",".join(cell(row.get(name, "")) for name in names)
+                                 for row in rows]
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -285,8 +296,8 @@ def numbers(rows, key):
 
 
 def swings(keys, inputs, result):
-    """What the result changes by when a value goes from its lowest to its highest, the others held: slopes of
-    the plane of least squares times the ranges."""
+    """What the result changes by when a value goes from its lowest to its highest, the others held:
+    slopes of the plane of least squares times the ranges."""
     ranges = [np.ptp(inputs[key]) or 1.0 for key in keys]
     columns = [(inputs[key] - inputs[key].mean()) / width for key, width in zip(keys, ranges)]
     plane = np.column_stack([np.ones(len(result)), *columns])
@@ -295,12 +306,14 @@ def swings(keys, inputs, result):
 
 def draw(path, plan, rows):
     keys = list(plan["runs"][0])
-    metric = plan["metric"] or next((name for row in rows for name in row if name.endswith(":largest")), None)
+    metric = plan["metric"] or next((name for row in rows for name in row
+                                     if name.endswith(":largest")), None)
     if metric and not any(metric in row for row in rows):
         known = sorted({name for row in rows for name in row if ":" in name})
         raise BadFile(f"no run has {metric}; there are {', '.join(known)}")
     good = [row for row in rows if row["exit_reason"] == "finished" and metric in row]
-    figure, axes = plt.subplots(1, 1 + len(keys), figsize=(2.6 * (1 + len(keys)), 2.6), squeeze=False,
+    figure, axes = plt.subplots(1, 1 + len(keys), figsize=(2.6 * (1 + len(keys)), 2.6),
+                                squeeze=False,
                                 layout="constrained")
     if good:
         result = np.array([row[metric] for row in good])
@@ -317,7 +330,8 @@ def draw(path, plan, rows):
         for place, key in zip(axes[0, 1:], keys):
             place.plot(inputs[key][0], result, "o", color=COLOURS[1], markersize=4)
             place.set_xlabel(f"{key} ({inputs[key][1]})" if inputs[key][1] else key)
-    axes[0, 0].set_title(f"change from lowest to highest value\n{len(good)} of {len(rows)} runs finished")
+    axes[0, 0].set_title(f"change from lowest to highest value\n{len(good)} of {len(rows)} runs "
+                         f"finished")
     runfiles.save(figure, path)
 
 
@@ -340,13 +354,16 @@ def main():
         return gather(out)
     print(write_plan(args, out))
     # The program refuses a folder in which another works, so that no lock beside it is needed.
-    run = [snakemake() or "snakemake", "-d", str(out), "-s", str(out / "Snakefile"), "--rerun-incomplete",
+    run = [snakemake() or "snakemake", "-d", str(out), "-s", str(out / "Snakefile"),
+           "--rerun-incomplete",
            "--nolock", "--cores", str(args.go or 1)]
     if args.go is None:
-        print("written " + str(out) + "; run it, and go on with it after a kill, with\n  " + shlex.join(run))
+        print("written " + str(out) + "; run it, and go on with it after a kill, with\n  " +
+              shlex.join(run))
         return 0
     if not snakemake():
-        raise BadFile(f"snakemake is missing; {shlex.quote(sys.executable)} -m pip install snakemake")
+        raise BadFile(f"snakemake is missing; {shlex.quote(sys.executable)} -m pip install "
+                      f"snakemake")
     return subprocess.run([*run, "--quiet"]).returncode
 
 

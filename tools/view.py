@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the film of a run as one HTML file that any browser shows: particles coloured by a field that one
-picks, probe curves with a cursor, measuring with the mouse."""
+"""Writes the film of a run as one HTML file that any browser shows: particles coloured by a field
+that one picks, probe curves with a cursor, measuring with the mouse."""
 
 import argparse
 import base64
@@ -25,7 +25,8 @@ ROWS = 2000     # of a probe's curve
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", nargs="?", metavar="RUN", help="folder of a run")
-    parser.add_argument("--every", type=int, default=1, metavar="N", help="every N-th snapshot (%(default)s)")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="every N-th snapshot "
+                                                                          "(%(default)s)")
     parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Y0", "Y1"),
                         help="part of the plane, m (default: all but single drops)")
     parser.add_argument("--out", metavar="FILE", help="(default: film.html in the run's folder)")
@@ -63,7 +64,8 @@ def as_bytes(values, low, high):
 
 
 def packed_places(x, window):
-    """Positions as 16 bits over the window, high bytes first; what lies outside is moved to its edge."""
+    """Positions as 16 bits over the window, high bytes first; what lies outside is moved to its
+    edge."""
     low, high = np.array(window[::2]), np.array(window[1::2])
     places = np.clip(np.rint(65535 * (x - low) / (high - low)), 0, 65535).astype(np.uint16)
     parts = []
@@ -75,14 +77,17 @@ def packed_places(x, window):
 def pack_group(kind, panels, fields, window, offset):
     """A group of particles as the page wants it, and its bytes."""
     first = next(iter(fields.values()), panels)
-    at_rest = kind == "wall" and all(np.array_equal(p["wall"]["x"], first[0]["wall"]["x"]) for p in first)
+    at_rest = kind == "wall" and all(np.array_equal(p["wall"]["x"], first[0]["wall"]["x"])
+                                     for p in first)
     steps = range(1 if at_rest else len(first))
-    scales = {name: colour_scale(own, kind, FIELDS[kind][name], None) for name, own in fields.items()}
+    scales = {name: colour_scale(own, kind, FIELDS[kind][name], None) for name,
+              own in fields.items()}
     scales = {name: scale for name, scale in scales.items() if scale}
     group = {"offset": offset, "counts": [len(first[k][kind]["x"]) for k in steps], "fields": []}
     for name, scale in scales.items():
         unit = scale["label"].rpartition("(")[2].rstrip(")")
-        group["fields"].append({"label": FIELDS[kind][name][2].replace("$\\sigma_{xx}$", "xx"), "unit": unit,
+        group["fields"].append({"label": FIELDS[kind][name][2].replace("$\\sigma_{xx}$", "xx"),
+                                "unit": unit,
                                 "low": float(scale["norm"].vmin), "high": float(scale["norm"].vmax),
                                 "colours": scale["cmap"]})
     parts = []
@@ -112,7 +117,8 @@ def probe_curves(run):
         words = words.replace("$", "").replace("\\sigma", "stress")
         found.append({"label": words, "name": words.removesuffix(f" ({unit})"), "unit": unit,
                       "time": numbers[0], "value": numbers[1],
-                      "references": [{"label": ref.label, "measured": ref.measured, "time": ref.time.tolist(),
+                      "references": [{"label": ref.label, "measured": ref.measured,
+                                      "time": ref.time.tolist(),
                                       "value": (scale * ref.value).tolist()} for ref in own]})
     return found
 
@@ -134,7 +140,8 @@ def make_film(run, every, window):
     data = b""
     for kind in KINDS:
         if len(panels[0][kind]["x"]):
-            film["groups"][kind], added = pack_group(kind, panels, found.get(kind, {}), window, len(data))
+            film["groups"][kind], added = pack_group(kind, panels, found.get(kind, {}), window,
+                                                     len(data))
             data += added
     used = {field["colours"] for group in film["groups"].values() for field in group["fields"]}
     film["palettes"] = {name: palette(name) for name in sorted(used)}
@@ -157,7 +164,8 @@ def main():
         page = page.replace(f"@{name}@", text)
     if len(page) > LARGEST:
         raise BadFile(f"{run.folder}: the page would have {len(page) / 1e6:.0f} MB, more than "
-                      f"{LARGEST / 1e6:.0f}; choose --every {int(len(page) / LARGEST * args.every) + 1}")
+                      f"{LARGEST / 1e6:.0f}; choose --every "
+                      f"{int(len(page) / LARGEST * args.every) + 1}")
     out = Path(args.out or run.folder / "film.html")
     try:
         out.write_text(page, encoding="utf-8")

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes the page that runs the program in a browser: one HTML file with both WebAssembly programs, the
-cases, their references, and the state hashes of the native program, which runs each case once for that.
+"""Writes the page that runs the program in a browser: one HTML file with both WebAssembly programs,
+the cases, their references, and the state hashes of the native program, which runs each case once
+for that.
 
-    web/build.py --program ./sphfsi --fused build/web/fused.wasm --exact build/web/exact.wasm --out page.html
+    web/build.py --program ./sphfsi --fused build/web/fused.wasm --exact build/web/exact.wasm --out
+    page.html
 """
 import argparse
 import base64
@@ -29,8 +31,8 @@ except ImportError as missing:
 
 PALETTES = {"fluid": "viridis", "solid": "OrRd"}
 
-# Coarse or short enough for a browser. set: other than in cases/; view: x0, x1, y0, y1 of the picture, m;
-# fluid: the field that colours the fluid at first
+# Coarse or short enough for a browser. set: other than in cases/; view: x0, x1, y0, y1 of the
+# picture, m; fluid: the field that colours the fluid at first
 CASES = {
     "gate": {"set": {"dp": "2 mm", "wall": "6 mm"}, "view": (-0.01, 0.45, -0.01, 0.17)},
     "two_posts": {"set": {"end_time": "0.3 s"}},
@@ -60,7 +62,8 @@ def with_values(text, values):
     for key, value in values.items():
         text, found = re.subn(
             rf"(?m)^{key} = ([^#\n]*?)( *#.*)?$",
-            lambda hit: f"{key} = {value}" + (f"{hit[2]};" if hit[2] else "  #") + f" {hit[1]} in cases/",
+            lambda hit: f"{key} = {value}" + (f"{hit[2]};" if hit[2] else "  #") +
+            f" {hit[1]} in cases/",
             text, count=1)
         if not found:
             raise SystemExit(f"web/build.py: the case has no line `{key} = `")
@@ -74,7 +77,8 @@ def as_sets(values):
 def native_run(program, name, values, folder):
     """The finished folder of a run by the native program, which is kept for the next time."""
     case = ROOT / "cases" / f"{name}.cfg"
-    sum_of = hashlib.sha256(program.read_bytes() + case.read_bytes() + repr(values).encode()).hexdigest()[:16]
+    sum_of = hashlib.sha256(program.read_bytes() + case.read_bytes() +
+                            repr(values).encode()).hexdigest()[:16]
     stem = name.replace("/", "_")
     out = folder / f"{stem}-{sum_of}"
     if not (out / "summary.json").exists() or files.Run(out).failure():
@@ -96,8 +100,10 @@ def formula_curve(keys, sections, end):
     for kind, _, values in sections:
         names.update((key, number(value)) for key, value in values.items() if kind == "constants")
         names.update((key, number(values[key])) for key in ("dp",) if kind == "top")
-    text = re.sub(r"(?<=\d) (kg|m|s|N|Pa|rad)([*/](kg|m|s)|\^-?\d)*", "", keys["formula"]).replace("^", "**")
-    begin, stop = max(0.0, number(keys.get("from", "0"))), min(end, number(keys.get("until", "1e9")))
+    text = re.sub(r"(?<=\d) (kg|m|s|N|Pa|rad)([*/](kg|m|s)|\^-?\d)*", "",
+                  keys["formula"]).replace("^", "**")
+    begin, stop = max(0.0, number(keys.get("from", "0"))), min(end,
+                                                               number(keys.get("until", "1e9")))
     time = np.linspace(begin, stop, POINTS)
     return time, [eval(text, {"__builtins__": {}}, {**names, "t": t}) for t in time.tolist()]
 
@@ -108,7 +114,8 @@ def references(run, end):
     for kind, name, keys in run.case():
         if kind == "reference" and keys.get("formula"):
             time, value = formula_curve(keys, run.case(), end)
-            found.append({"column": keys["probe"], "label": keys.get("label") or name, "measured": False,
+            found.append({"column": keys["probe"], "label": keys.get("label") or name,
+                          "measured": False,
                           "time": time, "value": value})
     for ref in found:
         if len(ref["time"]) == 1:  # constant in time
@@ -124,13 +131,15 @@ def case_data(program, name, folder):
     text = (ROOT / "cases" / f"{name}.cfg").read_text(encoding="utf-8")
     run = native_run(program, name, values, folder)
     title = run.summary.get("title") or name
-    return {"name": name, "title": title, "text": with_values(text, values), "view": own.get("view"),
+    return {"name": name, "title": title, "text": with_values(text, values),
+            "view": own.get("view"),
             "fluid": own.get("fluid", "pressure"),
             "hash": run.summary["state_hash"], "references": references(run, run.summary["time"])}
 
 
 def palette(name):
-    return np.rint(255 * matplotlib.colormaps[name](np.arange(256))[:, :3]).astype(int).ravel().tolist()
+    return np.rint(255 *
+                   matplotlib.colormaps[name](np.arange(256))[:, :3]).astype(int).ravel().tolist()
 
 
 def packed(path):
@@ -144,25 +153,29 @@ def main():
     parser.add_argument("--fused", type=Path, required=True, help="built with relaxed SIMD")
     parser.add_argument("--exact", type=Path, required=True, help="built without")
     parser.add_argument("--out", type=Path, required=True, help="the page")
-    parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES), help="these cases, not all")
+    parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES),
+                        help="these cases, not all")
     args = parser.parse_args()
     folder = args.out.parent / "runs"
     program = args.program.resolve()
     said = subprocess.run([program, "--version"], check=True, capture_output=True, text=True).stdout
     version = said.split()[-1]
-    data = {"version": version, "palettes": {kind: palette(name) for kind, name in PALETTES.items()},
+    data = {"version": version,
+            "palettes": {kind: palette(name) for kind, name in PALETTES.items()},
             "programs": {"fused": packed(args.fused), "exact": packed(args.exact)},
             "cases": [case_data(program, name, folder) for name in args.only]}
     page = (HERE / "index.html").read_text(encoding="utf-8")
     for name, text in (("STYLE", (HERE / "style.css").read_text(encoding="utf-8")),
-                       ("ABOUT", html.escape("Nothing is loaded from elsewhere, and nothing is sent.")),
+                       ("ABOUT",
+                        html.escape("Nothing is loaded from elsewhere, and nothing is sent.")),
                        ("DATA", json.dumps(data, separators=(",", ":")).replace("</", "<\\/")),
                        ("WORKER", (HERE / "worker.js").read_text(encoding="utf-8")),
                        ("DRAW", (HERE / "draw.js").read_text(encoding="utf-8")),
                        ("PAGE", (HERE / "page.js").read_text(encoding="utf-8"))):
         page = page.replace(f"@{name}@", text)
     args.out.write_text(page, encoding="utf-8")
-    print(f"written {args.out}: {len(args.only)} cases, {len(page) / 1e6:.2f} MB; any browser opens it")
+    print(f"written {args.out}: {len(args.only)} cases, {len(page) / 1e6:.2f} MB; any browser "
+          f"opens it")
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Speed of the page in a headless Chromium over that of one thread of the native program. Both run the same
-case in turn. Compared are CPU times, so that other programs on the machine matter little: those of the native
-process and of the page's worker, which has the program and hands over its particles. Drawing is another
-thread's.
+"""Speed of the page in a headless Chromium over that of one thread of the native program. Both run
+the same case in turn. Compared are CPU times, so that other programs on the machine matter little:
+those of the native process and of the page's worker, which has the program and hands over its
+particles. Drawing is another thread's.
 
     web/speed.py --program ./sphfsi --page build/web/index.html --rounds 5
 """
@@ -31,7 +31,8 @@ def native_seconds(program, name, folder):
     sets = build.as_sets(build.CASES[name].get("set", {}))
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     with tempfile.TemporaryDirectory(dir=folder) as out:
-        subprocess.run([program, ROOT / "cases" / f"{name}.cfg", "--out", f"{out}/run", "--threads", "1",
+        subprocess.run([program, ROOT / "cases" / f"{name}.cfg", "--out", f"{out}/run", "--threads",
+                        "1",
                         "--quiet", *sets], check=True, stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, time.monotonic() - begin
@@ -85,14 +86,16 @@ def main():
         page.open(f"file://{args.page.resolve()}")
         page.wait("document.body.dataset.state === 'built'")
         for _ in range(args.rounds):
-            rounds.append((*native_seconds(program, args.case, name), *page_seconds(page, args.case)))
+            rounds.append((*native_seconds(program, args.case, name),
+                           *page_seconds(page, args.case)))
             print("native {:.2f} s of CPU, {:.2f} s in all; page {:.2f} s, {:.2f} s in all".format(
                 *rounds[-1]), flush=True)
         kind = page.run("document.body.dataset.multiply_add")
     native, _, worker, _ = (statistics.median(column) for column in zip(*rounds))
     shares = sorted(row[0] / row[2] for row in rounds)
     print(f"{args.case}, {args.rounds} rounds, multiply-add {kind}: {native:.2f} s of CPU by the "
-          f"native thread, {worker:.2f} s by the page; speed {statistics.median(shares):.2f} of the native "
+          f"native thread, {worker:.2f} s by the page; speed {statistics.median(shares):.2f} of "
+          f"the native "
           f"thread's ({shares[0]:.2f} to {shares[-1]:.2f})")
 
 

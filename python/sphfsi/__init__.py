@@ -6,8 +6,9 @@
     run = case.run(until=0.1)
     run.plot_probes()
 
-All numbers are in SI units; extensive quantities are per metre of depth. `sphfsi.open` reads the folder of
-a run, finished or not, with numpy and h5py alone; what computes also needs cffi and the library.
+All numbers are in SI units; extensive quantities are per metre of depth. `sphfsi.open` reads the
+folder of a run, finished or not, with numpy and h5py alone; what computes also needs cffi and the
+library.
 """
 from __future__ import annotations
 

@@ -32,7 +32,8 @@ def main() -> None:
         refs = draw_probes.case_references(runs)
         columns = draw_probes.all_columns(runs, tables, refs)
         with plt.rc_context(STYLE):
-            figure, _ = draw_probes.draw_panels(columns, draw_probes.curves_of(runs, tables, columns), refs)
+            figure, _ = draw_probes.draw_panels(columns,
+                                                draw_probes.curves_of(runs, tables, columns), refs)
             out = Path(args.out) if args.out else runs[0].folder / "probes.png"
             figure.savefig(out)
     except (Error, OSError, ValueError) as problem:

@@ -18,7 +18,8 @@ MAX_PARTICLES = 2e7
 
 
 def _cost(plan: dict[str, Any], dp: float) -> dict[str, float]:
-    """The cost with another dp: there are 1 / dp^2 particles and 1 / dp steps, and as many rows of output."""
+    """The cost with another dp: there are 1 / dp^2 particles and 1 / dp steps, and as many rows of
+    output."""
     scale, cost = dp / plan["dp"], plan["cost"]
     rows = cost["row_seconds"]
     return {"particles": (plan["particles"]["fluid"] + plan["particles"]["solid"]) / scale**2,
@@ -43,13 +44,14 @@ def _line(dp: float, cost: dict[str, float], remark: str) -> str:
 
 def find_dp(case: Case, seconds: float, until: float, threads: int,
             say: Callable[[str], None]) -> float | None:
-    """Prints the cost of round spacings from a tenth of the budget to three times the budget; returns the
-    finest one within the budget."""
+    """Prints the cost of round spacings from a tenth of the budget to three times the budget;
+    returns the finest one within the budget."""
     if not 0 < seconds <= 1e9:
         raise InputError(f"budget = {seconds:g} s must be above 0 and at most 1e9")
     plan = case.explain(until=until, threads=threads)
     own, threads, best = plan["dp"], plan["cost"]["threads"], None
-    say(f"budget of {seconds:.4g} s with {threads} thread{'' if threads == 1 else 's'} on this machine when idle")
+    say(f"budget of {seconds:.4g} s with {threads} thread{'' if threads == 1 else 's'} on this "
+        f"machine when idle")
     for power in range(math.ceil(math.log10(own)) + 1, -9, -1):
         for dp in (number * 10.0**power for number in ROUND_NUMBERS):
             cost = _cost(plan, dp)
@@ -65,9 +67,11 @@ def find_dp(case: Case, seconds: float, until: float, threads: int,
     if best:
         say(f"finest dp within the budget: --set dp={best:.6g}")
     else:
-        say("no listed dp both fits all bodies to the lattice and runs within the budget; allow more time or choose "
+        say("no listed dp both fits all bodies to the lattice and runs within the budget; allow "
+            "more time or choose "
             "another dp")
     lines = plan.text.splitlines()
-    for line in lines[next(k for k, line in enumerate(lines) if line.startswith("expected error")):]:
+    for line in lines[next(k for k, line in enumerate(lines)
+                           if line.startswith("expected error")):]:
         say(line)
     return best

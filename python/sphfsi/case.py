@@ -55,8 +55,8 @@ class Preview:
 
 
 class Explanation(dict):
-    """What a case would be and what it would cost; docs/formats.md lists the keys. `text` is the same in
-    lines, and `print` shows it."""
+    """What a case would be and what it would cost; docs/formats.md lists the keys. `text` is the
+    same in lines, and `print` shows it."""
 
     text: str
 
@@ -78,7 +78,8 @@ class _Progress:
         self.tenth = int(10 * share)
         left = f"{p.seconds_left:.0f} s left" if p.seconds_left >= 0 else ""
         bar = "#" * int(30 * share)
-        line = (f"{100 * share:5.1f} % |{bar:<30}| t {p.time:.4g} s, dt {p.dt:.3g} s ({text(p.bound)}), "
+        line = (f"{100 * share:5.1f} % |{bar:<30}| t {p.time:.4g} s, dt {p.dt:.3g} s "
+                f"({text(p.bound)}), "
                 f"{1e-6 * p.particle_steps_per_second:.3g} M particle steps/s, {left}")
         self.out.write(f"\r{line}\033[K" if self.live else line + "\n")
         self.out.flush()
@@ -95,10 +96,12 @@ class Case:
 
         Case("cases/gate.cfg", dp="1 mm", gate={"young": "8 MPa"}, output={"probe_interval": 1e-3})
 
-    Keys are those of the case file (docs/cases.md): at the top or named constants as they are, those of a
-    section in a mapping under its name. Values are text with units, or numbers in SI units."""
+    Keys are those of the case file (docs/cases.md): at the top or named constants as they are,
+    those of a section in a mapping under its name. Values are text with units, or numbers in SI
+    units."""
 
-    def __init__(self, path: str | os.PathLike | None = None, *, text: str | None = None, **changes: Any):
+    def __init__(self, path: str | os.PathLike | None = None, *, text: str | None = None,
+                 **changes: Any):
         self.path = None if path is None else Path(path)
         self.text = text
         self.changes = changes
@@ -138,9 +141,9 @@ class Case:
         return preview
 
     def explain(self, *, until: float = 0.0, threads: int = 0) -> Explanation:
-        """What would be simulated and what it would cost on this machine: particles, effects with what
-        calls for them, bounds of the time step (s), wall time (s), memory and disk (bytes), all values in
-        effect."""
+        """What would be simulated and what it would cost on this machine: particles, effects with
+        what calls for them, bounds of the time step (s), wall time (s), memory and disk (bytes),
+        all values in effect."""
         lines: list[str] = []
         call = self._call(until=until, threads=threads, notes=lines.append)
         call.finish(lib.sphfsi_explain(call.options))
@@ -161,8 +164,8 @@ class Case:
         return lines
 
     def simulation(self, *, threads: int = 0) -> Simulation:
-        """A simulation in memory at time zero, to be stepped; no file is written. `threads`: 0 for as many as
-        are useful and idle."""
+        """A simulation in memory at time zero, to be stepped; no file is written. `threads`: 0 for
+        as many as are useful and idle."""
         return Simulation(self._call(threads=threads))
 
     def folder(self, *, fork: bool = False) -> Path:
@@ -170,14 +173,16 @@ class Case:
         name = self.path.name.removesuffix(".cfg") if self.path is not None else "case"
         return Path("runs") / (name + "-fork" * fork)
 
-    def run(self, out: str | os.PathLike | None = None, *, progress: bool = True, restart: bool = False,
+    def run(self, out: str | os.PathLike | None = None, *, progress: bool = True,
+            restart: bool = False,
             fork: str | os.PathLike | None = None, until: float = 0.0, threads: int = 0,
             notes: Callable[[str], None] | None = None) -> Run:
         """Runs the case to its end, or to `until` (s), and returns its results.
 
-        `out`: folder of the results (default: runs/NAME, of a fork runs/NAME-fork); `restart`: go on from
-        its newest checkpoint; `fork`: begin with the state of another run; `notes`: called with each line
-        that the program would print. Ctrl-C leaves a checkpoint and raises `Interrupted`."""
+        `out`: folder of the results (default: runs/NAME, of a fork runs/NAME-fork); `restart`: go
+        on from its newest checkpoint; `fork`: begin with the state of another run; `notes`: called
+        with each line that the program would print. Ctrl-C leaves a checkpoint and raises
+        `Interrupted`."""
         folder = Path(out) if out is not None else self.folder(fork=fork is not None)
         bar = _Progress(sys.stderr) if progress else None
         # The callback is also where Python gets to see a signal.
@@ -194,9 +199,9 @@ class Case:
                until: float = 0.0, threads: int = 0, progress: bool = False,
                notes: Callable[[str], None] | None = None,
                results: Callable[[str], None] | None = None) -> dict:
-        """Runs the case in `runs` resolutions, dp growing by `ratio`, coarsest first, and returns what the
-        probes and energies converge to: refine.json of docs/formats.md. Finished runs are not run again.
-        `notes` and `results`: called with the lines on the runs and of the table."""
+        """Runs the case in `runs` resolutions, dp growing by `ratio`, coarsest first, and returns
+        what the probes and energies converge to: refine.json of docs/formats.md. Finished runs are
+        not run again. `notes` and `results`: called with the lines on the runs and of the table."""
         folder = Path(out) if out is not None else self.folder()
         said = notes or log.info
         study = Refinement(self, folder, runs, ratio, until, threads, said)
@@ -205,8 +210,9 @@ class Case:
 
     def budget(self, seconds: float, *, until: float = 0.0, threads: int = 0,
                notes: Callable[[str], None] | None = None) -> float | None:
-        """The finest round dp (m) that runs within so many seconds of wall time and fits all bodies to the
-        lattice, or None. `notes`: called with lines on the costs of several dp and on the errors to expect."""
+        """The finest round dp (m) that runs within so many seconds of wall time and fits all bodies
+        to the lattice, or None. `notes`: called with lines on the costs of several dp and on the
+        errors to expect."""
         return find_dp(self, seconds, until, threads, notes or log.info)
 
     def __repr__(self) -> str:
@@ -214,8 +220,8 @@ class Case:
 
 
 class _Stopping:
-    """While it holds, SIGINT (Ctrl-C) or SIGTERM asks the run to write a checkpoint and stop; a second one is
-    an exception."""
+    """While it holds, SIGINT (Ctrl-C) or SIGTERM asks the run to write a checkpoint and stop; a
+    second one is an exception."""
 
     def __init__(self, call: Call):
         self.call, self.before = call, {}

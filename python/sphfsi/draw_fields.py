@@ -179,12 +179,13 @@ def common_scales(panels, entries, given):
 
 
 def instants(files, times=None):
-    """Instants to draw: the nearest snapshots to the times (s), each once; without times four over the run,
-    of several runs the last."""
+    """Instants to draw: the nearest snapshots to the times (s), each once; without times four over
+    the run, of several runs the last."""
     last = min(file.times[-1] for file in files)
     quarters = [files[0].nearest(last * k / 4) for k in (1, 2, 3, 4)]
     # Of a run that ended early several instants have the same nearest snapshot.
-    times = times and list({files[0].nearest(time): time for time in reversed(times)}.values())[::-1]
+    times = times and list({files[0].nearest(time): time
+                            for time in reversed(times)}.values())[::-1]
     return times or ([last] if len(files) > 1 else files[0].times[np.unique(quarters)])
 
 
@@ -223,7 +224,8 @@ def film(runs, files, entries, given, out, *, window=None, fps=10.0, dpi=150.0):
     writer = choose_writer(out, fps)
     last = min(file.times[-1] for file in files)
     times = [time for time in files[0].times if time <= last]
-    rows = [[load_panel(run, file, time, entries) for run, file in zip(runs, files)] for time in times]
+    rows = [[load_panel(run, file, time, entries) for run, file in zip(runs, files)]
+            for time in times]
     panels = [panel for row in rows for panel in row]
     scales = common_scales(panels, entries, given)
     window = window or frame(panels)

@@ -35,7 +35,8 @@ RESULTS = ["points", "rms", "peak", "peak_time_s", "ref_peak", "ref_peak_time_s"
 
 
 def choose_columns(runs, tables, refs, asked=()):
-    """Columns to draw: those asked for, else those that have references, else the displacement of M1."""
+    """Columns to draw: those asked for, else those that have references, else the displacement of
+    M1."""
     shared = [name for name in tables[0] if all(name in t for t in tables)]
     for run, table in zip(runs, tables):
         for name in asked:
@@ -212,8 +213,9 @@ def draw_figure(columns, curves, refs):
 
 
 def panels_of(columns):
-    """Columns of the same unit together; a displacement of millimetres stands apart from a position.
-    Displacements come first, forces and moments behind all that moves or flows, energies last."""
+    """Columns of the same unit together; a displacement of millimetres stands apart from a
+    position. Displacements come first, forces and moments behind all that moves or flows, energies
+    last."""
     late = {"N/m": 2, "N m/m": 2, "J/m": 3}
     panels = {}
     for column in columns:
@@ -224,7 +226,8 @@ def panels_of(columns):
 
 
 def without_turns(column, value):
-    """An angle from -pi to pi is interrupted where it goes on at the other end, instead of joined."""
+    """An angle from -pi to pi is interrupted where it goes on at the other end, instead of
+    joined."""
     value = np.array(value, dtype=float)
     if column.endswith("_angle_rad"):
         value[1:][np.abs(np.diff(value)) > np.pi] = np.nan
@@ -266,7 +269,8 @@ def draw_panel(axes, columns, curves, refs):
 def draw_panels(columns, curves, refs):
     """One panel for each unit, one below the other, with a legend beside each."""
     panels = panels_of(columns)
-    fig, axes = plt.subplots(len(panels), 1, figsize=(WIDTH, 0.4 + 1.9 * len(panels)), squeeze=False,
+    fig, axes = plt.subplots(len(panels), 1, figsize=(WIDTH, 0.4 + 1.9 * len(panels)),
+                             squeeze=False,
                              layout="constrained")
     units = {}
     for row, names in zip(axes[:, 0], panels):

@@ -50,9 +50,11 @@ def read_table(path, torn=False, finite=True):
             if len(row) != len(names):
                 raise BadFile(f"{path}, line {number}: {len(row)} values "
                               f"for {len(names)} columns")
-            wrong = next((k for k, value in enumerate(row) if finite and not math.isfinite(value)), None)
+            wrong = next((k for k, value in enumerate(row) if finite and not math.isfinite(value)),
+                         None)
             if wrong is not None:
-                raise BadFile(f"{path}, line {number}: {names[wrong]} is {row[wrong]}, not a finite number")
+                raise BadFile(f"{path}, line {number}: {names[wrong]} is {row[wrong]}, not a "
+                              f"finite number")
             rows.append(row)
     if not rows:
         raise BadFile(f"{path}: no rows of data")
@@ -64,7 +66,8 @@ def check_increasing(path, name, values):
     back = np.flatnonzero(np.diff(values) <= 0)
     if len(back):
         before, after = values[back[0]], values[back[0] + 1]
-        raise BadFile(f"{path}, row {back[0] + 2} of the data: {name} is {after:g} after {before:g}; it must "
+        raise BadFile(f"{path}, row {back[0] + 2} of the data: {name} is {after:g} after "
+                      f"{before:g}; it must "
                       "increase from row to row")
 
 
@@ -116,8 +119,8 @@ class Run:
         return self.summary.get("exit_reason", "running") not in ("finished", "running")
 
     def table(self, name):
-        """Columns of a table. The last rows of a run that was stopped may hold nan: they show why; a
-        ledger may hold inf: the least det F of no solid at all."""
+        """Columns of a table. The last rows of a run that was stopped may hold nan: they show why;
+        a ledger may hold inf: the least det F of no solid at all."""
         finite = name != "ledger.csv" and not self.stopped()
         columns, _ = read_table(self.folder / name, torn=True, finite=finite)
         if "time_s" not in columns:
@@ -170,16 +173,17 @@ def resolutions(folder):
 
 
 def make_runs(folders):
-    """Runs whose names differ. The folder of tools/refine.py stands for those of its resolutions."""
+    """Runs whose names differ. The folder of tools/refine.py stands for those of its
+    resolutions."""
     runs = [Run(found) for folder in folders for found in resolutions(folder)]
     make_names_differ(runs)
     return runs
 
 
 class Reference:
-    """A curve to compare with: CSV with time in s and a value in SI units. `sort`: its points may go
-    back and forth in time, as digitised ones do and as the program takes them. Otherwise the times must
-    increase, which those of a file with swapped columns hardly do."""
+    """A curve to compare with: CSV with time in s and a value in SI units. `sort`: its points may
+    go back and forth in time, as digitised ones do and as the program takes them. Otherwise the
+    times must increase, which those of a file with swapped columns hardly do."""
 
     def __init__(self, probe, path, name, label, sort=False):
         self.probe, self.path, self.name, self.label = probe, Path(path), name, label

@@ -29,7 +29,8 @@ class Guard(Error, ArithmeticError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """A run was stopped by Ctrl-C; its folder holds a checkpoint, from which `restart=True` goes on."""
+    """A run was stopped by Ctrl-C; its folder holds a checkpoint, from which `restart=True` goes
+    on."""
 
 
 class CaseWarning(UserWarning):
@@ -112,8 +113,8 @@ def _bytes(value: str | os.PathLike) -> bytes:
 
 
 class Call:
-    """Options of one call of the library, with its callbacks. An exception in one of them is raised when the
-    call is over."""
+    """Options of one call of the library, with its callbacks. An exception in one of them is raised
+    when the call is over."""
 
     def __init__(self, *, notes: Callable[[str], None] | None = None,
                  progress: Callable[[Any], None] | None = None, **options: Any):

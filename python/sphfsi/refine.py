@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A case in several resolutions: the limit of each probe and energy, the order of convergence, the error band
-of the finest run."""
+"""A case in several resolutions: the limit of each probe and energy, the order of convergence, the
+error band of the finest run."""
 from __future__ import annotations
 
 import json
@@ -48,9 +48,10 @@ def _without_order(values, why: str) -> Convergence:
 
 
 def converge(values, ratio: float) -> Convergence:
-    """Richardson extrapolation of three values, finest first; dp grows by `ratio`. Band: grid convergence
-    index with a factor of 1.25 (Roache 1994; Celik et al. 2008), the order taken as 2 at most. Values that do
-    not converge monotonically, or slower than with order 0.5, have no order."""
+    """Richardson extrapolation of three values, finest first; dp grows by `ratio`. Band: grid
+    convergence index with a factor of 1.25 (Roache 1994; Celik et al. 2008), the order taken as 2
+    at most. Values that do not converge monotonically, or slower than with order 0.5, have no
+    order."""
     if not all(map(math.isfinite, values)):
         return Convergence(values[0], math.nan, None, "not finite")
     fine, coarse = values[1] - values[0], values[2] - values[1]
@@ -64,9 +65,9 @@ def converge(values, ratio: float) -> Convergence:
 
 
 def errors_agree(fine, middle, coarse) -> bool:
-    """Whether the runs differ in the last part of the time by one error that falls with dp. Richardson
-    extrapolation assumes an error C(t) dp^p, so both differences are proportional to C(t) (Roache 1998); here
-    more than half of their squares has to be. Noise has none in common."""
+    """Whether the runs differ in the last part of the time by one error that falls with dp.
+    Richardson extrapolation assumes an error C(t) dp^p, so both differences are proportional to
+    C(t) (Roache 1998); here more than half of their squares has to be. Noise has none in common."""
     a, b = np.subtract(middle, fine), np.subtract(coarse, middle)
     product = a @ b
     return bool(product >= 0 and product**2 >= 0.5 * (a @ a) * (b @ b))
@@ -74,8 +75,8 @@ def errors_agree(fine, middle, coarse) -> bool:
 
 @dataclass
 class Column:
-    """One column of a run: its value at the end, of largest magnitude, and mean of the last quarter of the
-    time, and the values of that quarter."""
+    """One column of a run: its value at the end, of largest magnitude, and mean of the last quarter
+    of the time, and the values of that quarter."""
 
     measures: dict[str, float]
     late: np.ndarray
@@ -89,10 +90,12 @@ class Column:
 
 
 def _converge_columns(columns: list[Column], measure: str, ratio: float) -> Convergence:
-    """An order from three final values is chance if the differences of the runs are not those of one error."""
+    """An order from three final values is chance if the differences of the runs are not those of
+    one error."""
     values = [column.measures[measure] for column in columns]
     found = converge(values, ratio)
-    if measure == "final" and found.order is not None and len({len(column.late) for column in columns}) == 1 \
+    if measure == "final" and found.order is not None and len({len(column.late)
+                                                               for column in columns}) == 1 \
             and not errors_agree(*(column.late for column in columns)):
         return _without_order(values, "noise")
     return found
@@ -118,7 +121,8 @@ def _row(measure: str, values, c: Convergence) -> str:
     percent = ""
     if values[0] != 0 and math.isfinite(c.band):
         percent = f" ({_two_digits(100 * c.band / abs(values[0]))} %)"
-    return (f"  {measure:<8} {values[2]:12.5g} {values[1]:12.5g} {values[0]:12.5g} {limit:>12}  {order:>5}"
+    return (f"  {measure:<8} {values[2]:12.5g} {values[1]:12.5g} {values[0]:12.5g} {limit:>12}  "
+            f"{order:>5}"
             f"  +- {_two_digits(c.band)}{percent}{'; ' + c.why if c.why else ''}"
             f"{'' if c.resolves(values[0]) else '; no result'}")
 
@@ -128,14 +132,18 @@ def _finite(value: float | None) -> float | None:
 
 
 class Refinement:
-    """The runs of a case at dp * ratio^(runs - 1), ..., dp * ratio, dp, in folders below `folder`."""
+    """The runs of a case at dp * ratio^(runs - 1), ..., dp * ratio, dp, in folders below
+    `folder`."""
 
-    def __init__(self, case: Case, folder: Path, runs: int, ratio: float, until: float, threads: int,
+    def __init__(self, case: Case, folder: Path, runs: int, ratio: float, until: float,
+                 threads: int,
                  say: Callable[[str], None]):
         if not 3 <= runs <= MAX_RUNS:
-            raise InputError(f"refine: {runs} resolutions are given, but 3 to {MAX_RUNS} are allowed")
+            raise InputError(f"refine: {runs} resolutions are given, but 3 to {MAX_RUNS} are "
+                             f"allowed")
         if not 1.1 <= ratio <= 4:
-            raise InputError(f"refine: the ratio of resolutions is {ratio:g}, but 1.1 to 4 is allowed")
+            raise InputError(f"refine: the ratio of resolutions is {ratio:g}, but 1.1 to 4 is "
+                             f"allowed")
         self.case, self.folder, self.ratio, self.say = case, folder, ratio, say
         self.until, self.threads = until, threads
         with warnings.catch_warnings():  # each run says its own
@@ -149,20 +157,23 @@ class Refinement:
 
     @staticmethod
     def _top(text: str) -> float:
-        return float(next(line for line in text.splitlines() if line.startswith("dp = ")).split()[2])
+        return float(next(line for line in text.splitlines()
+                          if line.startswith("dp = ")).split()[2])
 
     def _try(self, case: Case) -> str:
-        """The case in effect in a resolution: read before any run, since runs may take hours. The case could
-        be read at its own dp, so what is wrong comes from the resolution."""
+        """The case in effect in a resolution: read before any run, since runs may take hours. The
+        case could be read at its own dp, so what is wrong comes from the resolution."""
         try:
             return case.effective(until=self.until)
         except InputError as problem:
             dp = case.changes["dp"]
-            raise InputError(f"refine: at dp = {dp:.6g} m, {dp / self.dp[-1]:.4g} times the case's: {problem}; "
+            raise InputError(f"refine: at dp = {dp:.6g} m, {dp / self.dp[-1]:.4g} times the "
+                             f"case's: {problem}; "
                              f"{HINT}") from None
 
     def _is_done(self, k: int) -> bool:
-        """Whether the folder holds a finished run of exactly this case. Of another case the restart says so."""
+        """Whether the folder holds a finished run of exactly this case. Of another case the restart
+        says so."""
         case, part = self.folders[k] / "case.cfg", self.folders[k] / "case.cfg.part"
         if not case.exists() or Run(self.folders[k]).status != "finished":
             return False
@@ -190,8 +201,8 @@ class Refinement:
             self._run(k, progress)
 
     def _report_file(self, file: str, result: Callable[[str], None]) -> dict[str, Any]:
-        """The convergence of the columns of one file. Of the ledger only energies that end at other than zero
-        are printed."""
+        """The convergence of the columns of one file. Of the ledger only energies that end at other
+        than zero are printed."""
         runs = [_read_columns(folder, file) for folder in reversed(self.folders[-3:])]
         report: dict[str, Any] = {}
         for name in runs[0]:
@@ -218,19 +229,26 @@ class Refinement:
         """Prints the convergence over the three finest runs and writes refine.json."""
         dp = self.dp[:-4:-1]
         report: dict[str, Any] = {"dp": dp, "off_lattice": int(self.off_lattice)}
-        result(f"dp (m)     {dp[2]:12.5g} {dp[1]:12.5g} {dp[0]:12.5g} extrapolated  order  band of the finest")
-        probes = [(name, keys) for kind, name, keys in Run(self.folders[-1]).case() if kind == "probe"]
-        own = [f"probes_{name}.csv" for name, keys in probes if float(keys["interval"].split()[0]) > 0]
+        result(f"dp (m)     {dp[2]:12.5g} {dp[1]:12.5g} {dp[0]:12.5g} extrapolated  order  band of "
+               f"the finest")
+        probes = [(name, keys) for kind, name, keys in Run(self.folders[-1]).case()
+                  if kind == "probe"]
+        own = [f"probes_{name}.csv" for name, keys in probes
+               if float(keys["interval"].split()[0]) > 0]
         for file in ["probes.csv"] * (len(own) < len(probes)) + own:
             report.update(self._report_file(file, result))
         report["ledger"] = self._report_file("ledger.csv", result)
-        result("peak: value of largest magnitude; settled: mean of the last quarter; band: grid convergence index "
+        result("peak: value of largest magnitude; settled: mean of the last quarter; band: grid "
+               "convergence index "
                "or, if there is no order, 3 times the largest difference")
-        result("no result: the band is larger than the value of the finest run, so not even the sign is known")
-        result("noise: in the last quarter the differences of the runs are not proportional to each other, so no "
+        result("no result: the band is larger than the value of the finest run, so not even the "
+               "sign is known")
+        result("noise: in the last quarter the differences of the runs are not proportional to "
+               "each other, so no "
                "final value is reliable")
         if self.off_lattice:
-            result("bodies are off the lattice in some of these resolutions, so their sizes differ and the orders "
+            result("bodies are off the lattice in some of these resolutions, so their sizes differ "
+                   "and the orders "
                    "are not reliable")
         part = self.folder / "refine.json.part"
         part.write_text(json.dumps(report, indent=2) + "\n", encoding="utf-8")

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 
 def _frame(columns: dict[str, np.ndarray]) -> Any:
-    """A pandas DataFrame where pandas is there, else a structured array; the first column is the time."""
+    """A pandas DataFrame where pandas is there, else a structured array; the first column is the
+    time."""
     try:
         import pandas
     except ImportError:
@@ -53,8 +54,8 @@ class Group:
 
 
 class Snapshot:
-    """All particles at an instant: `time` (s) and the groups `fluid`, `wall`, `solid` with the arrays of
-    fields.vtkhdf (docs/formats.md has the units) and the positions x, y (m)."""
+    """All particles at an instant: `time` (s) and the groups `fluid`, `wall`, `solid` with the
+    arrays of fields.vtkhdf (docs/formats.md has the units) and the positions x, y (m)."""
 
     fluid: Group
     wall: Group
@@ -76,8 +77,8 @@ class Snapshot:
 
 
 class Run(files.Run):
-    """The folder of a run. Files are read when they are asked for, so that a run that goes on can be watched;
-    `refresh` reads the summary anew."""
+    """The folder of a run. Files are read when they are asked for, so that a run that goes on can
+    be watched; `refresh` reads the summary anew."""
 
     def refresh(self) -> Run:
         """Reads summary.json anew."""
@@ -103,9 +104,9 @@ class Run(files.Run):
         return False
 
     def probes(self, name: str | None = None) -> Any:
-        """What the probes recorded so far, SI units: a pandas DataFrame where pandas is there, else a
-        structured array, with columns time_s and <probe>_<quantity>_<unit>. `name`: of one probe alone,
-        which may have a file and a rate of its own."""
+        """What the probes recorded so far, SI units: a pandas DataFrame where pandas is there, else
+        a structured array, with columns time_s and <probe>_<quantity>_<unit>. `name`: of one probe
+        alone, which may have a file and a rate of its own."""
         own = self.folder / f"probes_{name}.csv"
         if name is not None and own.exists():
             return _frame(self.table(own.name))
@@ -119,8 +120,8 @@ class Run(files.Run):
         return _frame(table)
 
     def ledger(self) -> Any:
-        """Energies (J/m), momenta (N s/m), mass (kg/m), time step (s) and extremes over time so far, in the
-        form of `probes`."""
+        """Energies (J/m), momenta (N s/m), mass (kg/m), time step (s) and extremes over time so
+        far, in the form of `probes`."""
         return _frame(self.table("ledger.csv"))
 
     def _snapshots(self) -> Snapshots:
@@ -178,8 +179,8 @@ def _style():
 
 def plot_probes(runs, columns: str | Sequence[str] = (), *, references: bool = True,
                 out: str | os.PathLike | None = None) -> Figure:
-    """Draws what probes of one or several runs recorded against time, with the references of their case:
-    a panel for each unit, displacements above forces.
+    """Draws what probes of one or several runs recorded against time, with the references of their
+    case: a panel for each unit, displacements above forces.
 
     `columns`: such as "M1_dx_m" (default: all); `out`: also a picture file."""
     with _style():
@@ -189,7 +190,8 @@ def plot_probes(runs, columns: str | Sequence[str] = (), *, references: bool = T
         refs = draw_probes.case_references(runs) if references else []
         asked = [columns] if isinstance(columns, str) else list(columns)
         chosen = draw_probes.all_columns(runs, tables, refs, asked)
-        figure, _ = draw_probes.draw_panels(chosen, draw_probes.curves_of(runs, tables, chosen), refs)
+        figure, _ = draw_probes.draw_panels(chosen, draw_probes.curves_of(runs, tables, chosen),
+                                            refs)
         if out is not None:
             figure.savefig(out)
     return figure
@@ -197,7 +199,8 @@ def plot_probes(runs, columns: str | Sequence[str] = (), *, references: bool = T
 
 def _entry(kind: str, name: str) -> tuple:
     if name not in FIELDS[kind]:
-        raise BadFile(f"there is no {kind} field {name} to draw; it is one of {', '.join(FIELDS[kind])}")
+        raise BadFile(f"there is no {kind} field {name} to draw; it is one of "
+                      f"{', '.join(FIELDS[kind])}")
     return FIELDS[kind][name]
 
 
@@ -205,11 +208,12 @@ def plot_fields(runs, times: float | Sequence[float] = (), *, field: str = "pres
                 solid: str = "von_mises", window: Sequence[float] | None = None,
                 ranges: dict[str, Sequence[float]] | None = None,
                 out: str | os.PathLike | None = None) -> Figure:
-    """Draws snapshots of one or several runs, to scale: a row for each time (s), a column for each run.
+    """Draws snapshots of one or several runs, to scale: a row for each time (s), a column for each
+    run.
 
     `field`: pressure, velocity, vorticity or density of the fluid; `solid`: von_mises, stress_xx,
-    displacement or pressure; `window`: x0, x1, y0, y1 (m); `ranges`: {"fluid": (low, high), "solid": ...}
-    of the colours in SI units; `out`: also a picture file."""
+    displacement or pressure; `window`: x0, x1, y0, y1 (m); `ranges`: {"fluid": (low, high),
+    "solid": ...} of the colours in SI units; `out`: also a picture file."""
     with _style():
         from . import draw_fields
         runs = _runs(runs)
@@ -227,11 +231,13 @@ def plot_fields(runs, times: float | Sequence[float] = (), *, field: str = "pres
     return figure
 
 
-def animate(runs, out: str | os.PathLike | None = None, *, field: str = "pressure", solid: str = "von_mises",
+def animate(runs, out: str | os.PathLike | None = None, *, field: str = "pressure",
+            solid: str = "von_mises",
             window: Sequence[float] | None = None, ranges: dict[str, Sequence[float]] | None = None,
             fps: float = 10.0, dpi: float = 150.0) -> Path:
-    """Writes a film of all snapshots, .mp4 (needs ffmpeg) or .gif, of several runs side by side; returns its
-    path (default: fields.mp4 or fields.gif in the first run's folder). The rest is as in `plot_fields`."""
+    """Writes a film of all snapshots, .mp4 (needs ffmpeg) or .gif, of several runs side by side;
+    returns its path (default: fields.mp4 or fields.gif in the first run's folder). The rest is as
+    in `plot_fields`."""
     with _style():
         from . import draw_fields
         runs = _runs(runs)

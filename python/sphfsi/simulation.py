@@ -26,7 +26,8 @@ class Seen(NamedTuple):
 
 #: Takes the particles, returns their accelerations (ax, ay) in m/s^2: arrays or numbers.
 Force = Callable[[Seen], "tuple[Any, Any]"]
-#: Takes the time in s, returns displacement (m), velocity (m/s) and acceleration (m/s^2), two numbers each.
+#: Takes the time in s, returns displacement (m), velocity (m/s) and acceleration (m/s^2), two
+# numbers each.
 Motion = Callable[[float], "tuple[Sequence[float], Sequence[float], Sequence[float]]"]
 
 
@@ -38,9 +39,10 @@ def _array(pointer: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:
 
 
 class Particles:
-    """The particles of one kind. Fields are numpy views of the simulation's memory, without a copy, read
-    only: `fluid.x` or `fluid["x"]`. A view shows the state of when it was taken until the next step; take it
-    anew after each. The order of fluid particles changes between steps, their `id` stays."""
+    """The particles of one kind. Fields are numpy views of the simulation's memory, without a copy,
+    read only: `fluid.x` or `fluid["x"]`. A view shows the state of when it was taken until the next
+    step; take it anew after each. The order of fluid particles changes between steps, their `id`
+    stays."""
 
     def __init__(self, simulation: Simulation, kind: int, name: str):
         self._simulation, self._kind, self._name = simulation, kind, name
@@ -69,7 +71,8 @@ class Particles:
         return view
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A field by its name: shape (n,), of a vector (n, 3), of a stress (n, 6: xx yy zz xy yz xz)."""
+        """A field by its name: shape (n,), of a vector (n, 3), of a stress (n, 6: xx yy zz xy yz
+        xz)."""
         view = self._view(name)
         shape = (view.count,) if view.components == 1 else (view.count, view.components)
         dtype = TYPES[view.type]
@@ -103,8 +106,8 @@ class Particles:
 class Simulation:
     """A simulation in memory; writes no files. `Case.simulation` makes one.
 
-    One thread at a time may use it. What it takes of memory is given back when it and all views of its
-    fields are gone."""
+    One thread at a time may use it. What it takes of memory is given back when it and all views of
+    its fields are gone."""
 
     def __init__(self, call: Call):
         made = ffi.new("struct sphfsi_simulation **")
@@ -113,7 +116,8 @@ class Simulation:
         call.finish(status)
         self._callbacks: dict[Any, Any] = {}
         self._problem: BaseException | None = None
-        self.fluid, self.wall, self.solid = (Particles(self, kind, name) for name, kind in KINDS.items())
+        self.fluid, self.wall, self.solid = (Particles(self, kind, name) for name,
+                                             kind in KINDS.items())
 
     @property
     def time(self) -> float:
@@ -132,7 +136,8 @@ class Simulation:
 
     @property
     def next_output(self) -> float:
-        """Time of the next output of a run of the case, s. Steps that end at these times have its bits."""
+        """Time of the next output of a run of the case, s. Steps that end at these times have its
+        bits."""
         return lib.sphfsi_next_output(self._handle)
 
     @property
@@ -147,15 +152,15 @@ class Simulation:
         check(status)
 
     def step(self, limit: float | None = None) -> float:
-        """Takes one time step, which ends at `limit` (s; default: the end of the case) if it would reach
-        further. Returns the time, s."""
+        """Takes one time step, which ends at `limit` (s; default: the end of the case) if it would
+        reach further. Returns the time, s."""
         self._finish(0)
         self._finish(lib.sphfsi_step(self._handle, self.end_time if limit is None else limit))
         return self.time
 
     def advance(self, time: float | None = None) -> float:
-        """Steps until the time is exactly `time` (s; default: the end of the case). Ctrl-C stops it after a
-        step. Returns the time, s."""
+        """Steps until the time is exactly `time` (s; default: the end of the case). Ctrl-C stops it
+        after a step. Returns the time, s."""
         limit = self.end_time if time is None else time
         self.step(limit)
         while self.time < limit:
@@ -163,8 +168,8 @@ class Simulation:
         return self.time
 
     def probe(self, name: str) -> np.ndarray:
-        """Values of a probe of the case now, SI units; docs/cases.md has the columns of each quantity. Those
-        that its quantity does not have are NaN."""
+        """Values of a probe of the case now, SI units; docs/cases.md has the columns of each
+        quantity. Those that its quantity does not have are NaN."""
         values = ffi.new("double[5]", [np.nan] * 5)
         check(lib.sphfsi_probe(self._handle, name.encode(), values))
         return np.frombuffer(ffi.buffer(values), np.float64).copy()
@@ -185,9 +190,9 @@ class Simulation:
         return guarded
 
     def set_force(self, kind: str, force: Force | None) -> None:
-        """Sets a force on "fluid" or "solid": a function of the particles (`Seen`) that returns their
-        accelerations (ax, ay) in m/s^2. It is called once or twice a step and should depend on its argument
-        only; its work is in no ledger. None takes it away."""
+        """Sets a force on "fluid" or "solid": a function of the particles (`Seen`) that returns
+        their accelerations (ax, ay) in m/s^2. It is called once or twice a step and should depend
+        on its argument only; its work is in no ledger. None takes it away."""
         if kind not in KINDS:
             raise InputError(f"force: there is no kind '{kind}'; it is fluid or solid")
         function = ffi.NULL
@@ -202,15 +207,16 @@ class Simulation:
             def unless_empty(p, ax, ay):
                 if p.n:
                     call(p, ax, ay)
-            function = ffi.callback("void(void *, const struct sphfsi_particles *, double *, double *)",
+            function = ffi.callback("void(void *, const struct sphfsi_particles *, double *, "
+                                    "double *)",
                                     self._guarded(unless_empty))
         check(lib.sphfsi_set_force(self._handle, KINDS[kind], function, ffi.NULL))
         self._callbacks[kind] = function
 
     def set_motion(self, name: str, motion: Motion | None) -> None:
-        """Puts a function of the time (s) in the place of [motion NAME] of the case, from the next step on:
-        it returns displacement from the place in the case (m), velocity (m/s) and acceleration (m/s^2), each
-        as (x, y). None gives the case's own motion back."""
+        """Puts a function of the time (s) in the place of [motion NAME] of the case, from the next
+        step on: it returns displacement from the place in the case (m), velocity (m/s) and
+        acceleration (m/s^2), each as (x, y). None gives the case's own motion back."""
         function = ffi.NULL
         if motion is not None:
             def call(time, d, v, a):

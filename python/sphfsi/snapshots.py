@@ -61,7 +61,8 @@ class Snapshots:
         return int(np.argmin(np.abs(self.times - time)))
 
     def load(self, step: int, name: str) -> np.ndarray:
-        """The positions ("Points", m) or an array of PointData at a step; docs/formats.md has the units."""
+        """The positions ("Points", m) or an array of PointData at a step; docs/formats.md has the
+        units."""
         start = self.starts[step]
         if name == "Points":
             data = self.root[name]

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""An effect that a scene does not use costs nothing: its instructions and bytes are at most 0.05 % above
-those of a program compiled without the effect, and its state is the same to the bit. A wall that no
-fluid reaches costs at most 1 %. The short form, which any compiler has to pass, allows 1 % for all
-effects at once.
+"""An effect that a scene does not use costs nothing: its instructions and bytes are at most 0.05 %
+above those of a program compiled without the effect, and its state is the same to the bit. A wall
+that no fluid reaches costs at most 1 %. The short form, which any compiler has to pass, allows 1 %
+for all effects at once.
 
-Valgrind counts the instructions within simulation_step, which are the same in every run. Those of the
-allocator are left out: the threads' library calls it at each parallel region, and they depend on earlier
-frees. Bytes are those of the run's arena.
+Valgrind counts the instructions within simulation_step, which are the same in every run. Those of
+the allocator are left out: the threads' library calls it at each parallel region, and they depend
+on earlier frees. Bytes are those of the run's arena.
 
-  test_absence.py           all effects that no scene here uses, left out together (two programs), and
+  test_absence.py           all effects that no scene here uses, left out together (two programs),
+  and
                             docs/absence.md, which must have a row for every effect
   test_absence.py --each    each effect by itself, a program for each: make absence, which writes
                             docs/absence.md
@@ -60,14 +61,16 @@ SCENES = {
 
 
 def build(name, left_out):
-    """The program without some effects. AVX-512 is beyond valgrind, so it is left out everywhere."""
+    """The program without some effects. AVX-512 is beyond valgrind, so it is left out
+    everywhere."""
     target = BUILD / name
     flags = f"CPPFLAGS=-DSPHFSI_WITHOUT={'+'.join('OUT_' + e for e in left_out) or '0'}"
     arch = ["ARCH=x86-64-v3"] if os.uname().machine == "x86_64" else []
     place = os.path.relpath(target, ROOT)
     # Not what the make that runs the tests was told.
     clean = {k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
-    subprocess.run(["make", "-j2", "SETUP=no", f"B={place}", f"PROGRAM={place}/sphfsi", *arch, flags,
+    subprocess.run(["make", "-j2", "SETUP=no", f"B={place}", f"PROGRAM={place}/sphfsi", *arch,
+                    flags,
                     f"{place}/sphfsi"], cwd=ROOT, check=True, stdout=subprocess.DEVNULL, env=clean)
     return target / "sphfsi"
 
@@ -101,7 +104,8 @@ def measure(program, scene):
         case.write_text(scene)
         result = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}",
-             "--toggle-collect=simulation_step", str(program), str(case), "--quiet", "--threads", "1",
+             "--toggle-collect=simulation_step", str(program), str(case), "--quiet", "--threads",
+             "1",
              "--out", f"{top}/run", "--until", repr(STEPS * STEP)], capture_output=True, text=True)
         assert result.returncode == 0 and counts.exists(), result.stderr + result.stdout
         summary = json.loads(Path(top, "run/summary.json").read_text())
@@ -111,7 +115,8 @@ def measure(program, scene):
 
 
 def compare(left_out, program, scene, whole, allowed):
-    """What the effects cost a scene that does not have them, instructions and bytes; whether it is good."""
+    """What the effects cost a scene that does not have them, instructions and bytes; whether it is
+    good."""
     steps, size, state, _ = measure(program, SCENES[scene])
     excess = [whole[scene][0] / steps - 1, whole[scene][1] / size - 1]
     same = state == whole[scene][2]
@@ -127,7 +132,8 @@ def far_wall_is_free(program):
     near = measure(program, GRAVITY + TOP + WATER + WALL + DOMAIN + OUTPUT)[0]
     both = measure(program, GRAVITY + TOP + WATER + WALL + FAR_WALL + DOMAIN + OUTPUT)[0]
     good = abs(both / near - 1) <= ALLOWED
-    print(f"{'ok' if good else 'FAILED':6s} dam break    with a wall out of reach: {both:.0f} instructions "
+    print(f"{'ok' if good else 'FAILED':6s} dam break    with a wall out of reach: {both:.0f} "
+          f"instructions "
           f"a step, {near:.0f} without it ({100 * (both / near - 1):+.2f} %)", flush=True)
     return near, both, good
 
@@ -142,13 +148,18 @@ def summary(effects, costs):
     least = min(cell[0] for cell in costs.values())
     size = max(abs(cell[1]) for cell in costs.values())
     over = sum(max(cell) > ALLOWED_EACH for cell in costs.values())
-    return (f"**Does an effect cost anything in a scene that does not use it?** {len(costs)} pairs of "
-            f"{len(effects)} effects and {len(SCENES)} scenes were compared. The program with the effect "
-            f"takes from {100 * least:+.3f} to {100 * most:+.3f} % more instructions than the one without "
+    return (f"**Does an effect cost anything in a scene that does not use it?** {len(costs)} pairs "
+            f"of "
+            f"{len(effects)} effects and {len(SCENES)} scenes were compared. The program with the "
+            f"effect "
+            f"takes from {100 * least:+.3f} to {100 * most:+.3f} % more instructions than the one "
+            f"without "
             f"it, and {100 * size:.2f} % more bytes. {over} pairs are above the limit of "
             f"{100 * ALLOWED_EACH:.2f} %. "
-            "The results are the same to the bit. Where code is absent, the compiler assigns registers "
-            "differently in code that stays, which is why some programs are dearer without the effect.")
+            "The results are the same to the bit. Where code is absent, the compiler assigns "
+            "registers "
+            "differently in code that stays, which is why some programs are dearer without the "
+            "effect.")
 
 
 def report(whole, effects, costs, far, version):
@@ -156,16 +167,20 @@ def report(whole, effects, costs, far, version):
         "# What an absent effect costs", "", summary(effects, costs), "",
         f"`make absence` writes this report. It builds {len(effects) + 1} programs: one with all "
         f"effects, and for "
-        "each effect one without it. Each runs five small scenes (`tests/agree/test_absence.py`) over "
+        "each effect one without it. Each runs five small scenes (`tests/agree/test_absence.py`) "
+        "over "
         f"{STEPS} steps on one thread, for x86-64-v3. Valgrind counts the instructions within "
-        "`simulation_step`, which are the same in every run. Bytes are those of the run's arena. The "
+        "`simulation_step`, which are the same in every run. Bytes are those of the run's arena. "
+        "The "
         "hash of the "
         f"state was the same in all programs. Program: {version}.", "",
         row("program with all effects", SCENES), row("---", ["---:"] * len(SCENES)),
         row("instructions a step", [f"{whole[s][0]:.0f}" for s in SCENES]),
         row("bytes", [str(whole[s][1]) for s in SCENES]), "",
-        "Each cell says by how much the program with all effects exceeds the one without the effect: "
-        "instructions / bytes. *on*: the scene uses the effect, so there is nothing to compare. The limit is "
+        "Each cell says by how much the program with all effects exceeds the one without the "
+        "effect: "
+        "instructions / bytes. *on*: the scene uses the effect, so there is nothing to compare. "
+        "The limit is "
         f"{100 * ALLOWED_EACH:.2f} %.", "",
         row("effect", SCENES), row("---", ["---:"] * len(SCENES))]
     for effect in effects:
@@ -173,7 +188,8 @@ def report(whole, effects, costs, far, version):
             "on" if (effect, s) not in costs else
             "{:+.3f} % / {:+.2f} %".format(*(100 * c for c in costs[effect, s])) for s in SCENES]))
     near, both, _ = far
-    lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes {both:.0f} "
+    lines += ["", f"A wall out of the fluid's reach is free as well. The dam break takes "
+                  f"{both:.0f} "
                   f"instructions a "
               f"step with it and {near:.0f} without it ({100 * (both / near - 1):+.2f} %).", ""]
     REPORT.write_text("\n".join(lines))
@@ -205,7 +221,8 @@ def together(effects, whole):
     rows = re.findall(r"^\| ([A-Z_]+) \|.*", REPORT.read_text(), re.M)
     costs = [float(c) for c in re.findall(r"\| ([+-]\d+\.\d+) % /", REPORT.read_text())]
     if rows != effects or not costs or max(costs) > 100 * ALLOWED_EACH:
-        print(f"FAILED {REPORT} does not have every effect within the limit: make absence writes it anew")
+        print(f"FAILED {REPORT} does not have every effect within the limit: make absence writes "
+              f"it anew")
         failures += 1
     return failures
 
@@ -226,7 +243,8 @@ def main():
     version = subprocess.run([reference, "--version"], capture_output=True, text=True,
                              check=True).stdout.strip()
     named = sys.argv[2:]
-    return (each(named or effects, whole, far, version, not named) if long else together(effects, whole)) + (not far[2]) > 0
+    return (each(named or effects, whole, far, version, not named) if long
+            else together(effects, whole)) + (not far[2]) > 0
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The first cases of tools/dev/random_cases.py: other threads, kills, restarts and forks change no bit."""
+"""The first cases of tools/dev/random_cases.py: other threads, kills, restarts and forks change no
+bit."""
 import os
 import subprocess
 import sys
@@ -13,6 +14,7 @@ with packages():
 
 count = os.environ.get("RANDOM_CASES", "6")
 SOLIDS_THAT_MEET = "25"  # a check of the account falls on the step of a checkpoint
-command = [sys.executable, TOOLS / "dev" / "random_cases.py", "--builds", f"gcc={PROGRAM}", "--no-record"]
+command = [sys.executable, TOOLS / "dev" / "random_cases.py", "--builds", f"gcc={PROGRAM}",
+           "--no-record"]
 sys.exit(max(subprocess.run([*command, *more]).returncode
              for more in (["--count", count], ["--seed", SOLIDS_THAT_MEET])))

@@ -59,7 +59,8 @@ COLOURS = {"fluid": "#56B4E9", "wall": "#999999", "moving": "#CC79A7", "solid": 
 
 
 def area(corners):
-    return 0.5 * abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, corners[1:] + corners[:1])))
+    return 0.5 * abs(sum(a[0] * b[1] - b[0] * a[1] for a,
+                         b in zip(corners, corners[1:] + corners[:1])))
 
 
 class Picture:
@@ -132,7 +133,8 @@ def check(picture):
     n = int(re.search(r"(\d+) particles", picture.listed("wall slope"))[1])
     assert len(slope) == n > 30 and all(abs(area(one) - 1e-4) < 0.03e-4 for one in slope)
     # One row of the floor in one piece.
-    assert any(abs(bounds([one])[0] + 0.04) < pixel and abs(bounds([one])[2] - 0.2) < pixel for one in walls)
+    assert any(abs(bounds([one])[0] + 0.04) < pixel and abs(bounds([one])[2] - 0.2) < pixel
+               for one in walls)
 
     texts = [text.text for text in picture.texts()]
     assert texts[0] == "a & b < c", texts[0]
@@ -170,9 +172,11 @@ def check(picture):
     assert 0 < place["water"][0] < 0.2 and 0 < place["water"][1] < 0.1, place
     assert 0.2 < place["post"][0] < 0.24 and -0.04 < place["post"][1] < 0.15, place
     assert 0.1 < place["lid"][0] < 0.2 and 0.29 < place["lid"][1] < 0.34, place
-    assert math.dist(place["rise"], (0.05, 0)) < 10 * pixel and math.dist(place["tip"], (0.22, 0.15)) < 10 * pixel
+    assert math.dist(place["rise"], (0.05, 0)) < 10 * pixel and math.dist(place["tip"],
+                                                                          (0.22, 0.15)) < 10 * pixel
     height, width = float(picture.root.get("height")), float(picture.root.get("width"))
-    assert all(0 <= float(t.get("x")) <= width and 0 <= float(t.get("y")) <= height for t in picture.texts())
+    assert all(0 <= float(t.get("x")) <= width and 0 <= float(t.get("y")) <= height
+               for t in picture.texts())
 
 
 def main():

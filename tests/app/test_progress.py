@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The line that tells how far a run is: on a terminal it is written over, in a file there is one for each
-tenth of the run, and its numbers agree with each other."""
+"""The line that tells how far a run is: on a terminal it is written over, in a file there is one
+for each tenth of the run, and its numbers agree with each other."""
 import os
 import pty
 import re
@@ -21,7 +21,8 @@ ENV = {**os.environ, "OMP_NUM_THREADS": "1"}
 def on_a_terminal(out, until, lines):
     """What a terminal gets of a run that is interrupted after so many lines."""
     ours, theirs = pty.openpty()
-    process = subprocess.Popen([SPHFSI, STILL, "--out", out, "--until", until], stderr=theirs, env=ENV,
+    process = subprocess.Popen([SPHFSI, STILL, "--out", out, "--until", until], stderr=theirs,
+                               env=ENV,
                                stdout=subprocess.DEVNULL)
     os.close(theirs)
     said = b""
@@ -61,7 +62,8 @@ def check_file(folder):
     """A run that lasts some seconds, to a file: a line when a tenth is over, no more."""
     until = 6.0
     with open(folder / "said", "w+") as file:
-        subprocess.run([SPHFSI, STILL, "--out", str(folder / "short"), "--until", f"{until:g}"], stderr=file,
+        subprocess.run([SPHFSI, STILL, "--out", str(folder / "short"), "--until", f"{until:g}"],
+                       stderr=file,
                        stdout=subprocess.DEVNULL, env=ENV, check=True)
         file.seek(0)
         said = file.read()

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What tools/refine.py reports, computed again from the files of its runs; and what it leaves when they are lost."""
+"""What tools/refine.py reports, computed again from the files of its runs; and what it leaves when
+they are lost."""
 import csv
 import json
 import math
@@ -20,7 +21,8 @@ PLATE = ["cases/cantilever.cfg", "--set", "ratio=8", "--until", "0.02"]
 
 
 def refine(out, *more, status=0):
-    done = subprocess.run([sys.executable, "tools/refine.py", "-n", "3", "--ratio", str(RATIO), *PLATE, "--threads", "1",
+    done = subprocess.run([sys.executable, "tools/refine.py", "-n", "3", "--ratio", str(RATIO),
+                           *PLATE, "--threads", "1",
                            "--quiet", "--out", str(out), *more], capture_output=True, text=True)
     assert done.returncode == status, (done.returncode, done.stderr)
     return done
@@ -59,7 +61,8 @@ def check(folder, said):
                 continue
             for measure, got in of_column.items():
                 values = [measures(table, name)[measure] for table in tables]
-                assert all(map(close, got["values"], values)), (name, measure, got["values"], values)
+                assert all(map(close, got["values"], values)), (name, measure, got["values"],
+                                                                values)
                 fine, middle, coarse = values
                 if got["band"] > abs(fine):  # no result
                     assert got["extrapolated"] is None, (name, measure, got)
@@ -72,7 +75,8 @@ def check(folder, said):
                 assert math.isclose(got["order"], order, rel_tol=1e-6), (name, measure, got, order)
                 trusted = RATIO**min(order, 2) - 1
                 if got["extrapolated"] is not None:
-                    assert math.isclose(got["extrapolated"], fine + (fine - middle) / trusted, rel_tol=1e-6)
+                    assert math.isclose(got["extrapolated"], fine + (fine - middle) / trusted,
+                                        rel_tol=1e-6)
                 assert math.isclose(got["band"], 1.25 * abs(fine - middle) / trusted, rel_tol=1e-6)
             checked += 1
     assert checked >= 12, checked
@@ -82,7 +86,8 @@ def check(folder, said):
     for line in lines[at + 1:at + 4]:
         word, coarse, middle, fine, limit = line.split()[:5]
         of = report["M1_dy_m"][word]
-        assert [float(fine), float(middle), float(coarse)] == [float(f"{v:.5g}") for v in of["values"]], line
+        assert [float(fine), float(middle), float(coarse)] == [float(f"{v:.5g}")
+                                                               for v in of["values"]], line
         unresolved = of["extrapolated"] is None
         assert limit == ("none" if unresolved else f"{of['extrapolated']:.5g}"), line
         assert line.endswith("; no result") == unresolved, line

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Every key of a case changed, one at a time, at a restart and at a fork of a run.
 
-A restart refuses every change but those of end_time and [output], by name; a fork takes it or refuses
-it by name. Neither crashes, hangs, writes over the run or goes on with a state that a guard stops at
-once."""
+A restart refuses every change but those of end_time and [output], by name; a fork takes it or
+refuses it by name. Neither crashes, hangs, writes over the run or goes on with a state that a guard
+stops at once."""
 import os
 import re
 import shutil
@@ -42,7 +42,8 @@ def changed(section, key, value, words):
     if not number or not re.search(r"[0-9]", value):
         return None
     x = float(number[0])
-    return value.replace(number[0], "1" if key == "verlet_reset" else repr(x * 1.1 if x else 0.1), 1)
+    return value.replace(number[0], "1" if key == "verlet_reset" else repr(x * 1.1 if x else 0.1),
+                         1)
 
 
 def keys(case):
@@ -58,7 +59,8 @@ def keys(case):
 
 
 def main():
-    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as top:
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK)
+                                     else None) as top:
         begun = Path(top, "begun")
         status, said = run("--out", str(begun), "--until", "0.002")
         if status:
@@ -82,7 +84,8 @@ def main():
                 if {path.name: path.read_bytes() for path in begun.iterdir()} != before:
                     failures.append(f"restart, {what}: the run was changed")
             out = Path(top, "fork")
-            status, said = run("--out", str(out), "--until", "0.0022", "--fork", str(begun), *change)
+            status, said = run("--out", str(out), "--until", "0.0022", "--fork", str(begun),
+                               *change)
             if status == 0:
                 taken += 1
             elif status == 1 and said:
@@ -94,7 +97,8 @@ def main():
             shutil.rmtree(out, ignore_errors=True)
         if taken < 10 or refused < 5:
             failures.append(f"only {taken} forks taken, {refused} refused")
-        print(f"found: {kept} changes refused at a restart; of a fork {taken} taken, {refused} refused; "
+        print(f"found: {kept} changes refused at a restart; of a fork {taken} taken, {refused} "
+              f"refused; "
               f"{len(failures)} failures")
     for failure in failures:
         print("FAILED:", failure)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The validation over damaged folders of runs: each costs its own lines of the report, which name it, and is
-run anew; what is interrupted goes on, or is discarded with its reason. Exit 77: a package is missing."""
+"""The validation over damaged folders of runs: each costs its own lines of the report, which name
+it, and is run anew; what is interrupted goes on, or is discarded with its reason. Exit 77: a
+package is missing."""
 
 import contextlib
 import fcntl
@@ -25,7 +26,8 @@ with packages():
     from runfiles import BadFile, Run
     from validation_sound import check_ended
 SPHFSI = validation_runs.Program(PROGRAM)
-SHORT = {"wave-40-1.5": ["ratio=10", "end_time=0.3"], "taylor-green-25": ["ratio=10", "end_time=0.3"],
+SHORT = {"wave-40-1.5": ["ratio=10", "end_time=0.3"],
+         "taylor-green-25": ["ratio=10", "end_time=0.3"],
          "block-20": ["ratio=10", "turns=0.05"]}  # water with probes, water without, a solid
 WAVE = "wave-40-1.5"
 
@@ -92,21 +94,26 @@ DAMAGE = (
     (WAVE, edit_table("probes.csv", cut), "probes.csv: ends at t = "),
     (WAVE, edit_table("ledger.csv", cut), "ledger.csv: ends at t = "),
     (WAVE, lambda folder: (folder / "probes.csv").unlink(), "/probes.csv: No such file"),
-    (WAVE, edit_table("ledger.csv", lambda t: t.replace("momentum_x", "impetus_x")), "no column momentum_x"),
-    (WAVE, edit_table("ledger.csv", lambda t: t.rstrip().rpartition(",")[0] + ",nan\n"), "dt is nan"),
+    (WAVE, edit_table("ledger.csv", lambda t: t.replace("momentum_x", "impetus_x")),
+     "no column momentum_x"),
+    (WAVE, edit_table("ledger.csv", lambda t: t.rstrip().rpartition(",")[0] + ",nan\n"),
+     "dt is nan"),
     (WAVE, edit_table("probes.csv", lambda t: t + t.splitlines()[-2] + "\n"), "must increase"),
     (WAVE, edit_summary(lambda s: s.pop("steps")), "summary.json: steps is missing"),
     (WAVE, edit_summary(lambda s: s.update(wall_seconds=None)), "wall_seconds is None"),
     (WAVE, edit_summary(lambda s: s.update(derived={})), "c0 is missing"),
     (WAVE, edit_summary(lambda s: s.update(exit_reason="guard", time="late")), "time is 'late'"),
-    (WAVE, lambda folder: (folder / "summary.json").write_text("{"), "summary.json: not valid JSON"),
-    ("taylor-green-25", edit_table("ledger.csv", lambda t: "".join(t.splitlines(keepends=True)[:3])),
+    (WAVE, lambda folder: (folder / "summary.json").write_text("{"),
+     "summary.json: not valid JSON"),
+    ("taylor-green-25",
+     edit_table("ledger.csv", lambda t: "".join(t.splitlines(keepends=True)[:3])),
      "ledger.csv: ends at t = "),
     ("block-20", edit_table("case.cfg", lambda t: t + "wet\n"), "case.cfg"))
 
 
 def test_report(bench):
-    """Whatever is wrong with a run: the report names run and file, and nothing else of it changes."""
+    """Whatever is wrong with a run: the report names run and file, and nothing else of it
+    changes."""
     sound, wrong, errors = bench.report()
     assert not wrong and not errors, (wrong, errors)
     assert "damaged (0): none" in sound and "finished (3)" in sound
@@ -116,10 +123,12 @@ def test_report(bench):
         bench.restore(name)
         assert len(wrong) == 1 and words in wrong[0], (words, wrong)
         assert f"damaged (1): {name} (" in text and "finished (2)" in text, words
-        assert sum(words in line for line in text.splitlines()) >= 2, words  # at its row and in the list
+        # at its row and in the list
+        assert sum(words in line for line in text.splitlines()) >= 2, words
         assert "Traceback" not in errors, errors
         for other in set(SHORT) - {name}:
-            rows = [[line for line in t.splitlines() if line.startswith(f"| {bench.spec(other).words} ")]
+            rows = [[line for line in t.splitlines()
+                     if line.startswith(f"| {bench.spec(other).words} ")]
                     for t in (sound, text)]
             assert rows[0] == rows[1] and "*" not in "".join(rows[0][:1]), (words, rows)
 
@@ -147,8 +156,9 @@ def test_anew(bench):
 
 
 def test_interrupted(bench):
-    """An interrupted run of another version goes on with any_version, unless the program does not take its
-    checkpoint; without, it is discarded with the reason. What is being written is left alone."""
+    """An interrupted run of another version goes on with any_version, unless the program does not
+    take its checkpoint; without, it is discarded with the reason. What is being written is left
+    alone."""
     folder, old = bench.spec(WAVE).folder, "0.0.1+old"
     interrupt = edit_summary(lambda s: s.update(exit_reason="interrupted", version=old))
     interrupt(folder)
@@ -178,7 +188,8 @@ def test_interrupted(bench):
 
 
 def test_kept(bench):
-    """What is kept stands for a damaged run, which is said; it is not kept itself, and lacks nothing."""
+    """What is kept stands for a damaged run, which is said; it is not kept itself, and lacks
+    nothing."""
     said, _ = bench.run(WAVE, "store", keep=True)
     assert f"kept {WAVE}" in said
     archive = bench.folder / "kept" / f"{WAVE}.zip"
@@ -202,7 +213,8 @@ def test_kept(bench):
 
 
 def test_unforeseen(bench):
-    """An error in the program costs a section, a row or a target; the others stand, and it is said."""
+    """An error in the program costs a section, a row or a target; the others stand, and it is
+    said."""
     whole = validation_checks.spin, validation_cases.plate, validation_report.balance
     try:
         def fails(*_):

@@ -93,7 +93,8 @@ def check_restart(folder, whole):
 
 
 def check_repacked(folder, whole):
-    """A restart with another compression keeps that of the file, and the snapshots in it readable."""
+    """A restart with another compression keeps that of the file, and the snapshots in it
+    readable."""
     for first, then in ((2, 0), (0, 2)):
         place = folder / str(first)
         run(place, "--until", "0.012", "--set", f"output.snapshot_compression={first}")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The Python package: cases, runs, simulations, forces and motions of the program, mistakes. It is that of
-the clone, or with SPHFSI_PACKAGE=installed the one that is installed. Exit 77: a package is missing."""
+"""The Python package: cases, runs, simulations, forces and motions of the program, mistakes. It is
+that of the clone, or with SPHFSI_PACKAGE=installed the one that is installed. Exit 77: a package is
+missing."""
 
 import contextlib
 import io
@@ -172,7 +173,8 @@ def test_runs():
                         "--quiet", "--threads", "1"], check=True, stderr=subprocess.DEVNULL)
         other = sphfsi.open("runs/b")
         assert other.summary["state_hash"] == run.summary["state_hash"]
-        assert np.array_equal(other.snapshot(0.02).fluid.pressure, run.snapshot(0.02).fluid.pressure)
+        assert np.array_equal(other.snapshot(0.02).fluid.pressure,
+                              run.snapshot(0.02).fluid.pressure)
         sphfsi.plot_fields([run, other], 0.01, field="velocity", out="two.png")
         sphfsi.plot_probes(["runs/a", "runs/b"], "M1_dx_m", out="two-probes.png")
         assert Path("two.png").stat().st_size > 1000 and Path("two-probes.png").stat().st_size > 1000
@@ -198,8 +200,10 @@ except sphfsi.Interrupted as stop:
 
 
 def test_interrupt():
-    path = [str(Path(sphfsi.__file__).resolve().parents[1]), *filter(None, [os.environ.get("PYTHONPATH")])]
-    child = subprocess.Popen([sys.executable, "-c", CHILD, str(TINY)], stdout=subprocess.PIPE, text=True,
+    path = [str(Path(sphfsi.__file__).resolve().parents[1]),
+            *filter(None, [os.environ.get("PYTHONPATH")])]
+    child = subprocess.Popen([sys.executable, "-c", CHILD, str(TINY)], stdout=subprocess.PIPE,
+                             text=True,
                              env={**os.environ, "PYTHONPATH": os.pathsep.join(path)})
     folder = Path("runs/stopped")
     for _ in range(600):  # until it has written some rows
@@ -233,7 +237,8 @@ def test_errors():
     assert thin and thin[0].filename == __file__, "a warning names the caller's line"
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        raises(sphfsi.CaseWarning, "only 3 particles thick", sphfsi.Case(TINY).simulation, threads=1)
+        raises(sphfsi.CaseWarning, "only 3 particles thick", sphfsi.Case(TINY).simulation,
+               threads=1)
 
 
 def test_a_folder_with_results_is_kept_and_the_arguments_are_named():
@@ -242,7 +247,8 @@ def test_a_folder_with_results_is_kept_and_the_arguments_are_named():
 
 
 def test_pictures_without_matplotlib_are_refused_with_a_sentence():
-    code = ("import sys; sys.modules['matplotlib'] = None\nimport sphfsi\nrun = sphfsi.open('runs/a')\n"
+    code = ("import sys; sys.modules['matplotlib'] = None\nimport sphfsi\nrun = "
+            "sphfsi.open('runs/a')\n"
             "for draw in run.plot_probes, run.plot_fields, run.animate:\n"
             "    try: draw()\n"
             "    except sphfsi.Error as e: assert 'pip install matplotlib' in str(e)\n"

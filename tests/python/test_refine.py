@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Order, extrapolation and band of three resolutions on values whose law is known, and the cost of another dp.
-Exit 77: a package is missing."""
+"""Order, extrapolation and band of three resolutions on values whose law is known, and the cost of
+another dp. Exit 77: a package is missing."""
 
 import math
 import random
@@ -44,11 +44,13 @@ def test_no_order_where_values_go_to_and_fro():
 
 def test_no_order_where_differences_hardly_shrink():
     c = of_law(0, 1, 0.3, 2)
-    assert c.order is None and close(c.band, 3 * (2**0.6 - 1)) and c.why == "slower than order 0.5", c
+    assert c.order is None and close(c.band,
+                                     3 * (2**0.6 - 1)) and c.why == "slower than order 0.5", c
 
 
 def test_a_band_above_the_value_is_no_result():
-    """Energies dissipated in the template dam_break: all positive, but a limit of their trend is negative."""
+    """Energies dissipated in the template dam_break: all positive, but a limit of their trend is
+    negative."""
     c = converge([14, 30.415, 65.021], 2)
     assert c.order is not None and c.extrapolated < 0 and not c.resolves(14), c
     assert not converge([1, 3, 2], 2).resolves(1)
@@ -86,7 +88,8 @@ def swing_agrees(error, p, noise):
     """A swing, a phase error of order p, and noise in each run."""
     chance, t = np.random.default_rng(1), 0.05 * np.arange(400)
     late = [error * 2**(p * k) for k in range(3)]
-    return errors_agree(*(np.sin(t * (1 - e)) + e + noise * (chance.random(400) - 0.5) for e in late))
+    return errors_agree(*(np.sin(t * (1 - e)) + e + noise * (chance.random(400) - 0.5)
+                          for e in late))
 
 
 def test_noise_has_no_order():

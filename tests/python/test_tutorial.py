@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs the blocks of python/TUTORIAL.md, one after the other, and looks at what they leave. Exit 77: a
-package is missing."""
+"""Runs the blocks of python/TUTORIAL.md, one after the other, and looks at what they leave. Exit
+77: a package is missing."""
 
 import contextlib
 import io

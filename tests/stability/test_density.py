@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Nothing switches at the density of water: a gate and a plate between waters move by at most 1e-6 of their
-largest displacement more or less when their density is 1e-6 below or above it."""
+"""Nothing switches at the density of water: a gate and a plate between waters move by at most 1e-6
+of their largest displacement more or less when their density is 1e-6 below or above it."""
 import csv
 import subprocess
 import sys
@@ -11,14 +11,17 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from scripts import PROGRAM, ROOT
 
-CASES = (("gate.cfg", "gate", ("E=0.5 MPa",)), ("thin.cfg", "plate", ("right=0.05", "end_time=0.05")))
+CASES = (("gate.cfg", "gate", ("E=0.5 MPa",)),
+         ("thin.cfg", "plate", ("right=0.05", "end_time=0.05")))
 SHARE = 1e-6  # of the largest displacement: no more than the change itself
 
 
 def motion(case, integrator, scheme, settings):
     with tempfile.TemporaryDirectory() as folder:
-        command = [str(PROGRAM), str(ROOT / "tests/stability" / case), "--quiet", "--threads", "1", "--out",
-                   f"{folder}/run", "--set", f"integrator={integrator}", "--set", f"scheme={scheme}"]
+        command = [str(PROGRAM), str(ROOT / "tests/stability" / case), "--quiet", "--threads", "1",
+                   "--out",
+                   f"{folder}/run", "--set", f"integrator={integrator}", "--set",
+                   f"scheme={scheme}"]
         for setting in settings:
             command += ["--set", setting]
         subprocess.run(command, check=True, stderr=subprocess.DEVNULL)

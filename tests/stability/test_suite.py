@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The quick form of the hard cases: each does what the table says. And runs that are kept are done anew
-where the table has changed."""
+"""The quick form of the hard cases: each does what the table says. And runs that are kept are done
+anew where the table has changed."""
 import os
 import subprocess
 import sys
@@ -26,4 +26,5 @@ def test_kept():
 
 os.environ["SPHFSI"] = str(PROGRAM)
 test_kept()
-sys.exit(subprocess.run([sys.executable, str(TOOLS / "stability.py"), "--quick"], check=False).returncode)
+sys.exit(subprocess.run([sys.executable, str(TOOLS / "stability.py"), "--quick"],
+                        check=False).returncode)

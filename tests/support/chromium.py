@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A headless Chromium, driven by its DevTools protocol through two pipes; Python's own library is enough."""
+"""A headless Chromium, driven by its DevTools protocol through two pipes; Python's own library is
+enough."""
 
 import base64
 import fcntl
@@ -41,13 +42,16 @@ class Browser:
 
         self.log = open(folder / "chromium.log", "wb")
         profile = f"--user-data-dir={folder / 'profile'}"
-        self.process = subprocess.Popen([program(), *FLAGS, profile, "about:blank"], stdin=subprocess.DEVNULL,
-                                        stdout=self.log, stderr=self.log, preexec_fn=place, pass_fds=(3, 4))
+        self.process = subprocess.Popen([program(), *FLAGS, profile, "about:blank"],
+                                        stdin=subprocess.DEVNULL,
+                                        stdout=self.log, stderr=self.log, preexec_fn=place,
+                                        pass_fds=(3, 4))
         for end in (to_read, to_write, *ends):
             os.close(end)
         self.number, self.rest, self.session, self.said = 0, b"", None, []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
-        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        self.session = self.call("Target.attachToTarget", targetId=target,
+                                 flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.call(f"{domain}.enable")
 
@@ -95,7 +99,8 @@ class Browser:
 
     def run(self, script):
         """The value of an expression in the page."""
-        answer = self.call("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True)
+        answer = self.call("Runtime.evaluate", expression=script, returnByValue=True,
+                           awaitPromise=True)
         if "exceptionDetails" in answer:
             raise Failed(f"{script}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
@@ -117,7 +122,8 @@ class Browser:
         path.write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
 
     def mouse(self, what, x, y, **more):
-        """`what`: mousePressed, mouseReleased, mouseMoved or mouseWheel, at pixels of the window."""
+        """`what`: mousePressed, mouseReleased, mouseMoved or mouseWheel, at pixels of the
+        window."""
         self.call("Input.dispatchMouseEvent", type=what, x=x, y=y,
                   **{"button": "left", "clickCount": 1, "buttons": 1, **more})
 

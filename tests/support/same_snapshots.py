@@ -1,5 +1,5 @@
-"""Whether two files of snapshots hold the same: same_snapshots.py ONE OTHER. Says nothing against them where
-Python has no h5py."""
+"""Whether two files of snapshots hold the same: same_snapshots.py ONE OTHER. Says nothing against
+them where Python has no h5py."""
 
 import sys
 

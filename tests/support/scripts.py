@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What tests in Python share: where the project and its program are, its tools as modules, and the end of a
-test for which a package is missing."""
+"""What tests in Python share: where the project and its program are, its tools as modules, and the
+end of a test for which a package is missing."""
 
 import contextlib
 import os
@@ -21,8 +21,8 @@ if os.environ.get("SPHFSI_PACKAGE") != "installed":
 
 @contextlib.contextmanager
 def packages():
-    """Around imports: a package that is not there ends the test as skipped, naming it; a module of the
-    project that is not there fails it."""
+    """Around imports: a package that is not there ends the test as skipped, naming it; a module of
+    the project that is not there fails it."""
     try:
         yield
     except ModuleNotFoundError as missing:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""A Slurm of one node, this machine, with its daemons under this user and all its files in one folder."""
+"""A Slurm of one node, this machine, with its daemons under this user and all its files in one
+folder."""
 
 import os
 import re
@@ -103,7 +104,8 @@ class Slurm:
             folder=own, host=host, user=user, ports=free_ports(2), cpus=os.cpu_count(),
             memory=int(memory[1]) // 1024))
         # Snakemake's job steps drop SLURM_CONF, so srun would look for the cluster in /etc/slurm.
-        (own / "bin" / "srun").write_text(f'#!/bin/sh\nSLURM_CONF={own}/slurm.conf exec {self.srun} "$@"\n')
+        (own / "bin" / "srun").write_text(f'#!/bin/sh\nSLURM_CONF={own}/slurm.conf exec '
+                                          f'{self.srun} "$@"\n')
         (own / "bin" / "srun").chmod(0o755)
         self.daemon("munged", "--foreground", "--force", "--num-threads=2", f"--key-file={own}/key",
                     f"--socket={own}/munge.socket", f"--pid-file={own}/munged.pid",

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The potential flow of a dam break: its first acceleration is that of the exact series, it keeps volume and
-energy, and a coarse solution has the front of the table. Exit 77: a package is missing."""
+"""The potential flow of a dam break: its first acceleration is that of the exact series, it keeps
+volume and energy, and a coarse solution has the front of the table. Exit 77: a package is
+missing."""
 
 import sys
 from pathlib import Path
@@ -14,15 +15,16 @@ with packages():
 
 
 def first_acceleration(y):
-    """Of the free side x = 1: -p_x of the harmonic p with p = 0 at the top and at the side, p_x = 0 at the
-    wall and p_y = -1 at the bed. Separation: cos(k x) sinh(k (1 - y)), k = (n - 1/2) pi."""
+    """Of the free side x = 1: -p_x of the harmonic p with p = 0 at the top and at the side, p_x = 0
+    at the wall and p_y = -1 at the bed. Separation: cos(k x) sinh(k (1 - y)), k = (n - 1/2) pi."""
     k = (np.arange(1, 4000) - 0.5) * np.pi
     falls = (np.exp(-k * y[:, None]) - np.exp(-k * (2 - y[:, None]))) / (1 + np.exp(-2 * k))
     return (2 * np.sin(k) ** 2 / k * falls).sum(axis=1)
 
 
 def test_first_acceleration():
-    """The potential grows as -y on the surface. The rounded corner and the singular foot are left out."""
+    """The potential grows as -y on the surface. The rounded corner and the singular foot are left
+    out."""
     x, y, _ = dam.column(0.004)
     u, _, _ = dam.velocity(x, y, -y)
     side = (x > 0.999) & (y < 0.9) & (y > 0.02)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Results of the validation that are kept: the report has the same numbers without the run, a result of
-another case or a damaged one is not used, and which runs there are to do. Exit 77: a package is missing."""
+"""Results of the validation that are kept: the report has the same numbers without the run, a
+result of another case or a damaged one is not used, and which runs there are to do. Exit 77: a
+package is missing."""
 
 import contextlib
 import io
@@ -49,7 +50,8 @@ class Bench:
         """The report, and what was printed beside the names of its sections."""
         with contextlib.redirect_stdout(io.StringIO()) as said:
             validation_report.write_report(self.folder, {}, self.kept(), SPHFSI.version)
-        lines = [line for line in said.getvalue().splitlines() if not line.startswith(("section", "written"))]
+        lines = [line for line in said.getvalue().splitlines()
+                 if not line.startswith(("section", "written"))]
         return (self.folder / "validation.md").read_text(), lines
 
     def rewrite(self, name, change):
@@ -57,7 +59,8 @@ class Bench:
         with zipfile.ZipFile(self.archive) as file:
             texts = {n: file.read(n).decode() for n in file.namelist()}
         texts[name] = change(texts.get(name, ""))
-        self.archive.write_bytes(validation_kept.archive({n: t for n, t in texts.items() if t is not None}))
+        self.archive.write_bytes(validation_kept.archive({n: t for n, t in texts.items()
+                                                          if t is not None}))
 
 
 def rows(text):
@@ -126,7 +129,8 @@ def test_unfinished(bench):
     assert "4711 (1)" not in text and "1 of the 1 runs are kept" in text
     said, runner = bench.run(keep=True)
     assert said == "" and not runner.failed
-    # Nor is what has not ended, or is quick, kept; nor what a changed specification no longer means.
+    # Nor is what has not ended, or is quick, kept; nor what a changed specification no longer
+    # means.
     summary.write_text(json.dumps(data))
     bench.archive.unlink()
     bench.spec.quick = True
@@ -134,9 +138,11 @@ def test_unfinished(bench):
     assert not bench.archive.exists()
     bench.spec.quick = False
     kept = bench.kept()
-    for edit, words in ((lambda: summary.write_text(json.dumps({**data, "exit_reason": "interrupted"})),
+    for edit, words in ((lambda: summary.write_text(json.dumps({**data,
+                                                                "exit_reason": "interrupted"})),
                          "has not ended"),
-                        (lambda: (summary.write_text(json.dumps(data)), bench.spec.sets.append("turns=0.04")),
+                        (lambda: (summary.write_text(json.dumps(data)),
+                                  bench.spec.sets.append("turns=0.04")),
                          "of another case")):
         edit()
         try:
@@ -161,8 +167,8 @@ def test_stale(bench):
 
 
 def test_older(bench):
-    """A key that came later, or held what is no longer known, stands at its default in what is kept: the
-    result is used. With another value it is of another case."""
+    """A key that came later, or held what is no longer known, stands at its default in what is
+    kept: the result is used. With another value it is of another case."""
     whole = bench.archive.read_bytes()
     for key, line, used in (("suction", None, True), ("suction", "suction = on", False),
                             ("sides", "interface = auto", True),
@@ -180,18 +186,21 @@ def test_older(bench):
         bench.archive.write_bytes(whole)
     # Which of them had the force held over sub-steps is said.
     for effects, held in (([], False), (["MULTIRATE"], True), (["MULTIRATE", "IMPEDANCE"], False)):
-        bench.rewrite("summary.json", lambda text: json.dumps({**json.loads(text), "effects": effects}))
+        bench.rewrite("summary.json",
+                      lambda text: json.dumps({**json.loads(text), "effects": effects}))
         text, _ = bench.report()
         assert (f"the default of earlier versions (1): {NAME}" in text) == held, effects
         bench.archive.write_bytes(whole)
 
 
 def test_damage(bench):
-    """Whatever is wrong with the archive: one line that names it, and the report goes on without."""
+    """Whatever is wrong with the archive: one line that names it, and the report goes on
+    without."""
     whole = bench.archive.read_bytes()
 
     def summary(**edit):
-        return lambda: bench.rewrite("summary.json", lambda t: json.dumps({**json.loads(t), **edit}))
+        return lambda: bench.rewrite("summary.json",
+                                     lambda t: json.dumps({**json.loads(t), **edit}))
 
     def measured(change):
         def edit(text):
@@ -206,18 +215,22 @@ def test_damage(bench):
             (lambda: bench.archive.write_bytes(b""), "not a readable archive"),
             (lambda: bench.rewrite("case.cfg", lambda t: None), "no case.cfg in it"),
             (lambda: bench.rewrite("../away", lambda t: "x"), "../away does not belong there"),
-            (lambda: bench.rewrite("summary.json", lambda t: t[:99]), "summary.json: not valid JSON"),
+            (lambda: bench.rewrite("summary.json", lambda t: t[:99]),
+             "summary.json: not valid JSON"),
             (summary(steps="many"), "summary.json: steps is 'many'; it should be a whole number"),
             (summary(wall_seconds=None), "wall_seconds is None; it should be a number"),
             (lambda: bench.rewrite("summary.json", lambda t: t.replace('"steps"', '"pace"')),
              "steps is missing"),
-            (lambda: bench.rewrite("ledger.csv", lambda t: t[:len(t) // 2]), "ledger.csv: ends at t = "),
+            (lambda: bench.rewrite("ledger.csv", lambda t: t[:len(t) // 2]),
+             "ledger.csv: ends at t = "),
             (measured(lambda d: {**d, "turning": {"change": float("nan")}}), "NaN is not a number"),
             (summary(exit_reason="running"), "exit_reason is running"),
             (lambda: bench.rewrite("ledger.csv", lambda t: t + "wet\n"), "ledger.csv, line"),
-            (lambda: bench.rewrite("measured.json", lambda t: "[" + t), "measured.json: not valid JSON"),
+            (lambda: bench.rewrite("measured.json", lambda t: "[" + t), "measured.json: not valid "
+                                                                        "JSON"),
             (measured(lambda d: []), "measured.json: not a JSON object"),
-            (measured(lambda d: {k: d[k] for k in d if k != "turning"}), "measured.json: no turning"),
+            (measured(lambda d: {k: d[k] for k in d if k != "turning"}),
+             "measured.json: no turning"),
             (measured(lambda d: {**d, "turning": {}}), "turning needs change"),
             (measured(lambda d: {**d, "turning": {"change": "little"}}), "neither a number nor")):
         bench.archive.write_bytes(whole)
@@ -233,7 +246,8 @@ def test_damage(bench):
 
 
 def test_picture(bench):
-    """Fields are drawn of snapshots only; without them the picture that there is stays, with its origin."""
+    """Fields are drawn of snapshots only; without them the picture that there is stays, with its
+    origin."""
     def draw(image):
         report = validation_report.Report(bench.folder, {}, bench.kept())
         return " ".join(report.draw("plot_fields", [NAME], image, "Fields", "--time", 0))
@@ -250,8 +264,10 @@ def test_picture(bench):
 
 
 def test_thinning():
-    """Too large an archive loses rows of a ledger, or columns of probes, that the report does not read."""
-    table = "time_s,M1_dx_m,M1_dy_m\n" + "".join(f"{k},{k ** 0.5},{k ** 0.3}\n" for k in range(4000))
+    """Too large an archive loses rows of a ledger, or columns of probes, that the report does not
+    read."""
+    table = "time_s,M1_dx_m,M1_dy_m\n" + "".join(f"{k},{k ** 0.5},{k ** 0.3}\n"
+                                                 for k in range(4000))
 
     def packed(name, ledger):
         data = validation_kept.pack(name, {"probes.csv": table, "ledger.csv": ledger})
@@ -291,8 +307,10 @@ def test_choice():
             assert only in str(problem), problem
     quick = names("", True)
     assert quick.index("gate-1mm") < quick.index("sluice-5mm-leapfrog") < quick.index("bar-5")
-    for case in ("cantilever", "plate", "gate", "baffle", "sluice"):  # both integrators of the paper
-        texts = [" ".join(validation_runs.BY_NAME[name].sets) for name in quick if name.startswith(case)]
+    # both integrators of the paper
+    for case in ("cantilever", "plate", "gate", "baffle", "sluice"):
+        texts = [" ".join(validation_runs.BY_NAME[name].sets) for name in quick
+                 if name.startswith(case)]
         assert any("symplectic" in text for text in texts), case
         plain = "integrator" if case == "cantilever" else "="  # its file says Verlet
         assert any("verlet" in text or plain not in text for text in texts), case
@@ -310,7 +328,8 @@ def test_what_is_meant():
 def main():
     with tempfile.TemporaryDirectory() as folder:
         bench = Bench(Path(folder))
-        for test in (test_same_numbers, test_version, test_unfinished, test_stale, test_older, test_damage,
+        for test in (test_same_numbers, test_version, test_unfinished, test_stale, test_older,
+                     test_damage,
                      test_picture):
             test(bench)
     test_thinning()

@@ -26,11 +26,13 @@ def test_source_of_the_fluid():
         def at(dx=0.0, dy=0.0, dt=0.0):
             p = SimpleNamespace(x=x + dx, y=y + dy)
             return np.array(flow.velocity(p, t + dt)), flow.pressure(p)
-        (v, P), (left, right, down, up) = at(), [at(dx, dy) for dx, dy in ((-e, 0), (e, 0), (0, -e), (0, e))]
+        (v, P), (left, right, down, up) = at(), [at(dx, dy) for dx,
+                                                 dy in ((-e, 0), (e, 0), (0, -e), (0, e))]
         rate = (at(dt=e)[0] - at(dt=-e)[0]) / (2 * e)
         slope_x, slope_y = (right[0] - left[0]) / (2 * e), (up[0] - down[0]) / (2 * e)
         laplacian = (left[0] + right[0] + up[0] + down[0] - 4 * v) / e**2
-        density = manufactured.DENSITY * (1 + 7 * P / (manufactured.DENSITY * manufactured.SOUND**2))**(1 / 7)
+        density = manufactured.DENSITY * (1 + 7 * P /
+                                          (manufactured.DENSITY * manufactured.SOUND**2))**(1 / 7)
         pressure = np.array([right[1] - left[1], up[1] - down[1]]) / (2 * e * density)
         viscosity = manufactured.VISCOSITY * manufactured.DENSITY / density
         source = rate + v[0] * slope_x + v[1] * slope_y + pressure - viscosity * laplacian

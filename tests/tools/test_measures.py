@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the validation measures, against lattices, curves and runs of known answer. Exit 77: a package is
-missing."""
+"""What the validation measures, against lattices, curves and runs of known answer. Exit 77: a
+package is missing."""
 
 import sys
 import types
@@ -34,8 +34,8 @@ def test_pairs():
 
 
 def test_surrounded():
-    """Deep in a lattice, on a site of it and off it: counted; at its face, in a corner of two walls, in a
-    gap between two rows: not."""
+    """Deep in a lattice, on a site of it and off it: counted; at its face, in a corner of two
+    walls, in a gap between two rows: not."""
     def count(points, others):
         return metrics.surrounded(np.array(points, dtype=float), others, 1.2, 2 * np.pi / 3)
     body = lattice(8, 6)
@@ -76,7 +76,8 @@ def test_pressed_in():
 
 
 def test_frequencies():
-    """A slow swing of 1 Hz under 6 Hz; and the first mode of the cantilever of Sec. 3.1 as a thin plate."""
+    """A slow swing of 1 Hz under 6 Hz; and the first mode of the cantilever of Sec. 3.1 as a thin
+    plate."""
     time = np.arange(0, 2, 1e-3)
     curve = 5 + 3 * np.sin(2 * np.pi * time) + np.sin(2 * np.pi * 6 * time)
     fast_time, fast = metrics.about_running_mean(time, curve, 1 / 6)
@@ -110,7 +111,8 @@ def test_plate_targets():
         "mean": run, "std": -0.019 * run, "half": -0.05 * run}
     try:
         for fine, verdict in ((1.01, ("+1.00 %", True)), (1.03, ("+3.00 %", False))):
-            made = Made(plate=exact * 1.05, plate_fine_leapfrog=fine * exact, plate_leapfrog=0.98 * exact)
+            made = Made(plate=exact * 1.05, plate_fine_leapfrog=fine * exact,
+                        plate_leapfrog=0.98 * exact)
             validation_cases.plate_targets(made, [("plate", "symplectic")])
             assert made.found["deflection closer to 2-D elasticity at half the spacing"] == verdict
         words = "fluctuation after 0.5 s below 2 % ({}), symplectic"
@@ -127,7 +129,8 @@ def test_apart():
     time = np.linspace(0, 1, 101)
     run = {"time_s": time, "M1_dx_m": 2 * time}
     other = {"time_s": time[:51:2], "M1_dx_m": 2 * time[:51:2] + 0.1}
-    made = [types.SimpleNamespace(folder=Path("/nowhere"), table=lambda name, t=t: t) for t in (run, other)]
+    made = [types.SimpleNamespace(folder=Path("/nowhere"), table=lambda name, t=t: t)
+            for t in (run, other)]
     off, top = validation_rates.apart(*made, "M1_dx_m")
     assert abs(off - 0.1) < 1e-12 and abs(top - 1.0) < 1e-12
 
@@ -137,7 +140,8 @@ def test_gained():
     ledger = {"time": np.array([0, 1, 2, 3.0]), "dissipated": np.array([0, 2, 1.5, -4])}
     before, validation_rates.read_ledger = validation_rates.read_ledger, lambda run: ledger
     try:
-        assert validation_rates.gained(None, 2.0) == 0.5 and validation_rates.gained(None, 3.0) == 6.0
+        assert validation_rates.gained(None, 2.0) == 0.5 and validation_rates.gained(None,
+                                                                                     3.0) == 6.0
     finally:
         validation_rates.read_ledger = before
 
@@ -149,14 +153,16 @@ def test_performance_targets():
     found = {(row[0], row[2]): row[3:] for row in rows}
     assert found["gate, dp = 1 mm, leapfrog", "at most 12 s"] == ("11.9", "met")
     assert found["cantilever, ts/dp = 20", "at most 10 s"] == ("10.1", "**missed**")
-    assert found["cantilever, ts/dp = 20", "at least 30 million particle steps a second"] == ("31", "met")
+    assert found["cantilever, ts/dp = 20", "at least 30 million particle steps a second"] == ("31",
+                                                                                              "met")
     assert found["hydrostatic plate, leapfrog", "at most 150 s"] == ("no result", "not run")
 
     def value(what, variant, particles, threads, part):
         if part == "all":
             return 60 + particles / 1e4
         return 240 if part == "memory" else float("nan")
-    rows = performance_targets.bench_rows(value, [10000, 100000], {"gate": {"sort": 1, "output": 4, "x": 95}},
+    rows = performance_targets.bench_rows(value, [10000, 100000],
+                                          {"gate": {"sort": 1, "output": 4, "x": 95}},
                                           {"steps alone": 1.9})
     assert [row[4] for row in rows] == ["met", "met", "met", "**missed**", "met"]
     assert rows[1][3] == "1.15"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Pictures made small: lines keep the colours of the project, colour bars stay smooth, and a picture of few
-colours loses nothing. Exit 77: a package is missing."""
+"""Pictures made small: lines keep the colours of the project, colour bars stay smooth, and a
+picture of few colours loses nothing. Exit 77: a package is missing."""
 
 import sys
 import tempfile
@@ -26,8 +26,8 @@ def rgb(colour):
 
 
 def test_lines(folder):
-    """As the figures of the validation are drawn: thin lines beside a picture of many colours. Each line
-    has its very colour, and no pixel of it has turned into another's."""
+    """As the figures of the validation are drawn: thin lines beside a picture of many colours. Each
+    line has its very colour, and no pixel of it has turned into another's."""
     path = folder / "lines.png"
     time = np.linspace(0, 1, 400)
     figure, (left, right) = plt.subplots(1, 2, figsize=(WIDTH, 3), layout="constrained")
@@ -52,7 +52,8 @@ def test_lines(folder):
 
 
 def test_smooth(folder):
-    """Colour bars, one with a pale middle: no pixel is far off, and neighbours that differed still do."""
+    """Colour bars, one with a pale middle: no pixel is far off, and neighbours that differed still
+    do."""
     path = folder / "bar.png"
     bar = np.concatenate([plt.get_cmap(name)(np.linspace(0, 1, 128), bytes=True)[:, :3]
                           for name in ("viridis", "RdBu")])

@@ -33,7 +33,8 @@ def check_summary(top):
     assert s["particles"]["wall"] > 0 and s["fluid_left_domain"] == 0
     assert s["steps"] >= 200 and s["solid_substeps"] >= s["steps"]
     assert s["wall_seconds"] > 0 and s["particle_steps_per_second"] > 0
-    assert set(s["phase_seconds"]) == {"sort", "packed", "wall", "fluid", "solid", "contact", "update",
+    assert set(s["phase_seconds"]) == {"sort", "packed", "wall", "fluid", "solid", "contact",
+                                       "update",
                                        "output"}
     assert {"FLUID", "GRAVITY", "WALL", "SOLID", "COUPLING"} <= set(s["effects"])
     step = s["time_step"]
@@ -68,7 +69,8 @@ def check_explain(top):
     for words in ("100 particles", "enabled effects", "COUPLING", "disabled effects",
                   "MOTION", "bytes per particle", "compiled loops of the fluid",
                   "<- limits the step", "Eq. 28b",
-                  "ns per fluid particle and evaluation", "solid sub-step", "on this machine when idle",
+                  "ns per fluid particle and evaluation", "solid sub-step",
+                  "on this machine when idle",
                   "MB"):
         assert words in text, f"--explain does not say {words!r}:\n{text}"
     assert not (top / "none").exists()

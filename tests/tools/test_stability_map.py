@@ -11,7 +11,8 @@ import stability_map as m
 
 
 def test_statics():
-    # The plate of tests/stability/oneside.cfg has D = 0.458 N m and bends by 8.9 mm; a tenth of it is 12 mm.
+    # The plate of tests/stability/oneside.cfg has D = 0.458 N m and bends by 8.9 mm; a tenth of it
+    # is 12 mm.
     young = 0.458 * 12 * (1 - 0.3**2) / 0.015**3
     assert m.statics(1, 3, 1, young) == ""
     assert m.statics(1, 3, 1, young * 8.9 / 12.2) == "bends"
@@ -29,7 +30,8 @@ def row(result="finished", gain=0.0, in_run=0.0):
 
 
 def test_report():
-    rows = [row(), row(gain=0.02, in_run=0.001), row(gain=0.2, in_run=0.18), row("stopped"), row("bends")]
+    rows = [row(), row(gain=0.02, in_run=0.001), row(gain=0.2, in_run=0.18), row("stopped"),
+            row("bends")]
     assert [m.judge(r) for r in rows] == ["passes", "passes", "gains", "stopped", "left out"]
     text = m.report(rows)
     assert "Of 4 plates **1 were stopped, and 1 gained more" in text, text

@@ -98,7 +98,8 @@ def prepare(folder):
 
 def study(folder, environment, *more):
     done = subprocess.run(
-        [sys.executable, ROOT / "tools" / "report" / "accuracy.py", "--study", folder / "study.toml",
+        [sys.executable, ROOT / "tools" / "report" / "accuracy.py", "--study",
+         folder / "study.toml",
          "--runs", folder / "runs", "--out", folder, "--data", folder / "results.json", *more],
         capture_output=True, text=True, check=False, env=environment)
     return done.returncode, done.stdout + done.stderr
@@ -120,12 +121,15 @@ def whole_study(folder):
                   "plate/0/killed=it: failed: exit status -9"):
         check(words in text, f"it does not say '{words}': {text}")
     points = points_in(folder)
-    check(len(points) == 8 and not any("fluid" in name for name in points), f"points: {list(points)}")
-    for name, outcome in (("wrong=key", "refused"), ("wrong=unstable", "unstable"), ("killed=it", "failed"),
+    check(len(points) == 8 and not any("fluid" in name for name in points),
+          f"points: {list(points)}")
+    for name, outcome in (("wrong=key", "refused"), ("wrong=unstable", "unstable"),
+                          ("killed=it", "failed"),
                           ("kappa=0", "finished")):
         check(points[f"plate/0/{name}"]["outcome"] == outcome, f"{name} is not shown as {outcome}")
     base = points["plate/0/base"]
-    check(len(base["timing"]) == 2 and base["errors"]["end"] > 0 and base["evaluations"] > 0, str(base))
+    check(len(base["timing"]) == 2 and base["errors"]["end"] > 0 and base["evaluations"] > 0,
+          str(base))
     check(base["timing"][0]["beside"] == 1, "runs side by side are not marked")
     check(points["plate/0/kappa=same"]["timing"] == base["timing"], "an equal case was run twice")
     check(points["plate/0/kappa=0"]["values"] != base["values"], "the knob changed nothing")
@@ -152,7 +156,8 @@ def resumed(folder, environment, points):
     for path in (folder / "runs").glob("*/result.json"):
         path.unlink()
     status, text = study(folder, environment, "--cached")
-    check(status == 0 and points_in(folder)["plate/2/base"]["errors"] == points["plate/2/base"]["errors"],
+    check(status == 0 and
+          points_in(folder)["plate/2/base"]["errors"] == points["plate/2/base"]["errors"],
           f"without runs the collected results are lost: {text}")
     status, text = study(folder, environment, "--only", "plate/9/base")
     check(status == 1 and "no point plate/9/base" in text, text)
@@ -175,14 +180,16 @@ def older_program(folder, environment):
 
 
 def presets():
-    """Points that stand for a preset are the case that the preset makes; `standard` is the default."""
+    """Points that stand for a preset are the case that the preset makes; `standard` is the
+    default."""
     with open(ROOT / "tools" / "report" / "accuracy.toml", "rb") as file:
         definition = tomllib.load(file)
     sets = {p["name"]: p["set"] for p in points_of(definition)}
 
     def effective(case, arguments):
         words = [word for text in arguments for word in ("--set", text)]
-        text = subprocess.run([PROGRAM, "--effective", ROOT / case, *words], capture_output=True, text=True,
+        text = subprocess.run([PROGRAM, "--effective", ROOT / case, *words], capture_output=True,
+                              text=True,
                               check=True).stdout
         return [line for line in text.splitlines() if not line.startswith(("accuracy", "#"))]
 
@@ -221,21 +228,26 @@ def errors_by_hand(folder):
     value, error = off(run, kind="damped_period", reference=0.48)
     check(abs(value - 0.5) < 1e-3 and abs(error - 0.0417) < 3e-3, f"damped period {value}, {error}")
     value, error = off(run, kind="damped_loss", reference=0.5)
-    check(abs(value - (1 - np.exp(-0.1))) < 1e-3 and error == value, f"damped loss {value}, {error}")
-    write_probes(folder / "energy", time, np.exp(-0.4 * time) * (1 + np.cos(4 * np.pi * time / 0.5)))
+    check(abs(value - (1 - np.exp(-0.1))) < 1e-3 and error == value,
+          f"damped loss {value}, {error}")
+    write_probes(folder / "energy", time,
+                 np.exp(-0.4 * time) * (1 + np.cos(4 * np.pi * time / 0.5)))
     value, error = off(folder / "energy", kind="damped_period", reference=0.48, energy=True)
     check(abs(value - 0.5) < 1e-3, f"damped period of an energy {value}")
     value, error = off(folder / "energy", kind="damped_loss", reference=0.5, energy=True)
     check(abs(value - (1 - np.exp(-0.1))) < 1e-3, f"damped loss of an energy {value}")
-    write_probes(folder / "noisy", time, 5 * time + 0.3 * np.sqrt(2) * np.sin(2 * np.pi * time / 0.02))
+    write_probes(folder / "noisy", time,
+                 5 * time + 0.3 * np.sqrt(2) * np.sin(2 * np.pi * time / 0.02))
     value, error = off(folder / "noisy", kind="noise_about_mean", window=0.02, scale=3)
-    check(abs(value - 0.3) < 0.02 and abs(error - 0.1) < 0.007, f"noise about a mean {value}, {error}")
+    check(abs(value - 0.3) < 0.02 and abs(error - 0.1) < 0.007, f"noise about a mean {value}, "
+                                                                f"{error}")
     check(off(other, kind="settled", reference=4.0, **{"from": 1})[1] == 0.5, "settled")
     check(off(other, kind="final", reference=1.0) == (2.0, 1.0), "final")
     check(abs(off(other, kind="against_finest")[1]) == 0, "a run is off itself")
     value, error = off(run, kind="phase", reference=0.5)
     check(error < 2e-3, f"phase {error}")
-    for bad in (dict(kind="period", reference=1.0, **{"from": 9}), dict(kind="period", reference=1.0)):
+    for bad in (dict(kind="period", reference=1.0, **{"from": 9}),
+                dict(kind="period", reference=1.0)):
         try:
             off(other, **bad)
             sys.exit(f"{bad} was answered for a curve that has no period")

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Sweeps: grids and samples, what is refused, what a run that was stopped leaves, the table and the plot; by
-snakemake where it is installed, with a kill in the middle. Exit 77: a package is missing."""
+"""Sweeps: grids and samples, what is refused, what a run that was stopped leaves, the table and the
+plot; by snakemake where it is installed, with a kill in the middle. Exit 77: a package is
+missing."""
 
 import csv
 import json
@@ -24,7 +25,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 
 def tool(*options, status=0):
-    said = subprocess.run([sys.executable, TOOLS / "sweep.py", *map(str, options), "--program", str(PROGRAM)],
+    said = subprocess.run([sys.executable, TOOLS / "sweep.py", *map(str, options), "--program",
+                           str(PROGRAM)],
                           capture_output=True, text=True)
     assert said.returncode == status, said.stdout + said.stderr
     return said.stdout + said.stderr
@@ -40,7 +42,8 @@ def refused(words, function, *args):
 
 
 def check_values():
-    runs = sweep.grid([sweep.read_vary("dp=2mm,1mm"), sweep.read_vary("gate.young=8MPa:14MPa:2MPa")])
+    runs = sweep.grid([sweep.read_vary("dp=2mm,1mm"),
+                       sweep.read_vary("gate.young=8MPa:14MPa:2MPa")])
     assert len(runs) == 8 and runs[0] == {"dp": "2mm", "gate.young": "8 MPa"}
     assert runs[-1] == {"dp": "1mm", "gate.young": "14 MPa"}
     assert len(sweep.grid([sweep.read_vary("a=0:0.3:0.1")])) == 4  # round-off loses no end
@@ -77,10 +80,12 @@ def check_runs(folder):
     said = tool(TINY, "--vary", "gate.yung=1e6", "--out", folder / "bad", status=1)
     assert "unknown key `yung`" in said and not (folder / "bad").exists(), said
     # A run that was stopped goes on from its checkpoint; one that left none begins anew.
-    subprocess.run([*sweep.command(plan, 1, out / "runs" / "1", "--quiet"), "--until", "0.01"], check=True,
+    subprocess.run([*sweep.command(plan, 1, out / "runs" / "1", "--quiet"), "--until", "0.01"],
+                   check=True,
                    stderr=subprocess.DEVNULL)
     summary = out / "runs" / "1" / "summary.json"
-    summary.write_text(summary.read_text().replace('"finished"', '"running"'))  # as a kill leaves it
+    # as a kill leaves it
+    summary.write_text(summary.read_text().replace('"finished"', '"running"'))
     (out / "runs" / "2").mkdir()
     (out / "runs" / "2" / "probes.csv").write_text("time_s\n")
     for k in range(4):
@@ -99,12 +104,16 @@ def check_table(out, count):
 
 
 def check_kill(folder):
-    """Killed with all its jobs in the middle, the sweep goes on; what was done is not done again."""
+    """Killed with all its jobs in the middle, the sweep goes on; what was done is not done
+    again."""
     out = folder / "killed"
-    options = [TINY, "--set", "end_time=0.3", "--vary", "gate.young=1MPa:4MPa:1MPa", "--out", out, "--go", 1,
+    options = [TINY, "--set", "end_time=0.3", "--vary", "gate.young=1MPa:4MPa:1MPa", "--out", out,
+               "--go", 1,
                "--metric", "M1_dx_m:largest"]
-    whole = subprocess.Popen([sys.executable, TOOLS / "sweep.py", *map(str, options), "--program", PROGRAM],
-                             start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    whole = subprocess.Popen([sys.executable, TOOLS / "sweep.py", *map(str, options), "--program",
+                              PROGRAM],
+                             start_new_session=True, stdout=subprocess.DEVNULL,
+                             stderr=subprocess.DEVNULL)
     for _ in range(1200):
         time.sleep(0.05)
         done = list((out / "runs").glob("*.done"))

@@ -148,7 +148,8 @@ def test_m1(tmp, good, halted):
     peak = next(row for row in rows if (row["run"], row["reference"]) == ("good", "other"))
     assert abs(float(peak["peak"]) - 0.046) < 1e-4, peak
     assert abs(float(peak["peak_time_s"]) - 0.15) < 5e-3, peak
-    draws(good / "m1.png", "plot_m1", good, "--column", "M1_dy_m", "--reference", good / "lab_y.csv")
+    draws(good / "m1.png", "plot_m1", good, "--column", "M1_dy_m", "--reference",
+          good / "lab_y.csv")
     refuses("no such folder", "plot_m1", tmp / "absent")
     refuses("no column", "plot_m1", good, "--column", "M2_dx_m")
     bad = tmp / "bad.csv"
@@ -175,10 +176,13 @@ def test_probes(tmp):
     runs = make_runs([run])
     tables = [r.curves() for r in runs]
     columns = draw_probes.all_columns(runs, tables, [])
-    assert draw_probes.panels_of(["load_fx_N_per_m", *columns])[0] == ["M1_dx_m", "M1_dy_m"], columns
-    figure, units = draw_probes.draw_panels(columns, draw_probes.curves_of(runs, tables, columns), [])
+    assert draw_probes.panels_of(["load_fx_N_per_m", *columns])[0] == ["M1_dx_m",
+                                                                       "M1_dy_m"], columns
+    figure, units = draw_probes.draw_panels(columns, draw_probes.curves_of(runs, tables, columns),
+                                            [])
     labels = [axes.get_ylabel() for axes in figure.axes]
-    assert labels == ["displacement (mm)", "P pressure (Pa)", "wave front (m)", "force (N/m)"], labels
+    assert labels == ["displacement (mm)", "P pressure (Pa)", "wave front (m)",
+                      "force (N/m)"], labels
     assert units["M1_dy_m"] == (1e3, "mm") and units["load_fx_N_per_m"] == (1, "N/m"), units
     many = [f"p{k}_vx_m_per_s" for k in range(8)] + ["p_angle_rad"]
     turning = np.where(t < 0.2, 3.1, -3.1)
@@ -188,7 +192,8 @@ def test_probes(tmp):
     speed, angle = (axes.get_lines()[0].get_ydata() for axes in panels.axes)
     assert np.isnan(angle).sum() == 1 and not np.isnan(speed).any()
     mixed = {"a_level_m": "level", "b_front_m": "front", "c_cx_m": "position", "c_cy_m": "position",
-             "s_sxx_Pa": "stress", "s_sxy_Pa": "stress", "s_mises_Pa": "stress", "P_p_Pa": "pressure",
+             "s_sxx_Pa": "stress", "s_sxy_Pa": "stress", "s_mises_Pa": "stress",
+             "P_p_Pa": "pressure",
              "post_elastic_J_per_m": "energy", "e_Exx_SI": "strain", "e_Eyy_SI": "strain",
              "p_angle_rad": "rotation"}
     for column, kind in mixed.items():

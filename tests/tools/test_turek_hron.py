@@ -6,7 +6,8 @@ import os
 import sys
 from pathlib import Path
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # small matrices: threads only wait for each other
+# small matrices: threads only wait for each other
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
@@ -41,8 +42,8 @@ def test_a_swing_that_repeats_itself():
 
 
 def test_noise_hides_neither_the_size_nor_its_error():
-    """Noise that is half as large as the swing: 40 trials with seeds of their own. The amplitude has no
-    bias, and its standard error is the scatter of the trials."""
+    """Noise that is half as large as the swing: 40 trials with seeds of their own. The amplitude
+    has no bias, and its standard error is the scatter of the trials."""
     trials = []
     for seed in range(40):
         noise = np.random.default_rng(seed)
@@ -52,7 +53,8 @@ def test_noise_hides_neither_the_size_nor_its_error():
     assert len(trials) >= 36, len(trials)  # one in twenty scatters beyond twice its error
     sizes, errors, frequencies = np.array(trials).T
     top = max(swing(np.linspace(8, 10, 4001))) - 1.3
-    assert abs(np.mean(sizes) - top) < 3 * np.std(sizes) / np.sqrt(len(sizes)) + 0.01 * top, np.mean(sizes)
+    assert abs(np.mean(sizes) -
+               top) < 3 * np.std(sizes) / np.sqrt(len(sizes)) + 0.01 * top, np.mean(sizes)
     assert 0.6 < np.sqrt(np.mean(errors ** 2)) / np.std(sizes) < 1.7, (errors, np.std(sizes))
     assert np.max(abs(frequencies - 1.9)) < 0.01
 
@@ -115,7 +117,8 @@ def test_noise_about_a_mean_rests():
 
 
 def test_noise_hides_no_change():
-    """Neither a drift of five standard errors, nor a slow swing or its end, nor noise that dies away."""
+    """Neither a drift of five standard errors, nor a slow swing or its end, nor noise that dies
+    away."""
     for seed in range(10):
         noise = np.random.default_rng(seed)
         for change in (lambda t: t / 2,
@@ -144,11 +147,13 @@ def test_a_target_is_met_missed_or_not_shown():
 
 
 def test_other_constants_are_judged_apart():
-    """The finest run with the case's constants, and the finest with others; a short start is no other."""
+    """The finest run with the case's constants, and the finest with others; a short start is no
+    other."""
     uy = {"state": "periodic", "mean": 1.3, "amplitude": 81.6, "frequency": 1.93, "periods": 6}
     kept = [{"case": "fsi2", "across": across, "settings": settings, "cpu_seconds": 36, "time": 1,
              "series": {"uy": {**uy, "amplitude": size}}}
-            for across, settings, size in ((10, [], 90), (20, ["ramp=0.3 s", "kick=1.2 m/s"], 85.68),
+            for across, settings,
+            size in ((10, [], 90), (20, ["ramp=0.3 s", "kick=1.2 m/s"], 85.68),
                                            (20, ["numerics.sides=both"], 82.416))]
     rows = [line for line in turek_hron.headline(kept) if "| uy amplitude |" in line]
     assert len(rows) == 2, rows

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The validation: its measures against curves of known answer, what it repeats and what it does not, and
-what it says of runs and references that are missing or broken. Exit 77: a package is missing."""
+"""The validation: its measures against curves of known answer, what it repeats and what it does
+not, and what it says of runs and references that are missing or broken. Exit 77: a package is
+missing."""
 
 import json
 import math
@@ -40,7 +41,8 @@ def near(found, wanted, tolerance):
 
 
 def test_oscillation():
-    """Period, drift and loss of a damped sine that is 1 % slow; the sampling bounds what is found."""
+    """Period, drift and loss of a damped sine that is 1 % slow; the sampling bounds what is
+    found."""
     time = np.linspace(0, 1, 2001)
     value = 0.02 * np.exp(-0.02 * time) * np.sin(2 * np.pi * time / 0.2525)
     found = metrics.oscillation(time, value, 0.25)
@@ -73,7 +75,8 @@ def relaxed_elastica(load, n=200):
         rest[0], slope[0, 0] = angle[0], 1
         for k in range(1, n + 1):
             right = angle[k + 1] if k < n else angle[n - 1]  # theta'(1) = 0
-            rest[k] = angle[k - 1] - 2 * angle[k] + right + step**2 * load * (1 - s[k]) * np.cos(angle[k])
+            rest[k] = angle[k - 1] - 2 * angle[k] + right + step**2 * load * (1 -
+                                                                              s[k]) * np.cos(angle[k])
             slope[k, k] = -2 - step**2 * load * (1 - s[k]) * np.sin(angle[k])
             slope[k, k - 1] += 1
             slope[k, min(k + 1, 2 * n - k - 1)] += 1
@@ -105,15 +108,17 @@ def test_distances():
 
 
 def test_tables(folder):
-    """What is no number is refused with its place, in references and probes; references go on in time, as
-    all shipped ones do, unless their points are to be sorted. What a guard stopped may end with nan."""
+    """What is no number is refused with its place, in references and probes; references go on in
+    time, as all shipped ones do, unless their points are to be sorted. What a guard stopped may end
+    with nan."""
     path, summary = folder / "probes.csv", folder / "summary.json"
 
     def curve(**options):
         return Reference("", path, "lab", "lab", **options)
     for value in ("nan", "inf", "-inf"):
         path.write_text(f"# made up\ntime_s,value\n0,1\n0.1,{value}\n")
-        for function, *arguments in ((read_table, path), (curve,), (Run(folder).table, "probes.csv")):
+        for function, *arguments in ((read_table, path), (curve,),
+                                     (Run(folder).table, "probes.csv")):
             refuses(["probes.csv, line 4", f"value is {value}", "finite"], function, *arguments)
     summary.write_text('{"exit_reason": "guard"}')
     assert np.isinf(Run(folder).table("probes.csv")["value"][-1])
@@ -133,7 +138,8 @@ def test_build(folder):
     program.parent.mkdir(parents=True)
     program.write_text("#!/bin/sh\necho linear field: largest error of the gradient 2e-15\n")
     program.chmod(0o755)
-    ask = ("import validation_checks as v, validation_report as r; t = r.Report('', {}, None); v.patch(t); "
+    ask = ("import validation_checks as v, validation_report as r; t = r.Report('', {}, None); "
+           "v.patch(t); "
            "print(t.targets[0][2])")
     done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True,
                           cwd=ROOT / "tools" / "report", env={**os.environ, "BUILD": str(folder)})
@@ -145,7 +151,8 @@ def test_build(folder):
 
 
 def test_runner(folder):
-    """Finished runs of the same case stay; another setting runs anew; an interrupted one goes on."""
+    """Finished runs of the same case stay; another setting runs anew; an interrupted one goes
+    on."""
     spec = validation_runs.Spec("tiny", "still_water", ["dp=2 cm", "wall=8 cm", "end_time=2 ms"])
     spec.folder = folder / "tiny"
     program = validation_runs.Program(PROGRAM)
@@ -187,8 +194,8 @@ def report_text(folder, failed):
 
 
 def test_report(folder):
-    """Without runs every section stands and says so; a broken reference ends its own section only; a
-    run that a guard stopped is shown as failed; no figure is drawn without data."""
+    """Without runs every section stands and says so; a broken reference ends its own section only;
+    a run that a guard stopped is shown as failed; no figure is drawn without data."""
     for spec in validation_runs.SPECS:
         spec.folder = folder / "runs" / spec.name
     halted = validation_runs.BY_NAME["plate"].folder

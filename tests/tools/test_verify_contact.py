@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The references of tools/report/verify_contact_reference.py against what is known, and figures of made-up runs.
-Exit 77: a package is missing."""
+"""The references of tools/report/verify_contact_reference.py against what is known, and figures of
+made-up runs. Exit 77: a package is missing."""
 
 import math
 import sys
@@ -18,8 +18,8 @@ with packages():
 
 
 def test_a_soft_floor_is_not_reached():
-    """A short cantilever under its weight, small slopes: w L^4/(8 E' I) and the part of shear, w L^2/(2 G A
-    5/6)."""
+    """A short cantilever under its weight, small slopes: w L^4/(8 E' I) and the part of shear, w
+    L^2/(2 G A 5/6)."""
     L, t, E = 0.2, 0.02, 1e9
     plane = E / (1 - 0.3 ** 2)
     wanted = 20 * (L ** 4 / (8 * plane * t ** 3 / 12) + L ** 2 / (2 * E / 2.6 * t * 5 / 6))
@@ -28,23 +28,25 @@ def test_a_soft_floor_is_not_reached():
 
 
 def test_a_long_beam_lies_down():
-    """A thin one with small slopes lies down (72 E' I h/w)^(1/4) from its clamp; half-way 5/16 of the height
-    is left."""
+    """A thin one with small slopes lies down (72 E' I h/w)^(1/4) from its clamp; half-way 5/16 of
+    the height is left."""
     t, E, h, w = 2e-3, 1e9, 1e-3, 20
     free = (72 * E / (1 - 0.3 ** 2) * t ** 3 / 12 * h / w) ** 0.25
     x, y = reference.lying_beam(1.5 * free, t, E, 0.3, w, h, n=60)
-    assert abs(np.interp(free / 2, x, y) / h + 11 / 16) < 0.01, (free, np.interp(free / 2, x, y) / h)
+    assert abs(np.interp(free / 2, x, y) / h + 11 / 16) < 0.01, (free,
+                                                                 np.interp(free / 2, x, y) / h)
     assert y[x > free].max() < -0.998 * h
 
 
 def test_a_disc_of_elements():
-    """Linear fields: the force of a small uniform strain is the stress at the circle, and rotation costs
-    none."""
+    """Linear fields: the force of a small uniform strain is the stress at the circle, and rotation
+    costs none."""
     disc = reference.Disc(6, 1.0, 1000, 1e6, 0.3)
     area = disc.mass.sum() / 1000
     assert abs(area / math.pi - 1) < 0.02, area
     angle = 0.3
-    turned = disc.nodes @ np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    turned = disc.nodes @ np.array([[math.cos(angle), math.sin(angle)],
+                                    [-math.sin(angle), math.cos(angle)]])
     assert abs(disc.force(turned - disc.nodes)).max() < 1e-6
     strain = 1e-6
     force = disc.force(strain * disc.nodes * (1, 0))
@@ -53,7 +55,8 @@ def test_a_disc_of_elements():
 
 
 def test_a_disc_bounces():
-    """A slow impact loses less than a fast one, and the disc comes back after about the period of its own."""
+    """A slow impact loses less than a fast one, and the disc comes back after about the period of
+    its own."""
     slow, fast = (reference.disc_impact(v, 0.05, 1000, 1e6, 0.3, n=6) for v in (1, 3))
     assert 0.9 < fast[0] < slow[0] < 1, (slow, fast)
     assert 0.008 < fast[2] < slow[2] < 0.012, (slow, fast)
@@ -72,7 +75,8 @@ def test_the_order_of_an_error():
 
 def test_the_answer_counts_every_resolution():
     scene = {"name": "s", "levels": (1, 2)}
-    lines = tool.answer([(scene, "figure", [3.0, 1.0], 2), (scene, "not judged", [9.0, 9.0], None)]).splitlines()
+    lines = tool.answer([(scene, "figure", [3.0, 1.0], 2),
+                         (scene, "not judged", [9.0, 9.0], None)]).splitlines()
     assert lines[0] == "1 of 2 limits are kept." and "* s, figure, at 1: 3, limit 2" in lines, lines
 
 

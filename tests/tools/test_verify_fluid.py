@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The figures of tools/report/verify_fluid_measures.py, of made-up runs with known answers. Exit 77: a package is
-missing."""
+"""The figures of tools/report/verify_fluid_measures.py, of made-up runs with known answers. Exit
+77: a package is missing."""
 
 import math
 import sys
@@ -36,13 +36,15 @@ class Made:
 def test_a_travelling_wave():
     """0.5 % too fast, with a loss of 2 % a period and a standing second harmonic."""
     k, T = 2 * math.pi / 1.2, math.tanh(2 * math.pi * 0.36 / 1.2)
-    omega = math.sqrt(9.81 * k * T * (1 + (9 - 10 * T**2 + 9 * T**4) / (8 * T**4) * (k * 0.03) ** 2))
+    omega = math.sqrt(9.81 * k * T *
+                      (1 + (9 - 10 * T**2 + 9 * T**4) / (8 * T**4) * (k * 0.03) ** 2))
     t = np.linspace(0, 5 * 2 * math.pi / omega, 1000)
     size = 0.03 * 0.98 ** (t * omega / (2 * math.pi))
     table = {"time_s": t}
     for j in range(8):
         x = (j + 0.5) / 8 * 1.2
-        table[f"at{j}_level_m"] = 0.36 + size * np.cos(k * x - 1.005 * omega * t) + 0.002 * np.cos(2 * k * x)
+        table[f"at{j}_level_m"] = 0.36 + size * np.cos(k * x - 1.005 * omega *
+                                                       t) + 0.002 * np.cos(2 * k * x)
     (_, fast, _), (_, loss, _) = of.travel_of(True)(Made(table))
     assert abs(fast - 0.5) < 1e-3 and abs(loss - 2) < 1e-3, (fast, loss)
 
@@ -97,7 +99,8 @@ def test_a_cavity_is_below_water_that_touches_the_face():
     assert at_the_wall(LATTICE[(x < -3) | (y < 2) | (y > 5)], widest) == 3
     assert at_the_wall(LATTICE[(x < -3) | (y < 2)], widest) == 0  # open above
     drops = np.array([(-3.5 - i, 20.5 + j) for i in range(4) for j in range(12)])
-    assert at_the_wall(np.vstack([LATTICE, drops]), widest) == 0  # drops in the air hang on no water
+    # drops in the air hang on no water
+    assert at_the_wall(np.vstack([LATTICE, drops]), widest) == 0
 
 
 def test_a_wave_without_a_period_has_no_figure():

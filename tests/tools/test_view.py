@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The page that tools/view.py writes holds the run: its numbers are checked here, its script runs in node,
-the whole page in a headless Chromium, as far as these are installed. Exit 77: a package is missing."""
+"""The page that tools/view.py writes holds the run: its numbers are checked here, its script runs
+in node, the whole page in a headless Chromium, as far as these are installed. Exit 77: a package is
+missing."""
 
 import base64
 import json
@@ -97,7 +98,8 @@ def check_numbers(folder, film, data):
     _, values = decode(film, data, "fluid", step)
     factor = {"Pa": 1, "kPa": 1e-3}[pressure["unit"]]
     shown = pressure["low"] + (pressure["high"] - pressure["low"]) * values[0] / 255
-    true = np.clip(factor * file.load(step, "pressure")[kinds == 0], pressure["low"], pressure["high"])
+    true = np.clip(factor * file.load(step, "pressure")[kinds == 0], pressure["low"],
+                   pressure["high"])
     assert np.abs(shown - true).max() <= (pressure["high"] - pressure["low"]) / 500
     assert len(film["groups"]["wall"]["counts"]) == 1  # at rest: once
     assert [probe["label"] for probe in film["probes"]][0].startswith("M1 horizontal displacement")
@@ -114,14 +116,16 @@ def check_node(folder, film, data):
     places, values = decode(film, data, "fluid", len(film["times"]) - 1)
     field = film["groups"]["fluid"]["fields"][0]
     assert np.allclose(out["places"], places)
-    assert np.allclose(out["values"], field["low"] + (field["high"] - field["low"]) * values[0] / 255)
+    assert np.allclose(out["values"],
+                       field["low"] + (field["high"] - field["low"]) * values[0] / 255)
     assert out["hit"] == ["fluid", 7, True, 2], out["hit"]
 
 
 def check_mouse(page, film):
-    """A line drawn with the mouse has the length of its pixels times the scale of the picture; a double click
-    takes it away. The wheel enlarges about the mouse."""
-    left, top, wide, tall = page.run("(r => [r.x, r.y, r.width, r.height])(over.getBoundingClientRect())")
+    """A line drawn with the mouse has the length of its pixels times the scale of the picture; a
+    double click takes it away. The wheel enlarges about the mouse."""
+    left, top, wide, tall = page.run("(r => [r.x, r.y, r.width, "
+                                     "r.height])(over.getBoundingClientRect())")
     x0, x1, y0, y1 = film["window"]
     scale = max((x1 - x0) / wide, (y1 - y0) / tall)  # metres of a pixel
     middle = (left + wide / 2, top + tall / 2)
@@ -146,7 +150,8 @@ def check_mouse(page, film):
 
 
 def check_controls(page, film):
-    """Another field has another range; the scrubber and a click on the curve go to a time; it plays."""
+    """Another field has another range; the scrubber and a click on the curve go to a time; it
+    plays."""
     before = page.run("document.getElementById('fluid-range').textContent")
     page.run("fluid.value = 1; fluid.dispatchEvent(new Event('change'))")
     assert page.run("document.getElementById('fluid-range').textContent") != before
@@ -182,10 +187,12 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = Path(name)
         (folder / "film.cfg").write_text(CASE)
-        subprocess.run([PROGRAM, "film.cfg", "--out", "run", "--quiet", "--threads", "1"], check=True,
+        subprocess.run([PROGRAM, "film.cfg", "--out", "run", "--quiet", "--threads", "1"],
+                       check=True,
                        cwd=folder, stderr=subprocess.DEVNULL)
         tool = [sys.executable, TOOLS / "view.py"]
-        said = subprocess.run([*tool, folder / "run"], check=True, capture_output=True, text=True).stdout
+        said = subprocess.run([*tool, folder / "run"], check=True, capture_output=True,
+                              text=True).stdout
         assert "5 frames" in said, said
         page = folder / "run" / "film.html"
         text = page.read_text()

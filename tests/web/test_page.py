@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The page that `make web` writes, in a headless Chromium. Cases run in it and end with the native hash. The
-picture has colours. A wrong case is refused with the program's sentence, and its line is marked.
-Exit 77: not by `make test-web`, or no browser or no page."""
+"""The page that `make web` writes, in a headless Chromium. Cases run in it and end with the native
+hash. The picture has colours. A wrong case is refused with the program's sentence, and its line is
+marked. Exit 77: not by `make test-web`, or no browser or no page."""
 
 import os
 import subprocess
@@ -58,9 +58,12 @@ def check_case(page, case):
 
 
 def check_software_build(page):
-    """The build that computes multiply-add in software, forced on the page, has the bits as well."""
-    page.run("worker.postMessage({what: 'load', fused: DATA.programs.exact, exact: DATA.programs.exact})")
-    page.wait("document.querySelectorAll('footer')[0].textContent.split('Multiply-add').length === 3")
+    """The build that computes multiply-add in software, forced on the page, has the bits as
+    well."""
+    page.run("worker.postMessage({what: 'load', fused: DATA.programs.exact, exact: "
+             "DATA.programs.exact})")
+    page.wait("document.querySelectorAll('footer')[0].textContent.split('Multiply-add').length === "
+              "3")
     check_case(page, "channel")
 
 
@@ -113,7 +116,8 @@ def check_refusal(page, folder):
     page.wait("document.body.dataset.state === 'refused'")
     said = page.run("document.querySelector('#problems li').textContent")
     (folder / "gate.cfg").write_text(WRONG)
-    native = subprocess.run([PROGRAM, "gate.cfg"], cwd=folder, capture_output=True, text=True).stderr
+    native = subprocess.run([PROGRAM, "gate.cfg"], cwd=folder, capture_output=True,
+                            text=True).stderr
     assert said in native and "sound_speed" in said, f"{said} is not in: {native}"
     assert page.run("document.querySelector('#lines .wrong').textContent") == "5"
     # Without a simulation there is nothing to draw in another colour.

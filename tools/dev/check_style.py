@@ -54,7 +54,8 @@ def check_text(path, lines):
         if path.suffix in (".c", ".h", ".def") and "\t" in line:
             report(path, number, "tab")
         if path.suffix != ".md" and len(line) > MAX_COLUMNS:
-            report(path, number, f"{len(line)} columns, more than {MAX_COLUMNS}", warning=not STRICT)
+            report(path, number, f"{len(line)} columns, more than {MAX_COLUMNS}",
+                   warning=not STRICT)
         if line != line.rstrip():
             report(path, number, "blanks at the end")
         word = BANNED.search(line)
@@ -62,7 +63,8 @@ def check_text(path, lines):
             report(path, number, f"{word[0]} (an issue's number makes the last one acceptable)")
 
 
-# A string of a user must never reach a shell: no other program is started at all. main.c starts itself again.
+# A string of a user must never reach a shell: no other program is started at all. main.c starts
+# itself again.
 PROGRAMS = re.compile(r"\b(system|popen|exec[lv]p?e?|execvpe|fexecve|fork|vfork|posix_spawnp?)\s*\(")
 
 
@@ -80,14 +82,16 @@ def check_programs(path, lines):
             report(path, number, f"{call[1]}() starts another program")
 
 
-REPORTS = ["accuracy.md", "energy_account.md", "fluid_verification.md", "manufactured.md", "mutants.md",
+REPORTS = ["accuracy.md", "energy_account.md", "fluid_verification.md", "manufactured.md",
+           "mutants.md",
            "performance.md", "reliability.md", "stability.md", "turek_hron.md", "validation.md"]
 
 
 def documents():
     """Those of the project: not those of packages in .venv, build/ or runs/."""
     return [p for p in ROOT.rglob("*.md")
-            if not any(part[0] == "." or part in ("build", "runs") for part in p.relative_to(ROOT).parts)]
+            if not any(part[0] == "." or part in ("build", "runs")
+                       for part in p.relative_to(ROOT).parts)]
 
 
 def check_sentences(path):
@@ -111,7 +115,8 @@ def check_rounding(path, lines):
                   "\n".join(lines), flags=re.S)
     for number, line in enumerate(code.split("\n"), 1):
         for call in ROUNDED.finditer(line):
-            report(path, number, f"{call[1]}() has other bits with other C libraries; base/elementary.h")
+            report(path, number, f"{call[1]}() has other bits with other C libraries; "
+                                 f"base/elementary.h")
 
 
 def check_flags():
@@ -178,18 +183,21 @@ def check_commits():
     for line in log.stdout.splitlines():
         commit, subject = line.split(" ", 1)
         if len(subject) > 72 or subject.endswith(".") or not IMPERATIVE.match(subject):
-            report(ROOT / "CONTRIBUTING.md", 0, f"commit {commit}: `{subject}` is not an imperative of at "
+            report(ROOT / "CONTRIBUTING.md", 0, f"commit {commit}: `{subject}` is not an "
+                                                f"imperative of at "
                    "most 72 columns without a full stop")
 
 
 def check_format(paths):
     tool = shutil.which(f"clang-format-{CLANG_FORMAT}") or shutil.which("clang-format")
-    version = subprocess.run([tool, "--version"], capture_output=True, text=True).stdout if tool else ""
+    version = subprocess.run([tool, "--version"], capture_output=True,
+                             text=True).stdout if tool else ""
     if f"version {CLANG_FORMAT}." not in version:
         print(f"format not checked: no clang-format {CLANG_FORMAT} here")
         return
     for path in paths:
-        result = subprocess.run([tool, "--dry-run", "-Werror", path], capture_output=True, text=True)
+        result = subprocess.run([tool, "--dry-run", "-Werror", path], capture_output=True,
+                                text=True)
         if result.returncode:
             line = re.match(r"[^:]*:(\d+):", result.stderr)
             report(path, int(line[1]) if line else 0, "not formatted; `make format` does it")

@@ -6,12 +6,13 @@
     tools/dev/coverage.py --filter fluid   those whose path contains this
     tools/dev/coverage.py --missing        lists the lines and branches that no test took
 
-A test is run again only if it has changed, or if a source has; one that takes more than --longest seconds
-is left out then. Branches of a line are merged over the functions that the compiler made of it (a law is
-compiled for float and for double), and over the copies of an inlined function (a law is inlined for each set
-of effects, and each copy has one outcome only). Three kinds of branches do not count. On a line without a
-decision of its own they belong to functions that were put into it, and count where these are written. A
-failed ASSERT is what no input reaches. And TRY hands on an error, which counts where it arises.
+A test is run again only if it has changed, or if a source has; one that takes more than --longest
+seconds is left out then. Branches of a line are merged over the functions that the compiler made of
+it (a law is compiled for float and for double), and over the copies of an inlined function (a law
+is inlined for each set of effects, and each copy has one outcome only). Three kinds of branches do
+not count. On a line without a decision of its own they belong to functions that were put into it,
+and count where these are written. A failed ASSERT is what no input reaches. And TRY hands on an
+error, which counts where it arises.
 """
 import argparse
 import gzip
@@ -35,14 +36,16 @@ KEPT = BUILD / "taken"
 SUMMARY = ROOT / "tests" / "mutants" / "coverage.json"
 ENV = {**os.environ, "OMP_NUM_THREADS": "1", "OMP_WAIT_POLICY": "passive",
        "PYTHON": sys.executable}
-# Tests of tools, of installing and of the set-up run no line of src/ that others do not. The audit counts
-# every file that a run opens, and gcov opens more.
-LEFT_OUT = ("tests/tools/", "test_wheel", "test_install", "test_setup", "test_audit", "test_absence")
+# Tests of tools, of installing and of the set-up run no line of src/ that others do not. The audit
+# counts every file that a run opens, and gcov opens more.
+LEFT_OUT = ("tests/tools/", "test_wheel", "test_install", "test_setup", "test_audit",
+            "test_absence")
 
 
 def all_tests(part=""):
     """The tests that run the program, as paths below ROOT."""
-    found = sorted(path for kind in ("c", "sh", "py") for path in ROOT.glob(f"tests/*/test_*.{kind}"))
+    found = sorted(path for kind in ("c", "sh", "py")
+                   for path in ROOT.glob(f"tests/*/test_*.{kind}"))
     names = [str(path.relative_to(ROOT)) for path in found]
     return [name for name in names if part in name and not any(word in name for word in LEFT_OUT)]
 
@@ -54,17 +57,20 @@ def command(test, build):
 
 
 def limit(seconds):
-    """In a child: a group of its own, each process of which may use so many seconds of the processor."""
+    """In a child: a group of its own, each process of which may use so many seconds of the
+    processor."""
     os.setpgid(0, 0)
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
 
 
 def run_test(test, build, program, seconds, **more):
-    """(exit status, seconds of the processor); wall time counts only where nothing else ends a wait."""
+    """(exit status, seconds of the processor); wall time counts only where nothing else ends a
+    wait."""
     library = str(program.parent / "libsphfsi.so")
     env = {**ENV, "SPHFSI": str(program), "SPHFSI_LIBRARY": library, "BUILD": str(build), **more}
     with tempfile.TemporaryFile() as output:
-        process = subprocess.Popen(command(test, build), cwd=ROOT, env=env, stdin=subprocess.DEVNULL,
+        process = subprocess.Popen(command(test, build), cwd=ROOT, env=env,
+                                   stdin=subprocess.DEVNULL,
                                    stdout=output, stderr=output, preexec_fn=lambda: limit(seconds))
         alarm = threading.Timer(30 + 10 * seconds, os.killpg, (process.pid, 9))
         alarm.start()
@@ -94,7 +100,8 @@ def gcov(folder):
     out = folder / "json"
     out.mkdir()
     for k in range(0, len(data), 20):
-        subprocess.run(["gcov", "-b", "--json-format", "--preserve-paths", *map(str, data[k:k + 20])],
+        subprocess.run(["gcov", "-b", "--json-format", "--preserve-paths",
+                        *map(str, data[k:k + 20])],
                        cwd=out, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
     result = {}
     for path in out.glob("*.gz"):
@@ -121,7 +128,8 @@ def merge(total, more):
             before = own["branches"].get(int(line), [])
             if len(before) < len(taken):
                 before, taken = taken, before
-            own["branches"][int(line)] = [a or (k < len(taken) and taken[k]) for k, a in enumerate(before)]
+            own["branches"][int(line)] = [a or (k < len(taken) and taken[k]) for k,
+                                          a in enumerate(before)]
 
 
 def kept(test):
@@ -135,7 +143,8 @@ def cover(test, key):
         status, _ = run_test(test, BUILD, BUILD / "sphfsi", 600, GCOV_PREFIX=folder)
         seconds = time.time() - start
         files = gcov(Path(folder))
-    kept(test).write_text(json.dumps({"key": key, "status": status, "seconds": seconds, "files": files}))
+    kept(test).write_text(json.dumps({"key": key, "status": status, "seconds": seconds,
+                                      "files": files}))
     print(f"{test}: {seconds:.0f} s, exit status {status}", flush=True)
 
 
@@ -148,8 +157,10 @@ def collect(names, jobs=2, longest=600):
     late = {name for name in stale if name in old and old[name].get("seconds", 0) > longest}
     names, stale = ([name for name in some if name not in late] for some in (names, stale))
     if stale:
-        goals = [f"build/coverage/{name.removesuffix('.c')}" for name in stale if name.endswith(".c")]
-        subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=coverage", "all", *goals], cwd=ROOT,
+        goals = [f"build/coverage/{name.removesuffix('.c')}" for name in stale
+                 if name.endswith(".c")]
+        subprocess.run(["make", "-s", "-j2", "SETUP=no", "CONFIG=coverage", "all", *goals],
+                       cwd=ROOT,
                        check=True)
         KEPT.mkdir(exist_ok=True)
         with ThreadPoolExecutor(jobs) as pool:
@@ -161,7 +172,8 @@ DECISION = re.compile(r"\?|&&|\|\||\b(?:if|for|while)\b")
 
 
 def one_copy(text, taken):
-    """The branches of a line with those of its inlined copies merged: two for each decision in its text."""
+    """The branches of a line with those of its inlined copies merged: two for each decision in its
+    text."""
     decisions = len(DECISION.findall(text))
     if text.strip().startswith(("ASSERT(", "TRY(")) or not decisions and "switch" not in text:
         return []
@@ -189,17 +201,20 @@ def keep_summary(tests):
         folders.setdefault(name.split("/")[1], {})[name] = file
     lines = [(name, line, (ROOT / name).read_text().split("\n")[line - 1].strip())
              for name, line, what in missing(total) if what == "line"]
-    version = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True, text=True)
+    version = subprocess.run(["git", "describe", "--always"], cwd=ROOT, capture_output=True,
+                             text=True)
     SUMMARY.write_text(json.dumps({
         "version": version.stdout.strip(), "tests": len(tests), "of": len(all_tests()),
-        "all": shares(total), "folders": {name: shares(files) for name, files in sorted(folders.items())},
+        "all": shares(total),
+        "folders": {name: shares(files) for name, files in sorted(folders.items())},
         "missing": lines}, indent=1) + "\n")
 
 
 def shares(total):
     """(lines taken, lines, branches taken, branches)"""
     lines = [taken for file in total.values() for taken in file["lines"].values()]
-    branches = [taken for file in total.values() for line in file["branches"].values() for taken in line]
+    branches = [taken for file in total.values() for line in file["branches"].values()
+                for taken in line]
     return sum(lines), len(lines), sum(branches), len(branches)
 
 
@@ -219,7 +234,8 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--filter", default="", help="part of the paths of the tests to run")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--longest", type=float, default=600, help="leave out tests that took longer than so "
+    parser.add_argument("--longest", type=float, default=600, help="leave out tests that took "
+                                                                   "longer than so "
                         "many seconds")
     parser.add_argument("--missing", action="store_true", help="list what no test took")
     args = parser.parse_args()

@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""The layers of src/: its folders, lowest first. Checks that dependencies point down, and draws them.
+"""The layers of src/: its folders, lowest first. Checks that dependencies point down, and draws
+them.
 
     tools/dev/layers.py --archive build/release/libsphfsi.a     check includes, calls and cycles
     tools/dev/layers.py --draw docs/img/layers.png              draw the folders and their includes
 
-An include, or a call that the linker resolves, may lead to a lower folder or stay in its own. Within a
-folder no chain of them may come back to the file where it started. A header may not declare what another
-file of its folder defines (`struct x;`, `extern`) where an include would close such a chain.
+An include, or a call that the linker resolves, may lead to a lower folder or stay in its own.
+Within a folder no chain of them may come back to the file where it started. A header may not
+declare what another file of its folder defines (`struct x;`, `extern`) where an include would close
+such a chain.
 """
 import argparse
 import re
@@ -17,7 +19,8 @@ from collections import defaultdict
 from pathlib import Path
 
 LAYERS = "base particles case geometry fluid solid coupling time output check app".split()
-LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg stdbool "
+LIBC = set("assert ctype errno fcntl fenv float getopt inttypes limits locale math signal stdarg "
+           "stdbool "
            "stddef stdint stdio stdlib string sys/auxv time unistd".split())
 INCLUDE = re.compile(r'\s*#\s*include\s+(["<])([^">]+)[">]')
 DECLARATION = re.compile(r"^(?:extern\b.*|struct (\w+)|enum (\w+));")
@@ -120,7 +123,8 @@ def cycles(edges):
 
 
 def findings(root, build=None):
-    """Yields (path, line, text); `build` is the folder that holds src/**/*.o, None: calls are not checked."""
+    """Yields (path, line, text); `build` is the folder that holds src/**/*.o, None: calls are not
+    checked."""
     files = sources(root)
     edges = defaultdict(set)
     place = root / "src"
@@ -152,7 +156,8 @@ def findings(root, build=None):
 
 
 def draw(root, path):
-    """The folders as boxes, an arrow for each pair that an include joins, with the number of includes."""
+    """The folders as boxes, an arrow for each pair that an include joins, with the number of
+    includes."""
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
@@ -165,9 +170,11 @@ def draw(root, path):
     for k, folder in enumerate(LAYERS):
         held = [name for name in files if layer(name) == k]
         lines = sum(len(files[name]) for name in held)
-        axes.add_patch(plt.Rectangle((0, k - 0.3), 2, 0.6, facecolor="#dde8f4", edgecolor="#3a5f8a"))
+        axes.add_patch(plt.Rectangle((0, k - 0.3), 2, 0.6, facecolor="#dde8f4",
+                                     edgecolor="#3a5f8a"))
         axes.text(0.1, k, folder, va="center", fontsize=11, weight="bold")
-        axes.text(1.9, k, f"{len(held)} files, {lines:,} lines", va="center", ha="right", fontsize=8)
+        axes.text(1.9, k, f"{len(held)} files, {lines:,} lines", va="center", ha="right",
+                  fontsize=8)
     colours = plt.get_cmap("tab10")
     for (above, below), n in sorted(count.items()):
         right = above - below > 1
@@ -176,7 +183,8 @@ def draw(root, path):
         if not right:
             start, end, bend = (1, above - 0.3), (1, below + 0.3), 0
         axes.annotate("", end, start, arrowprops={
-            "arrowstyle": "-|>", "color": colours(above), "lw": 0.6 + n / 20, "shrinkA": 0, "shrinkB": 0,
+            "arrowstyle": "-|>", "color": colours(above), "lw": 0.6 + n / 20, "shrinkA": 0,
+            "shrinkB": 0,
             "connectionstyle": f"arc3,rad={bend}"})
     axes.text(2.2, -0.75, "An arrow: includes of a lower layer, the wider the more.", fontsize=8)
     axes.set(xlim=(-0.1, 4.6), ylim=(-0.9, len(LAYERS) - 0.4))
@@ -187,8 +195,10 @@ def draw(root, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], epilog=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--archive", type=Path, help="library beside whose objects calls are looked up")
-    parser.add_argument("--draw", type=Path, metavar="PNG", help="draw the layers instead of checking")
+    parser.add_argument("--archive", type=Path, help="library beside whose objects calls are "
+                                                     "looked up")
+    parser.add_argument("--draw", type=Path, metavar="PNG", help="draw the layers instead of "
+                                                                 "checking")
     args = parser.parse_args()
     root = Path(__file__).resolve().parents[2]
     if args.draw:
@@ -196,7 +206,8 @@ def main():
         return 0
     found = list(findings(root, args.archive and args.archive.resolve().parent))
     for path, line, text in found:
-        print(f"{path.relative_to(root)}:{line}: {text}" if line else f"{path.relative_to(root)}: {text}")
+        print(f"{path.relative_to(root)}:{line}: {text}" if line else f"{path.relative_to(root)}: "
+                                                                      f"{text}")
     print(f"layers: {len(found)} findings")
     return bool(found)
 

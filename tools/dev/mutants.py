@@ -1,23 +1,29 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Measures the tests: puts small faults into the sources, one at a time, and counts those that a test finds.
+"""Measures the tests: puts small faults into the sources, one at a time, and counts those that a
+test finds.
 
-    tools/dev/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md (hours)
+    tools/dev/mutants.py --count 440        faults drawn with a seed from all files; docs/mutants.md
+    (hours)
     tools/dev/mutants.py --files src/solid  faults of one folder or file only
-    tools/dev/mutants.py --again            judges anew what was not found, for instance by new tests
+    tools/dev/mutants.py --again            judges anew what was not found, for instance by new
+    tests
     tools/dev/mutants.py --again --tests fluid/test_open,test_wall --files src/fluid
-                                        the same of some files by some tests only, however long they take
+                                        the same of some files by some tests only, however long they
+                                        take
     tools/dev/mutants.py --report           writes docs/mutants.md from what is kept
 
-A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or inverts a
-condition. The objects that hold the changed line are compiled, and the tests that run it (by gcov,
-tools/dev/coverage.py) are linked and run, the shortest first, until one finds it or their time is used up. Faults
-that none finds are judged again with the build of `make test-sanitize`, which sees what is read behind an
-array, or not freed. A fault whose object code is that of the program is equivalent. So are those that
-tests/mutants/equivalent.txt explains. Results are kept in tests/mutants/results.json; a run that was
-interrupted goes on from there. How a fault was judged first is kept beside its present verdict: tests are
-written for those of each sample that were not found, so only a fresh sample measures the tests. The coverage
-is that which tools/dev/coverage.py kept last.
+A fault flips a sign, changes a factor, shifts a limit by one, drops a term or a statement, or
+inverts a condition. The objects that hold the changed line are compiled, and the tests that run it
+(by gcov,
+tools/dev/coverage.py) are linked and run, the shortest first, until one finds it or their time is
+used up. Faults that none finds are judged again with the build of `make test-sanitize`, which sees
+what is read behind an array, or not freed. A fault whose object code is that of the program is
+equivalent. So are those that tests/mutants/equivalent.txt explains. Results are kept in
+tests/mutants/results.json; a run that was interrupted goes on from there. How a fault was judged
+first is kept beside its present verdict: tests are written for those of each sample that were not
+found, so only a fresh sample measures the tests. The coverage is that which tools/dev/coverage.py
+kept last.
 """
 import argparse
 import json
@@ -47,23 +53,27 @@ LOCK = threading.Lock()
 RULES = [
     ("sign", r"(?<=[\w)\]]) \+ (?=[\w(*])", " - "), ("sign", r"(?<=[\w)\]]) - (?=[\w(*])", " + "),
     ("sign", r" \+= ", " -= "), ("sign", r" -= ", " += "), ("sign", r"(?<=return )-(?=[\w(])", ""),
-    ("factor", r"\b0\.5\b", "0.25"), ("factor", r"(?<![\w.\[])2(?= \* \w)", "3"), ("factor", r"\b1e-", "3e-"),
+    ("factor", r"\b0\.5\b", "0.25"), ("factor", r"(?<![\w.\[])2(?= \* \w)", "3"),
+    ("factor", r"\b1e-", "3e-"),
     ("factor", r"(?<=\w) \* (?=\w)", " / "),
-    ("off by one", r"(?<=[\w)\]]) < (?=[\w(])", " <= "), ("off by one", r"(?<=[\w)\]]) <= (?=[\w(])", " < "),
+    ("off by one", r"(?<=[\w)\]]) < (?=[\w(])", " <= "),
+    ("off by one", r"(?<=[\w)\]]) <= (?=[\w(])", " < "),
     ("off by one", r"(?<=[\w)\]]) > (?=[\w(])", " >= "), ("off by one", r" \+ 1\b(?!\.)", ""),
     ("off by one", r" - 1\b(?!\.)", ""),
     ("condition", r"\bif \((.*)\)(?= [\w*{]|$)", r"if (!(\1))"), ("condition", r" && ", " || "),
     ("condition", r" \|\| ", " && "), ("condition", r" == ", " != "),
     ("branch", r" \? ([\w.>\-]+) : ([\w.>\-]+)", r" ? \2 : \1"),
     ("missing term", r"(?<=[\w)\]]) [+-] [\w.>\-\[\]]+ \* [\w.>\-\[\]]+(?=[;,)])", ""),
-    ("missing statement", r"^( +)(?!return|const|int|double|static|struct|else|for|if|case|break|continue)"
+    ("missing statement",
+     r"^( +)(?!return|const|int|double|static|struct|else|for|if|case|break|continue)"
                           r"[\w.>\-\[\]]+ (?:=|\+=|-=|\*=) .*;$", r"\1;"),
     ("missing statement", r"^( +)(?!return|sizeof)\w+\([^;{}]*\);$", r"\1;"),
 ]
 
 
 def code_lines(text):
-    """(number, line) of the lines that hold code only: no comment, string, preprocessor or macro."""
+    """(number, line) of the lines that hold code only: no comment, string, preprocessor or
+    macro."""
     comment = False
     for number, line in enumerate(text.split("\n"), 1):
         plain = not comment and "/*" not in line and '"' not in line and not line.startswith("#") \
@@ -86,7 +96,8 @@ def candidates(path):
 
 
 def draw(paths, count, seed):
-    """So many faults, from every file, by its number of lines; the same for the same seed and sources."""
+    """So many faults, from every file, by its number of lines; the same for the same seed and
+    sources."""
     dice, chosen = random.Random(seed), []
     found = {path: list(candidates(path)) for path in paths}
     total = sum(map(len, found.values()))
@@ -103,9 +114,11 @@ class Program:
     def __init__(self, config):
         self.build = ROOT / "build" / config
         goals = [f"build/{config}/{t.removesuffix('.c')}" for t in all_tests() if t.endswith(".c")]
-        subprocess.run(["make", "-s", "-j2", "SETUP=no", f"CONFIG={config}", "all", *goals], cwd=ROOT,
+        subprocess.run(["make", "-s", "-j2", "SETUP=no", f"CONFIG={config}", "all", *goals],
+                       cwd=ROOT,
                        check=True)
-        info = subprocess.run(["make", "-s", "SETUP=no", f"CONFIG={config}", "info"], cwd=ROOT, check=True,
+        info = subprocess.run(["make", "-s", "SETUP=no", f"CONFIG={config}", "info"], cwd=ROOT,
+                              check=True,
                               capture_output=True, text=True).stdout
         self.compile = re.search(r"^compile +(.*)", info, re.M)[1].split()
         self.libraries = re.search(r"^link +(.*)", info, re.M)[1].split()
@@ -113,7 +126,8 @@ class Program:
         for path in self.build.glob("src/*/*.d"):
             for name in re.findall(r"src/[\w./]+", path.read_text().split("\n\n")[0]):
                 self.uses.setdefault(name, set()).add(path.with_suffix(".o"))
-        self.support = sorted(map(str, self.build.glob("tests/support/*.o"))) + [str(self.build / "unity.o")]
+        self.support = sorted(map(str, self.build.glob("tests/support/*.o"))) + [str(self.build /
+                                                                                     "unity.o")]
         self.sound = {}  # test: whether it passes without a fault
 
     def passes(self, test, seconds):
@@ -134,7 +148,8 @@ class Tests:
                      for file, objects in program.uses.items()}
 
     def baseline(self, program, jobs):
-        """{test: seconds of the processor}, of those that pass on the build without faults in time."""
+        """{test: seconds of the processor}, of those that pass on the build without faults in
+        time."""
         kept, seconds = WORK / "baseline.json", {}
         key = coverage.digest_of(coverage.sources())
         if kept.exists() and (old := json.loads(kept.read_text()))["key"] == key:
@@ -154,16 +169,19 @@ class Tests:
             return {test: used for test, used in pool.map(measure, all_tests()) if used is not None}
 
     def covering(self, fault):
-        """The tests that run the line, the shortest first; those of its own folder count as shorter."""
+        """The tests that run the line, the shortest first; those of its own folder count as
+        shorter."""
         folder = fault["file"].split("/")[1]
-        lines = {t: files.get(fault["file"], {"lines": {}})["lines"] for t, files in self.taken.items()}
+        lines = {t: files.get(fault["file"], {"lines": {}})["lines"] for t,
+                 files in self.taken.items()}
         # A statement of several lines counts on its first, or on some of them.
         known = {int(line) for one in lines.values() for line in one if int(line) <= fault["line"]}
         line = str(max(known, default=0))
         names = [test for test, one in lines.items() if test in self.seconds and one.get(line)]
         if not any(lines.values()):  # constants only: whatever runs a file that includes it
             names = [test for test, files in self.taken.items() if test in self.seconds and any(
-                any(files.get(file, {"lines": {}})["lines"].values()) for file in self.uses[fault["file"]])]
+                any(files.get(file, {"lines": {}})["lines"].values())
+                for file in self.uses[fault["file"]])]
         return sorted(names, key=lambda t: self.seconds[t] * (0.2 if f"/{folder}/" in t else 1))
 
 
@@ -191,7 +209,8 @@ def build(program, fault, folder):
         path = source if name == fault["file"] else ROOT / name
         new = folder / str(old.relative_to(program.build)).replace("/", "_")
         first = [program.compile[0], f"-I{folder}/tree/src"]
-        made = subprocess.run([*first, *program.compile[1:], "-w", version, "-c", "-o", new, path], cwd=ROOT,
+        made = subprocess.run([*first, *program.compile[1:], "-w", version, "-c", "-o", new, path],
+                              cwd=ROOT,
                               capture_output=True)
         if made.returncode:
             return None
@@ -206,14 +225,17 @@ def object_of_test(program, test, fault, folder):
     if not fault["file"].endswith(".h") or fault["file"] not in old.with_suffix(".d").read_text():
         return str(old)
     new = folder / "test.o"
-    unity = re.search(r"^UNITY_CFLAGS := (.*)", (ROOT / "build/unity.mk").read_text(), re.M)[1].split()
-    subprocess.run([program.compile[0], f"-I{folder}/tree/src", *program.compile[1:], "-w", "-Itests/support",
+    unity = re.search(r"^UNITY_CFLAGS := (.*)", (ROOT / "build/unity.mk").read_text(),
+                      re.M)[1].split()
+    subprocess.run([program.compile[0], f"-I{folder}/tree/src", *program.compile[1:], "-w",
+                    "-Itests/support",
                     *unity, "-c", "-o", new, test], cwd=ROOT, check=True)
     return str(new)
 
 
 def link(program, test, fault, objects, folder):
-    """The test, or for a script the program, with the objects in front of those without the fault."""
+    """The test, or for a script the program, with the objects in front of those without the
+    fault."""
     if test.endswith(".c"):
         out = folder / test.removesuffix(".c")
         parts = [object_of_test(program, test, fault, folder), *program.support]
@@ -227,11 +249,13 @@ def link(program, test, fault, objects, folder):
     parts = [part for part in parts if not any(o.endswith("src_app_main.o") for o in objects)
              or not part.endswith("main.o")]
     core = str(program.build / "core.a")
-    subprocess.run([*program.compile, "-w", *wrap, "-o", out, *parts, *objects, core, *program.libraries],
+    subprocess.run([*program.compile, "-w", *wrap, "-o", out, *parts, *objects, core,
+                    *program.libraries],
                    cwd=ROOT, check=True)
     if "/python/" in test:
         rest = [str(o) for o in program.build.glob("src/*/*.o") if o.name != "main.o"
-                and not any(x.endswith(str(o.relative_to(program.build)).replace("/", "_")) for x in objects)]
+                and not any(x.endswith(str(o.relative_to(program.build)).replace("/", "_"))
+                            for x in objects)]
         subprocess.run([*program.compile, "-w", "-shared", "-o", folder / "libsphfsi.so", *rest,
                         *[o for o in objects if not o.endswith("main.o")], *program.libraries],
                        cwd=ROOT, check=True)
@@ -251,7 +275,8 @@ def judge(program, tests, fault, seconds, slower=1):
         for test in tests.covering(fault):
             usual = slower * tests.seconds[test]
             # The interpreter is not built with the sanitizer.
-            if slower > 1 and (test.endswith(".py") or not program.passes(test, int(20 + 5 * usual))):
+            if slower > 1 and (test.endswith(".py") or
+                               not program.passes(test, int(20 + 5 * usual))):
                 continue
             if tried and used + usual > seconds:
                 break
@@ -274,7 +299,8 @@ def key(fault):
 
 
 def explained():
-    """{fault: reason}: groups of four lines, file, before, after and reason, with a blank line between."""
+    """{fault: reason}: groups of four lines, file, before, after and reason, with a blank line
+    between."""
     groups = EXPLAINED.read_text().strip().split("\n\n") if EXPLAINED.exists() else []
     rows = [[line.strip() for line in group.split("\n")] for group in groups]
     return {(file, before, after): " ".join(reason) for file, before, after, *reason in rows}
@@ -314,17 +340,21 @@ def counted(results, name="verdict"):
 
 
 def samples(results):
-    """A line for each sample: how its faults were judged first, and what the present tests find of them."""
+    """A line for each sample: how its faults were judged first, and what the present tests find of
+    them."""
     rows = []
     for seed in sorted({r["seed"] for r in results}):
         own = [r for r in results if r["seed"] == seed and not (
             r["verdict"] == "equivalent" and r["first"].startswith("not "))]
         found, real, share = counted(own, "first")
-        rows.append((seed, found if seed > 1 else "", real if seed > 1 else "", share if seed > 1 else "",
+        rows.append((seed, found if seed > 1 else "", real if seed > 1 else "", share if seed > 1
+                     else "",
                      *counted([r for r in results if r["seed"] == seed])))
     return ["## By sample", "",
-            "Tests are written for the faults of each sample that were not found. Only faults drawn anew, "
-            "and judged before that, measure the tests. Faults that were later explained as equivalent do "
+            "Tests are written for the faults of each sample that were not found. Only faults "
+            "drawn anew, "
+            "and judged before that, measure the tests. Faults that were later explained as "
+            "equivalent do "
             "not count. Of the first sample the first verdicts were not kept.", "",
             *table(rows, "seed", "found at first", "of", "share", "found now", "of", "share")]
 
@@ -348,39 +378,51 @@ def report(results, seconds):
     lines, all_lines, branches, all_branches = cover["all"]
     text = [
         "# What the tests find", "",
-        f"Of {real} small faults put into the sources, the tests find {found}: {share}. This includes tests "
-        f"written for faults that had not been found. Of {at_first[1]} faults drawn anew last, before that, "
+        f"Of {real} small faults put into the sources, the tests find {found}: {share}. This "
+        f"includes tests "
+        f"written for faults that had not been found. Of {at_first[1]} faults drawn anew last, "
+        f"before that, "
         f"they found {at_first[2]}. "
         f"{cover['tests']} of {cover['of']} tests run "
         f"{100 * lines / all_lines:.2f} % of the {all_lines} lines of `src/` and take "
-        f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version {cover['version']}).",
+        f"{100 * branches / all_branches:.2f} % of the {all_branches} branches (version "
+        f"{cover['version']}).",
         "",
         f"The faults lie in {len({r['file'] for r in results})} files and were drawn with a seed. "
-        f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} give the "
-        f"same object code, {len(own)} are explained below. {count['does not compile']} do not compile. "
+        f"{count['equivalent']} further faults change nothing: {count['equivalent'] - len(own)} "
+        f"give the "
+        f"same object code, {len(own)} are explained below. {count['does not compile']} do not "
+        f"compile. "
         f"{count['line deleted']} stood on lines that have since been changed or deleted. "
         f"{sanitized} are found with the build of `make test-sanitize` only. The tests that run "
-        f"its line, the shortest first, have {seconds:.0f} s of the processor to find a fault. Tests of more "
+        f"its line, the shortest first, have {seconds:.0f} s of the processor to find a fault. "
+        f"Tests of more "
         f"than {LONGEST} s were run with faults only if named by hand. So the "
-        "share is a lower bound, and faults that are equivalent for a reason nobody has written down count "
+        "share is a lower bound, and faults that are equivalent for a reason nobody has written "
+        "down count "
         "as not found.", "",
-        "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit by one, "
-        "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in the "
+        "`make mutants` writes this page. A fault flips a sign, changes a factor, shifts a limit "
+        "by one, "
+        "drops a term or a statement, or inverts a condition. A branch is one outcome of a jump in "
+        "the "
         "unoptimised build (gcov); copies of an inlined line count once.", "", *by_samples,
         "## By folder", ""]
     rows = []
     for folder, share in cover["folders"].items():
         c = Counter(r["verdict"] for r in results if r["file"].split("/")[1] == folder)
         rows.append((folder, c["found"], c["not found"], c["not run"], c["equivalent"],
-                     f"{100 * share[0] / share[1]:.2f} %", f"{100 * share[2] / max(1, share[3]):.2f} %"))
-    text += table(rows, "folder", "found", "not found", "on no line that tests run", "equivalent", "lines",
+                     f"{100 * share[0] / share[1]:.2f} %",
+                     f"{100 * share[2] / max(1, share[3]):.2f} %"))
+    text += table(rows, "folder", "found", "not found", "on no line that tests run", "equivalent",
+                  "lines",
                   "branches")
     text += ["## By kind of fault", ""]
     rows = [(kind, sum(r["kind"] == kind and r["verdict"] == "found" for r in results),
              sum(r["kind"] == kind and r["verdict"].startswith("not") for r in results))
             for kind in sorted({r["kind"] for r in results})]
     text += table(rows, "kind", "found", "not found")
-    text += ["## Not found", "", *table(listed(r for r in results if r["verdict"].startswith("not ")),
+    text += ["## Not found", "",
+             *table(listed(r for r in results if r["verdict"].startswith("not ")),
                                        "where", "kind", "before", "after", "tests that were run")]
     text += ["## Equivalent", "", *table(listed(own), "where", "kind", "before", "after", "why"),
              *left_over(cover["missing"])]
@@ -389,7 +431,8 @@ def report(results, seconds):
 
 
 def left_over(missing):
-    """The lines that no test runs, with the reason that tests/mutants/uncovered.txt gives for their text."""
+    """The lines that no test runs, with the reason that tests/mutants/uncovered.txt gives for their
+    text."""
     path = ROOT / "tests" / "mutants" / "uncovered.txt"
     groups = path.read_text().strip().split("\n\n") if path.exists() else []
     reasons = {}
@@ -406,11 +449,14 @@ def main():
     parser.add_argument("--count", type=int, default=440)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--files", default="src", help="folder or file of src/")
-    parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long, and write the report")
-    parser.add_argument("--seconds", type=float, default=8, help="of the processor, for one fault's tests")
+    parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long, and write "
+                                                                   "the report")
+    parser.add_argument("--seconds", type=float, default=8, help="of the processor, for one "
+                                                                 "fault's tests")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--again", action="store_true", help="judge anew what was not found")
-    parser.add_argument("--tests", help="judge by these only, parts of their paths with commas; what they do "
+    parser.add_argument("--tests", help="judge by these only, parts of their paths with commas; "
+                                        "what they do "
                         "not find keeps its verdict")
     parser.add_argument("--report", action="store_true", help="only write docs/mutants.md")
     args = parser.parse_args()

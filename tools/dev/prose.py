@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Finds the sentences of documents, comments and messages that have more than 30 words.
 
-A list item, a cell of a table, a heading and a comment end a sentence, as do a full stop, a question
-mark and a colon before a blank. Code in back quotes counts as one word.
+A list item, a cell of a table, a heading and a comment end a sentence, as do a full stop, a
+question mark and a colon before a blank. Code in back quotes counts as one word.
 """
 import re
 

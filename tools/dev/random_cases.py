@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: MIT
 """Runs random valid cases with every build and every kind of interruption, and compares all bits.
 
-    tools/dev/random_cases.py --count 1000          1000 cases; outcomes go to tests/fault/random.json
+    tools/dev/random_cases.py --count 1000          1000 cases; outcomes go to
+    tests/fault/random.json
     tools/dev/random_cases.py --seed 17 --print     the case of a seed
     tools/dev/random_cases.py --seed 17 --keep DIR  runs it and keeps its folders
 
-A case is a small scene: a tank, a channel with periodic or open sides, or solids that meet, with random
-bodies, motions, laws, loads, probes and numerics. It runs some dozen steps with the programs of --builds
-(`make random-cases`, or --all-builds, makes those of gcc, clang, AVX2, AVX-512, one thread and the
-sanitizers), on other numbers of threads, killed and restarted, stopped and restarted, and forked without a
-change. All have to end with the same state, rows and snapshots. A run that ends well must hold finite
-numbers and particles that are slower than sound; one that a guard stops must be stopped at the same step
-everywhere.
+A case is a small scene: a tank, a channel with periodic or open sides, or solids that meet, with
+random bodies, motions, laws, loads, probes and numerics. It runs some dozen steps with the programs
+of --builds (`make random-cases`, or --all-builds, makes those of gcc, clang, AVX2, AVX-512, one
+thread and the sanitizers), on other numbers of threads, killed and restarted, stopped and
+restarted, and forked without a change. All have to end with the same state, rows and snapshots. A
+run that ends well must hold finite numbers and particles that are slower than sound; one that a
+guard stops must be stopped at the same step everywhere.
 """
 import argparse
 import json
@@ -41,12 +42,14 @@ def make_builds():
     """The other builds of the program that this machine can run."""
     builds = {"gcc": ROOT / "sphfsi", "one thread": ROOT / "build/serial/sphfsi",
               "sanitizers": ROOT / "build/sanitize/sphfsi"}
-    goals = [["sphfsi"], *([f"CONFIG={name}", f"build/{name}/sphfsi"] for name in ("serial", "sanitize"))]
+    goals = [["sphfsi"],
+             *([f"CONFIG={name}", f"build/{name}/sphfsi"] for name in ("serial", "sanitize"))]
     if shutil.which("clang"):
         builds["clang"] = ROOT / "build/clang/sphfsi"
         goals.append(["CC=clang", "B=build/clang", "build/clang/sphfsi"])
     info = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
-    for name, flag, arch in (("AVX2", " avx2 ", "x86-64-v3"), ("AVX-512", " avx512vl ", "x86-64-v4")):
+    for name, flag, arch in (("AVX2", " avx2 ", "x86-64-v3"),
+                             ("AVX-512", " avx512vl ", "x86-64-v4")):
         if flag in info:
             builds[name] = ROOT / f"build/{arch}/sphfsi"
             goals.append([f"ARCH={arch}", f"B=build/{arch}", f"build/{arch}/sphfsi"])
@@ -92,15 +95,18 @@ def snapshots(out):
 
 
 def differences(whole, other, forked=False):
-    """What of two runs is not the same. A fork counts energies anew; its last snapshot must agree."""
+    """What of two runs is not the same. A fork counts energies anew; its last snapshot must
+    agree."""
     a, b = summary(whole), summary(other)
     names = ["exit_reason"] + ([] if forked else ["state_hash", "steps", "simulated_time"])
-    found = [f"{name}: {a.get(name)} and {b.get(name)}" for name in names if a.get(name) != b.get(name)]
+    found = [f"{name}: {a.get(name)} and {b.get(name)}" for name in names
+             if a.get(name) != b.get(name)]
     if forked:
         mine, others = last_snapshot(whole), last_snapshot(other)
         return found + [f"last snapshot: {name}" for name in mine if mine[name] != others.get(name)]
     mine, others = rows(whole), rows(other)
-    found += [name for name in sorted(mine.keys() | others.keys()) if mine.get(name) != others.get(name)]
+    found += [name for name in sorted(mine.keys() | others.keys())
+              if mine.get(name) != others.get(name)]
     mine, others = snapshots(whole), snapshots(other)
     found += [f"snapshots: {name}" for name in sorted(mine.keys() | others.keys())
               if mine.get(name) != others.get(name)]
@@ -125,7 +131,8 @@ def unsound(out, sound_speed):
             values = [float(word) for word in line.split(",")]
             # A front or a level where there is no fluid is no number.
             bad = [c for c, v in zip(columns, values) if not math.isfinite(v)
-                   and (name == "ledger.csv" or not any(w in c for w in ("_level", "_front", "_p_")))]
+                   and (name == "ledger.csv" or
+                        not any(w in c for w in ("_level", "_front", "_p_")))]
             if bad or len(values) != len(columns):
                 found.append(f"{name}: {bad[:3]} at {values[0]} s")
                 break
@@ -172,7 +179,8 @@ def variants(folder, builds, dice, end):
             yield (name, *run(program, folder, name), False)
     gcc = builds["gcc"]
     threads = str(dice.choice([2, 3, 4]))
-    yield (f"{threads} threads", *run(gcc, folder, f"{threads} threads", "--threads", threads), False)
+    yield (f"{threads} threads", *run(gcc, folder, f"{threads} threads", "--threads", threads),
+           False)
     kills, status, said = kill_and_restart(gcc, folder, dice)
     yield ("killed", status, said, False, kills)
     # At a row: a step ends there anyway.
@@ -209,12 +217,14 @@ def one_case(seed, builds, folder):
         if forked and 2 in (status, other):
             continue  # it may be stopped elsewhere: its energies begin at another time
         if other != status:
-            wrong.append(f"{name}: exit status {other}, not {status}: {first_sentence(text, folder)}")
+            wrong.append(f"{name}: exit status {other}, not {status}: "
+                         f"{first_sentence(text, folder)}")
         else:
             wrong += [f"{name}: {what}" for what in differences(whole, out, forked)]
     end = summary(whole)
     return {"outcome": "FAILED" if wrong else "finished" if status == 0 else "stopped by a guard",
-            "why": "; ".join(wrong) or (first_sentence(said, folder) if status else ""), "kills": kills,
+            "why": "; ".join(wrong) or (first_sentence(said, folder) if status else ""),
+            "kills": kills,
             "steps": end.get("steps", 0), "features": scene["features"]}
 
 
@@ -230,7 +240,8 @@ def main():
     parser.add_argument("--minutes", type=float, default=1e9, help="stop after so long")
     parser.add_argument("--builds", nargs="+", metavar="NAME=PROGRAM", default=["gcc=./sphfsi"])
     parser.add_argument("--all-builds", action="store_true", help="make and run every build")
-    parser.add_argument("--no-record", action="store_true", help="leave tests/fault/random.json alone")
+    parser.add_argument("--no-record", action="store_true", help="leave tests/fault/random.json "
+                                                                 "alone")
     args = parser.parse_args()
     if args.print:
         print(random_scenes.make(args.seed or 1)["text"])
@@ -251,7 +262,8 @@ def main():
                 shutil.rmtree(folder, ignore_errors=True)
 
     wanted = 1 if args.seed else args.count
-    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK) else None) as top, \
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.access("/dev/shm", os.W_OK)
+                                     else None) as top, \
             ThreadPoolExecutor(args.jobs) as pool:
         while (left := wanted - count.total() + count["refused"]) > 0 and \
                 time.time() - start < 60 * args.minutes:

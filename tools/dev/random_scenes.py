@@ -26,11 +26,14 @@ class Scene:
 
     def text(self):
         parts = ["".join(f"{key} = {value}\n" for key, value in self.top.items())]
-        for name, rows in (("numerics", self.numerics), ("domain", self.domain), ("output", self.output)):
+        for name, rows in (("numerics", self.numerics), ("domain", self.domain),
+                           ("output", self.output)):
             if rows:
-                parts.append(f"[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in rows.items()))
+                parts.append(f"[{name}]\n" +
+                             "".join(f"{key} = {value}\n" for key, value in rows.items()))
         for kind, name, rows in self.sections:
-            parts.append(f"[{kind} {name}]\n" + "".join(f"{key} = {value}\n" for key, value in rows))
+            parts.append(f"[{kind} {name}]\n" +
+                         "".join(f"{key} = {value}\n" for key, value in rows))
         return "\n".join(parts)
 
 
@@ -44,11 +47,13 @@ def numerics(s, fluid):
     s.top["integrator"] = d.choice(["symplectic", "verlet", "leapfrog"])
     s.top["scheme"] = d.choice(["paper", "standard"])
     s.top["precision"] = d.choice(["mixed", "mixed", "double"])
-    s.features |= {s.top["integrator"], f"scheme {s.top['scheme']}", f"{s.top['precision']} precision"}
+    s.features |= {s.top["integrator"], f"scheme {s.top['scheme']}", f"{s.top['precision']} "
+                                                                     f"precision"}
     if s.chance(0.2):
         s.top["accuracy"] = d.choice(["draft", "fine"])
     for key, share, values in (("multirate", 0.4, ["on", "off"]), ("verlet_reset", 0.3, [3, 7, 40]),
-                               ("skin", 0.3, [0.1, 0.3, 1]), ("solid_precision", 0.3, ["single", "double"]),
+                               ("skin", 0.3, [0.1, 0.3, 1]),
+                               ("solid_precision", 0.3, ["single", "double"]),
                                ("solid_safety", 0.2, [0.5, 0.8])):
         if s.chance(share):
             s.numerics[key] = d.choice(values)
@@ -89,7 +94,8 @@ def solid_rows(s, shape, clamp=None):
     density = s.number(900, 2500)
     rows = [("shape", shape), *([("clamp", clamp)] if clamp else []), ("density", density),
             ("young", s.number(2e5, 3e6)), ("poisson", s.number(0, 0.45)),
-            ("law", d.choice(["paper", "svk", "neo_hookean"])), ("plane", d.choice(["strain", "stress"]))]
+            ("law", d.choice(["paper", "svk", "neo_hookean"])),
+            ("plane", d.choice(["strain", "stress"]))]
     s.features.add(f"law {rows[-2][1]}")
     for key, share, values in (("gradient", 0.3, ["linear"]), ("hourglass_form", 0.2, ["printed"]),
                                ("viscosity_form", 0.2, ["printed"]), ("damping_time", 0.2, [1e-5]),
@@ -237,7 +243,8 @@ def tank(s):
         wall.append(("slip", "none"))
     s.add("wall", "tank", wall)
     if s.chance(0.35):
-        s.add("wall", "plunger", [("shape", box(width // 2 - 2, depth + 4, width // 2 + 2, depth + 8)),
+        s.add("wall", "plunger",
+              [("shape", box(width // 2 - 2, depth + 4, width // 2 + 2, depth + 8)),
                                   ("motion", "push")])
         motion(s, "push", 0.5)
     for name, shape, rows in solids:
@@ -250,7 +257,8 @@ def loads(s, solids):
     for name, (x0, y0, x1, y1), rows in solids:
         if s.chance(0.2) and not any(key in ("dp", "lattice_angle") for key, _ in rows):
             more = [("body", name), ("shape", box(x0, y1 - 1, x1, y1))]
-            more.append(("force", "3, -2*cos(x/1 m)") if s.chance(0.5) else ("traction", "40, -300"))
+            more.append(("force", "3, -2*cos(x/1 m)") if s.chance(0.5)
+                        else ("traction", "40, -300"))
             if s.chance(0.5):
                 more.append(("history", "min(t/0.002, 1)"))
             s.add("load", f"on_{name}", more)
@@ -265,11 +273,13 @@ def channel(s):
     s.features.add("periodic in x and y" if both else "periodic in x")
     if both:
         s.top["gravity"] = f"{s.number(-2, 2)}, 0"
-        s.domain = {"lower": "0, 0", "upper": f"{width * DP:.6g}, {width * DP:.6g}", "periodic": "xy"}
+        s.domain = {"lower": "0, 0", "upper": f"{width * DP:.6g}, {width * DP:.6g}",
+                    "periodic": "xy"}
         waves = f"0.5*sin(2*pi*x/{width * DP:.6g} m)*cos(2*pi*y/{width * DP:.6g} m)"
         rows = fluid_rows(s, [("shape", box(0, 0, width, width)),
                               ("velocity", f"{waves}*1 m/s, -{waves}*1 m/s")])
-        s.add("fluid", "water", [row for row in rows if row[1] != "antuono" or row[0] != "diffusion_form"])
+        s.add("fluid", "water",
+              [row for row in rows if row[1] != "antuono" or row[0] != "diffusion_form"])
         probes(s, True, [], (4, 4))
         return
     s.top["gravity"] = f"{s.number(0, 4)}, -9.81"
@@ -314,11 +324,15 @@ def meeting(s):
         x0, gap = 1 + 5 * k, s.dice.choice([0.5, 1, 2])
         shape = (x0, 4 + gap, x0 + 4, 8 + gap)
         rows = solid_rows(s, box(*shape))
-        solids.append((f"drop{k}", shape, [*rows, ("velocity", f"{s.number(-0.5, 0.5)}, {-speed}")]))
+        solids.append((f"drop{k}", shape,
+                       [*rows, ("velocity", f"{s.number(-0.5, 0.5)}, {-speed}")]))
     if s.chance(0.3):
-        plain = [row for row in solids[0][2] if row[0] not in ("dp", "lattice_angle", "shape", "clamp")]
-        solids[0] = (*solids[0][:2], [row for row in solids[0][2] if row[0] not in ("dp", "lattice_angle")])
-        solids.append(("cap", (14, 0, 18, 4), [("shape", box(14, 0, 18, 4)), *plain, ("joined", "base")]))
+        plain = [row for row in solids[0][2]
+                 if row[0] not in ("dp", "lattice_angle", "shape", "clamp")]
+        solids[0] = (*solids[0][:2],
+                     [row for row in solids[0][2] if row[0] not in ("dp", "lattice_angle")])
+        solids.append(("cap", (14, 0, 18, 4),
+                       [("shape", box(14, 0, 18, 4)), *plain, ("joined", "base")]))
         s.features.add("bonded solids")
     s.features |= {"contact", "several solids"}
     if s.chance(0.6):
@@ -350,7 +364,8 @@ def open_channel(s):
                                 ("shape", box(-8, height, length + 8, height + 4))], []
     if s.chance(0.5):
         rows = solid_rows(s, box(8, -4, 11, 4), box(8, -4, 11, 0))
-        solids.append(("flap", (8, -4, 11, 4), [r for r in rows if r[0] not in ("dp", "lattice_angle")]))
+        solids.append(("flap", (8, -4, 11, 4),
+                       [r for r in rows if r[0] not in ("dp", "lattice_angle")]))
         minus = [("minus", box(8, 0, 11, 4))]
         s.features.add("a flap between open boundaries")
     s.add("fluid", "water", [*water, *minus, ("pressure", base)])

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Runs the fault tests and writes docs/reliability.md: what was tried, how often, and the outcome.
 
-Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every fault test, sanitizer and
-analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long; --run runs them (a part of
-the command, or `all`). --report writes the document from the kept outcomes.
+Fuzzers log their counts in tests/fuzz/counts.txt. The last outcome of every fault test, sanitizer
+and analyser is kept in tests/fault/checks.json. Sanitizers and analysers take long; --run runs them
+(a part of the command, or `all`). --report writes the document from the kept outcomes.
 """
 import argparse
 import json
@@ -24,24 +24,32 @@ FAULT_TESTS = [
     ("fault/test_kill.sh", "kill -9 at random moments, then `--restart`, until the run finishes"),
     ("agree/test_stops.c", "a stop after every step, for every integrator, with and without "
                            "sub-steps, and after "
-     "some steps of every shipped case. Every second run continues from an older checkpoint, on two "
+     "some steps of every shipped case. Every second run continues from an older checkpoint, on "
+     "two "
      "threads instead of one. State, rows and snapshots are compared bit by bit"),
-    ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another number "
+    ("agree/test_restart.sh", "interrupted runs against whole ones, bit by bit, and on another "
+                              "number "
                               "of threads"),
     ("agree/test_restart_cases.sh", "the same for every shipped case, coarse and short"),
-    ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at every "
+    ("output/test_checkpoint.c", "a checkpoint with every byte flipped, one at a time, cut at "
+                                 "every "
                                  "length, or "
      "of another case: it is recognised, and the one before it is used"),
-    ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed during a run"),
-    ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file fails, or "
+    ("fault/test_full.sh", "a full disk (a small tmpfs) at every stage; the folder removed during "
+                           "a run"),
+    ("fault/test_inject.sh", "the n-th call that makes, writes, syncs, renames or removes a file "
+                             "fails, or "
      "the program is killed within it (strace)"),
-    ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain fails "
+    ("fault/test_alloc.c", "every allocation of a run, a restart, a fork, --inspect and --explain "
+                           "fails "
      "once"),
     ("fault/test_run.sh", "command lines, folders, locks, signals, a guard"),
-    ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of files; "
+    ("fault/test_hostile.sh", "pipes, devices, links, huge files and odd names in the place of "
+                              "files; "
                               "bursts of "
      "signals"),
-    ("fault/test_audit.sh", "the files that a run touches, from the system calls; clocks that step back"),
+    ("fault/test_audit.sh", "the files that a run touches, from the system calls; clocks that step "
+                            "back"),
     ("fault/test_change.py", "every key of a case changed at a restart and at a fork"),
     ("fault/test_fork.sh", "`--inspect`, `--fork`, other formats, byte orders, dp"),
     ("case/test_case_errors.c", "bad case files against the exact message"),
@@ -60,7 +68,8 @@ FUZZED = {
     "motion": "motion tables",
     "reference": "reference curves, and the probes compared with them",
     "series": "rows of a run that is continued",
-    "checkpoint": "checkpoint reader: every input as it is, then with corrected checksums, loaded and "
+    "checkpoint": "checkpoint reader: every input as it is, then with corrected checksums, loaded "
+                  "and "
     "advanced by one step",
 }
 
@@ -70,7 +79,8 @@ def found_in(text):
 
 
 def program_version(program):
-    return subprocess.run([program, "--version"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    return subprocess.run([program, "--version"], cwd=ROOT, capture_output=True,
+                          text=True).stdout.strip()
 
 
 def kept():
@@ -106,14 +116,16 @@ def check(command, version):
     start = time.time()
     environment = {key: value for key, value in os.environ.items()
                    if key != "ARGS" and not key.startswith("MAKE")}
-    result = subprocess.run(command.split(), cwd=ROOT, env=environment, capture_output=True, text=True)
+    result = subprocess.run(command.split(), cwd=ROOT, env=environment, capture_output=True,
+                            text=True)
     found = found_in(result.stdout)
     found += re.findall(r"^\d+ passed, \d+ failed, \d+ skipped$", result.stdout, re.M)
     reports = len(re.findall(r"(?:WARNING: ThreadSanitizer|ERROR: AddressSanitizer|runtime error:|"
                              r"ERROR: LeakSanitizer)", result.stdout + result.stderr))
     if "test-" in command:
         found.append(f"{reports} reports")
-    keep(command, "passed" if result.returncode == 0 else "FAILED", found, version, time.time() - start)
+    keep(command, "passed" if result.returncode == 0 else "FAILED", found, version,
+         time.time() - start)
     if result.returncode:
         (ROOT / "build" / "failed-check.log").write_text(result.stdout + result.stderr)
     return result.returncode != 0
@@ -153,7 +165,8 @@ def fuzz_rows():
 def row(first, record):
     if not record:
         return f"| {first} | not run | | | |"
-    return (f"| {first} | {record['outcome']} | {'; '.join(record['found'])} | {record['version']}, "
+    return (f"| {first} | {record['outcome']} | {'; '.join(record['found'])} | "
+            f"{record['version']}, "
             f"{record['date']} | {record['seconds']} |")
 
 
@@ -175,13 +188,16 @@ def summary(records):
     scenes = random_cases()
     wrong = len(scenes.get("failures", ()))
     lost = bad + wrong + (tests - good)
-    said = (f"**What was lost: {'nothing' if not lost else f'something in {lost} of these trials'}.** "
-            f"Tried were kills, full disks, failing calls, damaged files and bad input: {good} of {tests} "
+    said = (f"**What was lost: "
+            f"{'nothing' if not lost else f'something in {lost} of these trials'}.** "
+            f"Tried were kills, full disks, failing calls, damaged files and bad input: {good} of "
+            f"{tests} "
             f"fault tests passed. {sum(int(line[1]) for line in lines):,} fuzzed inputs gave "
             f"{f'{bad} failed runs' if bad else 'no crash, hang, leak or report'}"
             f"{f' but {len(found)}, which {chr(44).join(found)} mended' if found else ''}. ")
     if scenes:
-        said += (f"{scenes['cases']:,} random scenes ran in {len(scenes['builds'])} builds, were killed "
+        said += (f"{scenes['cases']:,} random scenes ran in {len(scenes['builds'])} builds, were "
+                 f"killed "
                  f"{scenes['kills']:,} times, restarted and forked: "
                  f"{f'{wrong} differ' if wrong else 'all agree bit by bit'}. ")
     return said + f"{clean} of {checks} sanitizer and analyser runs passed."
@@ -194,13 +210,18 @@ def random_lines():
     count = scenes["outcomes"]
     lines = ["", "## Random scenes", "",
              "`make random-cases` draws small scenes with a seed and runs each with every build "
-             f"({', '.join(scenes['builds'])}) and on another number of threads. Each is killed and "
-             "restarted, stopped and restarted on another build, and forked without a change. State, rows "
+             f"({', '.join(scenes['builds'])}) and on another number of threads. Each is killed "
+             f"and "
+             "restarted, stopped and restarted on another build, and forked without a change. "
+             "State, rows "
              "and snapshots have to agree bit by bit; of a fork its last snapshot.", "",
              f"Of {scenes['cases']:,} scenes (seeds {scenes['seeds'][0]} to {scenes['seeds'][1]}, "
-             f"{scenes['steps']:,} steps) {count.get('finished', 0):,} finished with finite numbers and "
-             f"speeds below that of sound. {count.get('stopped by a guard', 0)} were stopped by a guard at "
-             f"the same step everywhere. {len(scenes['failures'])} differ. {count.get('refused', 0)} more "
+             f"{scenes['steps']:,} steps) {count.get('finished', 0):,} finished with finite "
+             f"numbers and "
+             f"speeds below that of sound. {count.get('stopped by a guard', 0)} were stopped by a "
+             f"guard at "
+             f"the same step everywhere. {len(scenes['failures'])} differ. "
+             f"{count.get('refused', 0)} more "
              f"were refused by a sentence. Program "
              f"{scenes['version']}, {scenes['date']}, {scenes['seconds']} s.",
              "", "| of the scenes | have |", "|---|---|"]
@@ -216,15 +237,19 @@ def report():
              "is edited by hand.", "",
              "## Fault tests", "", "Times were measured on a machine with other work.", "",
              "| test | what | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
-    lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test, what in FAULT_TESTS]
+    lines += [row(f"tests/{test} | {what}", records.get(f"tests/{test}")) for test,
+              what in FAULT_TESTS]
     lines += ["", "## Fuzzers", "",
-              "The fuzzers use libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer "
+              "The fuzzers use libFuzzer with AddressSanitizer, UndefinedBehaviorSanitizer and "
+              "LeakSanitizer "
               "(`make fuzz`). The counts are sums of tests/fuzz/counts.txt, which comes from the "
               "fuzzers' logs.", "",
-              "| what | executions | s | outcome | versions |", "|---|---|---|---|---|", *fuzz_rows()]
+              "| what | executions | s | outcome | versions |", "|---|---|---|---|---|",
+              *fuzz_rows()]
     lines += random_lines()
     lines += ["", "## Sanitizers and analysers", "",
-              "| tool | command | outcome | found | version, date | s |", "|---|---|---|---|---|---|"]
+              "| tool | command | outcome | found | version, date | s |",
+              "|---|---|---|---|---|---|"]
     lines += [row(f"{name} | `{command}`", records.get(command)) for name, command in CHECKED]
     return "\n".join(lines) + "\n"
 
@@ -232,9 +257,11 @@ def report():
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--short", action="store_true", help="the forms that make test runs")
-    parser.add_argument("--run", metavar="PART", help="also run the sanitizers and analysers whose command "
+    parser.add_argument("--run", metavar="PART", help="also run the sanitizers and analysers whose "
+                                                      "command "
                         "has this part, or all of them; `--only` those")
-    parser.add_argument("--report", action="store_true", help="run no fault tests, only write the report")
+    parser.add_argument("--report", action="store_true", help="run no fault tests, only write the "
+                                                              "report")
     parser.add_argument("--only", action="store_true", help="no fault tests, no report")
     parser.add_argument("--out", type=Path, default=ROOT / "docs" / "reliability.md")
     args = parser.parse_args()

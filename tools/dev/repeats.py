@@ -23,7 +23,8 @@ def code_lines(text):
 
 
 def equal_runs(files):
-    """(file, line, other file, other line, count) of each run, at its beginning. `files`: {name: text}."""
+    """(file, line, other file, other line, count) of each run, at its beginning. `files`: {name:
+    text}."""
     seen = defaultdict(list)
     rows = {name: list(code_lines(text)) for name, text in files.items()}
     for name, lines in rows.items():
@@ -50,12 +51,13 @@ def functions(text):
             first -= 1
         head = FUNCTION.search("\n".join(lines[first:number]))
         if head and not head[1].isupper():  # a macro names the others
-            yield first + 1, head[1], "static" in "\n".join(lines[first:number]).split(head[1] + "(")[0]
+            yield first + 1, head[1], "static" in "\n".join(lines[first:number]).split(head[1] +
+                                                                                       "(")[0]
 
 
 def same_names(files):
-    """(file, line, name, other file): a static function's name is unique in its folder, that of a global one
-    in the program."""
+    """(file, line, name, other file): a static function's name is unique in its folder, that of a
+    global one in the program."""
     seen = {}
     for name, text in files.items():
         for line, function, static in functions(text):

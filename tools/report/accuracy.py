@@ -9,7 +9,8 @@ docs/accuracy.json, docs/accuracy.md and its figures. An interrupted study conti
 it stopped. Examples:
 
   tools/report/accuracy.py                      run all missing points, then write the report
-  tools/report/accuracy.py --list               list the points and the time of those that are not cached
+  tools/report/accuracy.py --list               list the points and the time of those that are not
+  cached
   tools/report/accuracy.py --only gate          only points whose names begin with this
   tools/report/accuracy.py --report             the report from docs/accuracy.json alone
 """
@@ -29,7 +30,8 @@ except ImportError:
 import study_report
 from common import BadFile, run_tool
 from study_metrics import measure
-from study_points import (ROOT, cached_record, complain, expected_costs, give_keys, points_of, read_study,
+from study_points import (ROOT, cached_record, complain, expected_costs, give_keys, points_of,
+                          read_study,
                           take_older)
 from study_results import front_names
 from study_runs import run_point
@@ -43,7 +45,8 @@ def arguments():
     parser.add_argument("--study", type=Path, default=STUDY, help="the definition")
     parser.add_argument("--runs", type=Path, default=ROOT / "runs" / "study", help="the cache")
     parser.add_argument("--only", default="", help="run only points whose names begin with this")
-    parser.add_argument("--list", action="store_true", help="list the points and their expected cost")
+    parser.add_argument("--list", action="store_true", help="list the points and their expected "
+                                                            "cost")
     parser.add_argument("--cached", action="store_true",
                         help="run nothing; report what is cached or was collected before")
     parser.add_argument("--report", action="store_true", help="only write the report")
@@ -53,7 +56,8 @@ def arguments():
     parser.add_argument("--jobs", type=int, default=1,
                         help="points at a time; their timings are marked as taken side by side")
     parser.add_argument("--older", action="store_true",
-                        help="do not repeat points that an older program has run with the same effective "
+                        help="do not repeat points that an older program has run with the same "
+                             "effective "
                         "case; the report marks them")
     parser.add_argument("--prefix", default="", help="command in front of each run, such as nice")
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of the report")
@@ -63,7 +67,8 @@ def arguments():
 
 def run_all(points, study, args, again):
     """Records of all points by name. What is not cached runs now, `jobs` at a time."""
-    missing = {p["key"]: p for p in reversed(points) if p["key"] and p["name"].startswith(args.only) and
+    missing = {p["key"]: p for p in reversed(points) if p["key"] and
+               p["name"].startswith(args.only) and
                (again(p["name"]) or not cached_record(args.runs, p["key"]))}
     missing = {} if args.cached else dict(reversed(missing.items()))
     if missing:
@@ -76,7 +81,8 @@ def run_all(points, study, args, again):
             done.append(p["key"])
             left = [key for key in missing if key not in done]
             cpu = [t["cpu"] for t in record["timing"]]
-            print(f"[{len(done)}/{len(missing)}, {(time.monotonic() - started) / 60:.1f} min] {p['name']}: "
+            print(f"[{len(done)}/{len(missing)}, {(time.monotonic() - started) / 60:.1f} min] "
+                  f"{p['name']}: "
                   f"{record['outcome']}, {min(cpu):.2f} s of CPU ({len(cpu)} runs); "
                   f"{forecast(left, cost, args.jobs)}", flush=True)
 
@@ -87,9 +93,11 @@ def run_all(points, study, args, again):
 
 
 def collected(data):
-    """Points of the last results by name, with their errors. They replace points without a run here."""
+    """Points of the last results by name, with their errors. They replace points without a run
+    here."""
     try:
-        return {p["name"]: p for p in json.loads(data.read_text())["points"] if p["outcome"] != "not run"}
+        return {p["name"]: p for p in json.loads(data.read_text())["points"]
+                if p["outcome"] != "not run"}
     except (OSError, ValueError, KeyError, TypeError):
         return {}
 
@@ -128,7 +136,8 @@ def add_errors(records, study, runs):
                 try:
                     value, off = measure(error, runs / record["key"] / "run",
                                          best and runs / best["key"] / "run", ROOT)
-                except (BadFile, ArithmeticError, KeyError, OSError, TypeError, ValueError) as problem:
+                except (BadFile, ArithmeticError, KeyError, OSError, TypeError,
+                        ValueError) as problem:
                     study["holes"].append(f"{record['name']}: {error['name']}: {problem}")
                     complain(study["holes"][-1])
                     value, off = None, None
@@ -141,13 +150,17 @@ def collect(records, study, data):
     """One line for each point, so that a change of one is a change of a line."""
     rows = []
     for record in records.values():
-        keys = ("name", "case", "level", "knob", "value", "set", "outcome", "message", "program", "dp",
-                "steps", "solid_steps", "particle_steps", "evaluations", "errors", "values", "timing")
+        keys = ("name", "case", "level", "knob", "value", "set", "outcome", "message", "program",
+                "dp",
+                "steps", "solid_steps", "particle_steps", "evaluations", "errors", "values",
+                "timing")
         rows.append(json.dumps({k: record.get(k) for k in keys}))
     machines = sorted({json.dumps(r["machine"]) for r in records.values() if "machine" in r})
     versions = sorted({r["version"] for r in records.values() if r.get("version")})
-    head = {"program": study["program"], "versions": versions, "machines": [json.loads(m) for m in machines],
-            "holes": study["holes"], "definition": {k: study[k] for k in ("study", "preset", "case", "knob")}}
+    head = {"program": study["program"], "versions": versions,
+            "machines": [json.loads(m) for m in machines],
+            "holes": study["holes"],
+            "definition": {k: study[k] for k in ("study", "preset", "case", "knob")}}
     text = "{\n" + ",\n".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in head.items())
     data.write_text(text + ',\n"points": [\n' + ",\n".join(rows) + "\n]}\n")
 
@@ -167,7 +180,8 @@ def list_points(points, study, args):
 def main():
     args = arguments()
     own = ROOT / "docs" / "accuracy.json"
-    args.data = args.data or (own if args.study.resolve() == STUDY else args.study.with_name("results.json"))
+    args.data = args.data or (own if args.study.resolve() == STUDY
+                              else args.study.with_name("results.json"))
     ours = args.data.resolve() == own
     evidence = ROOT / "data" / "evidence.csv" if ours else None
     if args.report:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What all reports share: the program, runs of it in folders that are read at once, kept results as JSON,
-and tables in Markdown."""
+"""What all reports share: the program, runs of it in folders that are read at once, kept results as
+JSON, and tables in Markdown."""
 
 import argparse
 import csv
@@ -61,8 +61,8 @@ def cpu_seconds():
 
 
 class CaseRun:
-    """A run of a case: its tables and summary, the seconds of processor time that it took, and whether a
-    guard stopped it. `case` is a path or the text of a case."""
+    """A run of a case: its tables and summary, the seconds of processor time that it took, and
+    whether a guard stopped it. `case` is a path or the text of a case."""
 
     def __init__(self, case, sets, folder, *more, threads=1):
         self.folder = Path(folder)
@@ -98,7 +98,8 @@ def summary_of(case, sets, *more, **options):
 
 
 def case_of(scene, folder):
-    """The case of a scene: of cases/verify, of cases, or a template, which is written to the folder."""
+    """The case of a scene: of cases/verify, of cases, or a template, which is written to the
+    folder."""
     for path in (ROOT / "cases" / "verify" / f"{scene}.cfg", ROOT / "cases" / f"{scene}.cfg"):
         if path.is_file():
             return path
@@ -163,8 +164,8 @@ def write(path, template, **values):
 
 # --- reports of many small scenes ---
 def judged(rows):
-    """The first lines of a report: how many limits are kept, and which are missed. `rows` are (words, value,
-    limit)."""
+    """The first lines of a report: how many limits are kept, and which are missed. `rows` are
+    (words, value, limit)."""
     rows = [row for row in rows if row[2] is not None]
     missed = [f"* {words}: {number(value)}, limit {number(limit)}" for words, value, limit in rows
               if not kept(value, limit)]
@@ -173,9 +174,10 @@ def judged(rows):
 
 
 def run_scenes(doc, names, run_scene, path, report):
-    """The command line of such a report. run_scene(name) gives the figures of a scene for JSON; those of all
-    scenes are kept beside the report at `path`, so that --only runs some anew. report(known) gives the values
-    of its text, which lies beside the tool under the name of `path`."""
+    """The command line of such a report. run_scene(name) gives the figures of a scene for JSON;
+    those of all scenes are kept beside the report at `path`, so that --only runs some anew.
+    report(known) gives the values of its text, which lies beside the tool under the name of
+    `path`."""
     parser = argparse.ArgumentParser(description=doc,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", action="store_true", help="say which scenes there are")

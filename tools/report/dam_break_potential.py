@@ -6,18 +6,19 @@
   tools/report/dam_break_potential.py --spacing 0.008     a coarser solution, to the screen
 
 A square column of water, at rest between a wall and a plate, is free at t = 0. The fluid is
-incompressible and has no friction, so its velocity has a potential. Unit of length is the height H, of time
-sqrt(H/g).
+incompressible and has no friction, so its velocity has a potential. Unit of length is the height H,
+of time sqrt(H/g).
 
-Method (Longuet-Higgins and Cokelet 1976): nodes of the free surface move with the fluid, their potential
-changes by u^2/2 - y. The normal velocity follows from the potential by Green's identity over straight
-elements, whose integrals are exact. The mirror images in the wall and in the bed take the place of both, so
-that only the free surface has nodes. Steps are those of Runge and Kutta. After each the nodes are set anew
-on cubic splines and smoothed by the formula of five points of that article.
+Method (Longuet-Higgins and Cokelet 1976): nodes of the free surface move with the fluid, their
+potential changes by u^2/2 - y. The normal velocity follows from the potential by Green's identity
+over straight elements, whose integrals are exact. The mirror images in the wall and in the bed take
+the place of both, so that only the free surface has nodes. Steps are those of Runge and Kutta.
+After each the nodes are set anew on cubic splines and smoothed by the formula of five points of
+that article.
 
-At t = 0 the acceleration is infinite at the foot (Pohle 1952), as the logarithm of the distance. The
-spacing of the nodes is least there, and the nose of the tongue is as round as they resolve it. The upper
-corner has a radius, CORNER."""
+At t = 0 the acceleration is infinite at the foot (Pohle 1952), as the logarithm of the distance.
+The spacing of the nodes is least there, and the nose of the tongue is as round as they resolve it.
+The upper corner has a radius, CORNER."""
 import argparse
 import math
 from pathlib import Path
@@ -66,7 +67,8 @@ class Spline:
     def slope(self):
         h, m = np.diff(self.s), self.m
         slopes = np.diff(self.f) / h
-        return np.append(slopes - h * (2 * m[:-1] + m[1:]) / 6, slopes[-1] + h[-1] * (m[-2] + 2 * m[-1]) / 6)
+        return np.append(slopes - h * (2 * m[:-1] + m[1:]) / 6,
+                         slopes[-1] + h[-1] * (m[-2] + 2 * m[-1]) / 6)
 
 
 def lengths(x, y):
@@ -80,8 +82,8 @@ def splines(x, y, phi):
 
 
 def element_integrals(px, py, x, y):
-    """Over each straight element, seen from each point p: of ln r times the weights of its two ends, and
-    of the derivative of ln r along the normal to the right."""
+    """Over each straight element, seen from each point p: of ln r times the weights of its two
+    ends, and of the derivative of ln r along the normal to the right."""
     tx, ty = np.diff(x), np.diff(y)
     length = np.hypot(tx, ty)
     tx, ty = tx / length, ty / length
@@ -98,7 +100,8 @@ def element_integrals(px, py, x, y):
 
 
 def normal_velocity(x, y, phi):
-    """Outward normal derivative of the potential at the nodes. The surface goes from the wall to the tip."""
+    """Outward normal derivative of the potential at the nodes. The surface goes from the wall to
+    the tip."""
     n = len(x)
     single, double = np.zeros((n, n)), np.zeros((n, n))
     for mx in (1, -1):
@@ -137,15 +140,18 @@ def spread(length, size):
 
 def sizes(length, corner, spacing):
     """The spacing of the nodes grows with the distance from the tip and from the upper corner."""
-    return lambda s: spacing * np.minimum(np.minimum(10, 1 + 25 * (length - s)), 1.5 + 40 * abs(s - corner))
+    return lambda s: spacing * np.minimum(np.minimum(10, 1 + 25 * (length - s)),
+                                          1.5 + 40 * abs(s - corner))
 
 
 def column(spacing):
     """The surface at the start: top, rounded corner, side."""
     turn = np.linspace(0, math.pi / 2, 200)
     flat = 1 - CORNER
-    x = np.concatenate([np.linspace(0, flat, 400)[:-1], flat + CORNER * np.sin(turn), np.ones(3000)])
-    y = np.concatenate([np.ones(399), flat + CORNER * np.cos(turn), flat * np.linspace(1, 0, 3001)[1:]])
+    x = np.concatenate([np.linspace(0, flat, 400)[:-1], flat + CORNER * np.sin(turn),
+                        np.ones(3000)])
+    y = np.concatenate([np.ones(399), flat + CORNER * np.cos(turn),
+                        flat * np.linspace(1, 0, 3001)[1:]])
     s = lengths(x, y)
     corner = flat + CORNER * math.pi / 4
     nodes = spread(s[-1], sizes(s[-1], corner, spacing))
@@ -153,13 +159,15 @@ def column(spacing):
 
 
 def smooth(f, mirror_wall, mirror_bed):
-    """The formula of five points of Longuet-Higgins and Cokelet, which leaves cubics as they are."""
+    """The formula of five points of Longuet-Higgins and Cokelet, which leaves cubics as they
+    are."""
     e = np.concatenate([mirror_wall * f[2:0:-1], f, mirror_bed * f[-2:-4:-1]])
     return (-e[:-4] + 4 * e[1:-3] + 10 * e[2:-2] + 4 * e[3:-1] - e[4:]) / 16
 
 
 def set_anew(state, corner, spacing):
-    """Nodes with the spacing that is asked for, smoothed; corner is the node of the upper corner."""
+    """Nodes with the spacing that is asked for, smoothed; corner is the node of the upper
+    corner."""
     x, y, phi = splines(*state)
     nodes = spread(x.s[-1], sizes(x.s[-1], x.s[corner], spacing))
     corner = int(np.argmin(abs(nodes - x.s[corner])))
@@ -198,14 +206,16 @@ def solve(spacing, end):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--spacing", type=float, help="least spacing of nodes, H; its solution to the screen")
+    parser.add_argument("--spacing", type=float, help="least spacing of nodes, H; its solution to "
+                                                      "the screen")
     chosen = parser.parse_args()
     at = np.linspace(0, END, ROWS + 1)
     spacing = chosen.spacing or 0.002
     time, front, state = solve(spacing, END)
     rows = np.interp(at, time, front)
     start = column(spacing)
-    print(f"area {area(state) / area(start) - 1:+.1e}, energy {energy(state) / energy(start) - 1:+.1e}")
+    print(f"area {area(state) / area(start) - 1:+.1e}, energy "
+          f"{energy(state) / energy(start) - 1:+.1e}")
     lines = "".join(f"{t:.2f},{x:.4f}\n" for t, x in zip(at, rows))
     if chosen.spacing:
         print(lines)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Writes docs/energy_account.md: what the account of energy (docs/theory.md, T-46) finds in scenes of
-every kind, with the default step and smaller ones, and in a grid of plates between waters.
+"""Writes docs/energy_account.md: what the account of energy (docs/theory.md, T-46) finds in scenes
+of every kind, with the default step and smaller ones, and in a grid of plates between waters.
 
 Example: tools/report/energy_account.py --grid"""
 import argparse
@@ -105,24 +105,31 @@ def grid_lines():
     middle = {name: sorted(worst[name])[len(worst[name]) // 2] for name in TERMS}
     typical = [f"{name}: {percent(middle[name])} %, at most {percent(max(worst[name]))} %"
                for name in TERMS]
-    return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they bend by more",
-            "than a tenth of their length, buckle or are crushed (`statics` in `tools/report/stability_map.py`).",
-            "Under such strains the law `paper` gains energy, because it has no potential; `svk` and",
+    return [f"Of {len(cases)} plates {left_out} cannot stand by statics and were left out: they "
+            f"bend by more",
+            "than a tenth of their length, buckle or are crushed (`statics` in "
+            "`tools/report/stability_map.py`).",
+            "Under such strains the law `paper` gains energy, because it has no potential; `svk` "
+            "and",
             "`neo_hookean` have one.", "",
-            f"Of the other {len(cases) - left_out} plates {stopped} were stopped, and {above} gained more",
-            "than 1 % of the energy available until then by a term of the account. The largest gain over the",
+            f"Of the other {len(cases) - left_out} plates {stopped} were stopped, and {above} "
+            f"gained more",
+            "than 1 % of the energy available until then by a term of the account. The largest "
+            "gain over the",
             "largest available energy of the run:",
             "",
             "Median and largest gain by term:", "", *(f"- {term}" for term in typical), "",
             "Those above 1 %:", "", *(f"- {text}" for text in where), "",
-            "These gain by the law `paper`; with `law = svk` all terms gain less than half of 1 %, with any",
+            "These gain by the law `paper`; with `law = svk` all terms gain less than half of 1 %, "
+            "with any",
             "step ([theory.md](theory.md), after T-46)."]
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--grid", action="store_true", help="also 192 plates between waters (ten minutes)")
+    parser.add_argument("--grid", action="store_true", help="also 192 plates between waters (ten "
+                                                            "minutes)")
     parser.add_argument("--out", default=str(ROOT / "docs/energy_account.md"), help="the document")
     args = parser.parse_args()
     lines = ["# The account of energy", "",
@@ -134,8 +141,10 @@ def main():
              scenes_table()]
     if args.grid:
         lines += ["", "## Plates between waters", "",
-                  "`tests/stability/thin.cfg` with 0.1 m of water against 0.05 m, 0.1 s: eight densities",
-                  "from 20 to 10,000 kg/m^3, 2 to 8 particles across, three stiffnesses, `leapfrog` and",
+                  "`tests/stability/thin.cfg` with 0.1 m of water against 0.05 m, 0.1 s: eight "
+                  "densities",
+                  "from 20 to 10,000 kg/m^3, 2 to 8 particles across, three stiffnesses, "
+                  "`leapfrog` and",
                   "`verlet`.", "",
                   *grid_lines()]
     Path(args.out).write_text("\n".join(lines) + "\n", encoding="utf-8")

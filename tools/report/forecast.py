@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Holds what --explain foresees against what runs take: steps and wall time of the shipped cases, each
-cut short by --until so that it takes about as long as --seconds says.
+"""Holds what --explain foresees against what runs take: steps and wall time of the shipped cases,
+each cut short by --until so that it takes about as long as --seconds says.
 
 Writes docs/forecast.json, one run a line, and the accuracy report, which shows it. A case
 that fails is shown as that. Examples:
@@ -40,7 +40,8 @@ def arguments():
 
 
 def foreseen(case, threads, more):
-    """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does not."""
+    """Steps, steps of the solid and seconds as --explain says; a BadFile with its words if it does
+    not."""
     done = subprocess.run([str(PROGRAM), "--explain", str(case), "--threads", str(threads), *more],
                           capture_output=True, text=True, check=False)
     steps = re.search(r"(?m)^ *about ([\d.e+]+) steps of [\d.]", done.stdout)
@@ -63,7 +64,8 @@ def end_time(case):
 
 
 def taken(case, threads, more, folder):
-    command = [str(PROGRAM), str(case), "--quiet", "--out", str(folder), "--threads", str(threads), *more]
+    command = [str(PROGRAM), str(case), "--quiet", "--out", str(folder), "--threads", str(threads),
+               *more]
     status, timing, said = timed(command, threads, 3600)
     if status != 0:
         raise BadFile(said.splitlines()[-1] if said else f"exit status {status}")
@@ -106,7 +108,8 @@ def main():
     args.data.write_text(json.dumps(head)[:-1] + ', "rows": [\n' + lines + "\n]}\n")
     print(f"written {args.data}")
     results = args.data.with_name("accuracy.json")
-    return 0 if args.no_report or not results.exists() else study_report.write(results, ROOT / "docs")
+    return 0 if args.no_report or not results.exists() else study_report.write(results,
+                                                                               ROOT / "docs")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,8 @@
 """Draws the three charts of the README from results that are committed.
 
     tools/report/glance.py                    draws docs/img/glance_{accuracy,stability,effects}.png
-    tools/report/glance.py --measure          first measures the cost of the gate as effects are added (two minutes)
+    tools/report/glance.py --measure          first measures the cost of the gate as effects are
+    added (two minutes)
 """
 import argparse
 import csv
@@ -23,7 +24,8 @@ import matplotlib.pyplot as plt
 ROOT = Path(__file__).resolve().parents[2]
 IMG = ROOT / "docs" / "img"
 EFFECTS = ROOT / "docs" / "effects.csv"
-MAIN_ERROR = {  # case of the accuracy study: its name, its main error, what the error is measured against
+# case of the accuracy study: its name, its main error, what the error is measured against
+MAIN_ERROR = {
     "cantilever": ("cantilever, period", "period", "exact"),
     "elastica": ("bending, tip", "tip, in lengths", "exact"),
     "plate": ("hydrostatic plate, deflection", "settled deflection", "exact"),
@@ -41,21 +43,26 @@ STAGES = [
     ("+ density diffusion", {}, False),
     ("+ elastic gate", {}, True),
     ("+ wall repulsion", {"water.wall_repulsion": "0.1"}, True),
-    ("+ laminar viscosity", {"water.wall_repulsion": "0.1", "water.laminar_viscosity": "1e-6"}, True),
+    ("+ laminar viscosity", {"water.wall_repulsion": "0.1", "water.laminar_viscosity": "1e-6"},
+     True),
     ("+ particle shifting", {"water.wall_repulsion": "0.1", "water.laminar_viscosity": "1e-6",
                              "water.shifting": "0.5"}, True),
 ]
 
 
 def cost_and_error(points, case, error, paper):
-    """(CPU seconds, error in %) of a case with default settings, or with the scheme of the paper."""
-    return sorted((min(t["cpu"] for t in p["timing"]), 100 * abs(p["errors"][error])) for p in points
+    """(CPU seconds, error in %) of a case with default settings, or with the scheme of the
+    paper."""
+    return sorted((min(t["cpu"] for t in p["timing"]), 100 * abs(p["errors"][error]))
+                  for p in points
                   if p["case"] == case and p["outcome"] == "finished" and p["errors"].get(error)
-                  and (p["knob"] == "scheme" and p["value"] == "paper" if paper else p["knob"] == "base"))
+                  and (p["knob"] == "scheme" and p["value"] == "paper" if paper
+                       else p["knob"] == "base"))
 
 
 def draw_accuracy():
-    """Error against CPU seconds of every case with default settings; thin: with the scheme of the paper."""
+    """Error against CPU seconds of every case with default settings; thin: with the scheme of the
+    paper."""
     points = json.loads((ROOT / "docs/accuracy.json").read_text())["points"]
     figure, axes = plt.subplots(figsize=(6, 3.8))
     paper = False
@@ -64,12 +71,14 @@ def draw_accuracy():
         if rows:
             line, = axes.loglog(*zip(*rows), STYLE[against], marker="o", ms=4, label=label)
             # An error below that of a finer run has changed its sign on the way: a zero crossing.
-            lucky = [row for k, row in enumerate(rows) if any(row[1] < 0.9 * e for _, e in rows[k + 1:])]
+            lucky = [row for k, row in enumerate(rows)
+                     if any(row[1] < 0.9 * e for _, e in rows[k + 1:])]
             for cpu, off in lucky:
                 axes.plot(cpu, off, "o", ms=4, color="white", markeredgecolor=line.get_color())
             beside = cost_and_error(points, case, error, True)
             if beside:
-                axes.loglog(*zip(*beside), STYLE[against], marker="x", ms=4, lw=0.7, color=line.get_color())
+                axes.loglog(*zip(*beside), STYLE[against], marker="x", ms=4, lw=0.7,
+                            color=line.get_color())
                 paper = True
     for against, style in STYLE.items():
         axes.plot([], [], style, color="0.3", label=f"error against: {against}")
@@ -83,9 +92,11 @@ def draw_accuracy():
 
 
 def stability_rows():
-    """(scene, passes with defaults, passes with a setting) of each scene of the suite; runs of the same scene
-    with a setting, or without a remedy that is on by default, are no scenes of their own."""
-    table = (ROOT / "docs/stability.md").read_text().split("| scene | what it is |")[1].split("\n## ")[0]
+    """(scene, passes with defaults, passes with a setting) of each scene of the suite; runs of the
+    same scene with a setting, or without a remedy that is on by default, are no scenes of their
+    own."""
+    table = (ROOT /
+             "docs/stability.md").read_text().split("| scene | what it is |")[1].split("\n## ")[0]
     passes = {}
     for line in table.splitlines():
         cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
@@ -97,7 +108,8 @@ def stability_rows():
 
 
 def draw_stability():
-    """One square for each hard scene: green passes by default, amber with a setting, red not at all."""
+    """One square for each hard scene: green passes by default, amber with a setting, red not at
+    all."""
     rows = list(stability_rows())
     colour = ["#3a8f4d" if ok else "#e5a823" if setting else "#c0392b" for _, ok, setting in rows]
     across = 14
@@ -107,13 +119,15 @@ def draw_stability():
     total = {c: colour.count(c) for c in ("#3a8f4d", "#e5a823", "#c0392b")}
     axes.set(xlim=(-0.1, across), ylim=(-((len(rows) - 1) // across) - 0.1, 1), aspect="equal")
     axes.set_title(f"{len(rows)} hard scenes: {total['#3a8f4d']} pass with defaults (green), "
-                   f"{total['#e5a823']} with a setting (amber), {total['#c0392b']} fail (red)", fontsize=9)
+                   f"{total['#e5a823']} with a setting (amber), {total['#c0392b']} fail (red)",
+                   fontsize=9)
     axes.axis("off")
     save(figure, "stability")
 
 
 def gate(elastic):
-    """The text of the gate case without probes; without its elastic body where that is not wanted."""
+    """The text of the gate case without probes; without its elastic body where that is not
+    wanted."""
     words = "probe|reference" if elastic else "probe|reference|solid|contact|load"
     return re.sub(rf"^\[(?:{words}) [^\n]*\n(?:(?!\[)[^\n]*\n)*", "",
                   (ROOT / "cases/gate.cfg").read_text(), flags=re.M)
@@ -129,7 +143,8 @@ def measure(program, repeats=5):
                 case.write_text(gate(elastic))
                 sets = [word for key, value in {**settings, "dp": "1 mm"}.items()
                         for word in ("--set", f"{key}={value}")]
-                subprocess.run([program, case, "--quiet", "--threads", "1", "--until", "0.02", "--out", out,
+                subprocess.run([program, case, "--quiet", "--threads", "1", "--until", "0.02",
+                                "--out", out,
                                 *sets], check=True, stderr=subprocess.DEVNULL)
                 summary = json.loads((out / "summary.json").read_text())
                 phases = summary["phase_seconds"]
@@ -138,7 +153,8 @@ def measure(program, repeats=5):
     with EFFECTS.open("w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["effects", "ms_per_step"])
-        writer.writerows([label, f"{statistics.median(c):.4g}"] for (label, _, _), c in zip(STAGES, cost))
+        writer.writerows([label, f"{statistics.median(c):.4g}"] for (label, _, _),
+                         c in zip(STAGES, cost))
 
 
 def draw_effects():

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Orders of convergence against manufactured solutions: in the fluid, at no-slip walls and in the solid.
+"""Orders of convergence against manufactured solutions: in the fluid, at no-slip walls and in the
+solid.
 
-  tools/report/manufactured.py                      writes docs/manufactured.md (some minutes on one core)
+  tools/report/manufactured.py                      writes docs/manufactured.md (some minutes on one
+  core)
   tools/report/manufactured.py wall --ratios 25 50  one scene at some resolutions, to the screen
 
-A field is chosen, and the acceleration that makes it a solution is added to that of the program. The scenes
-are cases/verify/manufactured_*.cfg; the method is that of Roache (2002) and, for particles, of Negi and
-Ramachandran (2022, arXiv 2208.10848)."""
+A field is chosen, and the acceleration that makes it a solution is added to that of the program.
+The scenes are cases/verify/manufactured_*.cfg; the method is that of Roache (2002) and, for
+particles, of Negi and Ramachandran (2022, arXiv 2208.10848)."""
 import argparse
 import math
 
@@ -54,7 +56,8 @@ class Flow:
         return DENSITY * (3 + x[0] * y[0])
 
     def acceleration(self, p):
-        """v_t + (v . grad) v + grad P/rho - (nu rho0/rho) lap v: the dynamic viscosity is constant"""
+        """v_t + (v . grad) v + grad P/rho - (nu rho0/rho) lap v: the dynamic viscosity is
+        constant"""
         x, y = self.factors(p)
         g, rate = 1 + 0.5 * math.sin(K * p.time), 0.5 * K * math.cos(K * p.time)
         u, v = x[0] * y[1] / K, -x[1] * y[0] / K
@@ -165,7 +168,8 @@ def study(scene, ratios):
 def report(studies):
     lines, met, missed = [], [], []
     for scene, rows in studies.items():
-        lines += ["", f"| {scene}, L/dp = | " + " | ".join(map(str, RATIOS[scene])) + " | order | asked |",
+        lines += ["", f"| {scene}, L/dp = | " + " | ".join(map(str, RATIOS[scene])) +
+                  " | order | asked |",
                   "|---|" + "---|" * (len(RATIOS[scene]) + 2)]
         for scheme, quantity, errors in rows:
             found = order(RATIOS[scene], errors)
@@ -178,12 +182,17 @@ def report(studies):
         "**With which order does it converge?** " + (f"Met: {'; '.join(met)}. " if met else "")
         + (f"Missed: {'; '.join(missed)}." if missed else "All orders asked for are met."), "",
         f"Written by `make verify-manufactured`; do not edit. {program_version()}. The order is",
-        "that between the two finest runs. Errors are RMS over the particles at the end: of the velocity",
-        "over its scale U, of the pressure over rho U^2, of the displacement over its largest, of the stress",
-        "over its RMS. The scenes are `cases/verify/manufactured_*.cfg`; see `tools/report/manufactured.py`.",
+        "that between the two finest runs. Errors are RMS over the particles at the end: of the "
+        "velocity",
+        "over its scale U, of the pressure over rho U^2, of the displacement over its largest, of "
+        "the stress",
+        "over its RMS. The scenes are `cases/verify/manufactured_*.cfg`; see "
+        "`tools/report/manufactured.py`.",
         *lines, "",
-        "On a sheared lattice the error of T-6 does not depend on the spacing: its sums converge only with more",
-        "neighbours (a larger `h_over_dp`). In the solid the quadratic gradient (T-16) is exact for quadratic",
+        "On a sheared lattice the error of T-6 does not depend on the spacing: its sums converge "
+        "only with more",
+        "neighbours (a larger `h_over_dp`). In the solid the quadratic gradient (T-16) is exact "
+        "for quadratic",
         "fields.", ""])
 
 
@@ -198,7 +207,8 @@ def main():
         for scheme, quantity, errors in study(args.scene, ratios):
             print(scheme, quantity, " ".join(f"{e:.4g}" for e in errors))
         return
-    REPORT.write_text(report({scene: study(scene, RATIOS[scene]) for scene in RATIOS}), encoding="utf-8")
+    REPORT.write_text(report({scene: study(scene, RATIOS[scene]) for scene in RATIOS}),
+                      encoding="utf-8")
     print(f"written: {REPORT.relative_to(ROOT)}")
 
 

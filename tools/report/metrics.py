@@ -29,8 +29,8 @@ def oscillation(time, value, period):
 
 
 def damped_sine(time, value, omega, mean=False):
-    """Frequency and decay of C exp(-g t) cos(w t + phi) that fits best, near `omega`; with `mean` of
-    exp(-g t) (C cos(w t + phi) + D)."""
+    """Frequency and decay of C exp(-g t) cos(w t + phi) that fits best, near `omega`; with `mean`
+    of exp(-g t) (C cos(w t + phi) + D)."""
     def misfit(w, g):
         fade = np.exp(-g * time)
         base = np.stack([fade * np.cos(w * time), fade * np.sin(w * time)] + [fade] * mean, axis=1)
@@ -109,8 +109,8 @@ def elastica(load, points=400):
 
 def lattice_shear(h_over_dp):
     """Square of the speed of shear waves across the diagonal of an even lattice under a pressure p,
-    over p/rho: the sum of V s^2 W_tt over the neighbours, s along the diagonal and t across it, which
-    follows from Eq. 3b for small displacements. A fluid has none; kernel of Eq. 4."""
+    over p/rho: the sum of V s^2 W_tt over the neighbours, s along the diagonal and t across it,
+    which follows from Eq. 3b for small displacements. A fluid has none; kernel of Eq. 4."""
     n, h = int(2 * h_over_dp) + 1, h_over_dp
     x, y = (a.ravel() for a in np.meshgrid(np.arange(-n, n + 1.0), np.arange(-n, n + 1.0)))
     r = np.hypot(x, y)
@@ -132,7 +132,8 @@ def nearest(points, others, reach):
     for k in range(0, len(points), 256):
         part = points[k:k + 256]
         if len(others):
-            d = np.hypot(part[:, None, 0] - others[None, :, 0], part[:, None, 1] - others[None, :, 1])
+            d = np.hypot(part[:, None, 0] - others[None, :, 0],
+                         part[:, None, 1] - others[None, :, 1])
             result[k:k + 256] = np.minimum(reach, d.min(axis=1))
     return result
 
@@ -158,8 +159,8 @@ def close_pairs(points, others, reach):
 
 
 def surrounded(points, others, reach, sector):
-    """How many points have others nearer than reach on all sides: none of their directions leaves a free
-    sector (rad) as wide as that."""
+    """How many points have others nearer than reach on all sides: none of their directions leaves a
+    free sector (rad) as wide as that."""
     if not len(points) or not len(others):
         return 0
     a, b = close_pairs(points, others, reach)
@@ -178,14 +179,16 @@ def surrounded(points, others, reach, sector):
 def beam_frequency(young, poisson, density, thickness, length):
     """First frequency (Hz) of a thin cantilever in plane strain, Euler and Bernoulli."""
     stiffness = young / (1 - poisson ** 2) * thickness ** 3 / 12
-    return 1.875104 ** 2 / (2 * math.pi * length ** 2) * math.sqrt(stiffness / (density * thickness))
+    return 1.875104 ** 2 / (2 * math.pi * length ** 2) * math.sqrt(stiffness /
+                                                                   (density * thickness))
 
 
 def about_running_mean(time, value, width):
     """Time and what is left of a curve when its mean over `width` (s) is taken out."""
     half = max(1, round(0.5 * width / float(np.median(np.diff(time)))))
     if len(time) < 4 * half:
-        raise BadFile(f"a curve of {time[-1] - time[0]:.3g} s is too short for a mean over {width:g} s")
+        raise BadFile(f"a curve of {time[-1] - time[0]:.3g} s is too short for a mean over "
+                      f"{width:g} s")
     return time[half:-half], value[half:-half] - running_mean(value, 2 * half + 1)
 
 

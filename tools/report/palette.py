@@ -14,14 +14,15 @@ def as_numbers(colours):
 
 
 def choose(image, size):
-    """A palette for a picture: EXACT, and colours that spread over all that the picture has. By their
-    spread, since a choice by how often colours occur gives thin lines and ends of colour bars to none."""
+    """A palette for a picture: EXACT, and colours that spread over all that the picture has. By
+    their spread, since a choice by how often colours occur gives thin lines and ends of colour bars
+    to none."""
     chosen = image.quantize(size - len(EXACT), method=Image.Quantize.MAXCOVERAGE, kmeans=3,
                             dither=Image.Dither.NONE)
     others = np.array(chosen.getpalette()).reshape(-1, 3)[:size - len(EXACT)]
     exact, lines = as_numbers(EXACT), as_numbers(COLOURS)
-    # Scaling has shifted most pixels of a thin line a little: none but its own colour is near. Beside white
-    # and black this would take the pale and the dark end of a colour bar.
+    # Scaling has shifted most pixels of a thin line a little: none but its own colour is near.
+    # Beside white and black this would take the pale and the dark end of a colour bar.
     away = np.abs(others[:, None] - lines[None]).max(axis=2).min(axis=1)
     return np.concatenate([exact, others[away > NEAR]])
 
@@ -46,8 +47,8 @@ def indexed(image, size=256):
 
 
 def shrink(path, texts, width=1500):
-    """Makes a picture file small: at most `width` pixels wide, from a palette. `texts` are written into
-    it, {name: text}."""
+    """Makes a picture file small: at most `width` pixels wide, from a palette. `texts` are written
+    into it, {name: text}."""
     words = PngImagePlugin.PngInfo()
     for name, text in texts.items():
         words.add_text(name, text)

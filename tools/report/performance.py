@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Measures the cost of the program and writes bench/<processor>.csv and docs/performance.md.
 
-Four parts: the bench program (nanoseconds by phase, one thread and all; a million particles, too), the
-longest stable step of each integrator (a dam break against a wall), whole runs, and all of that
+Four parts: the bench program (nanoseconds by phase, one thread and all; a million particles, too),
+the longest stable step of each integrator (a dam break against a wall), whole runs, and all of that
 against the targets there are (performance_targets.py).
-Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the bench
-only, prints the change against the file there was, and writes it anew.
+Every figure is of this machine as it is loaded now, which the report states. `--bench` runs the
+bench only, prints the change against the file there was, and writes it anew.
 
 Example: tools/report/performance.py --bench
 """
@@ -27,8 +27,8 @@ BUILD = Path(os.environ.get("BUILD") or ROOT / "build/release").resolve()
 paragraph = words_of("performance_words.md")
 STEPS = {"symplectic": (0.1, 0.2, 0.3, 0.4), "verlet": (0.1, 0.2, 0.3),
          "leapfrog": (0.2, 0.3, 0.4, 0.5, 0.6)}
-# Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides, counted in the
-# source.
+# Arithmetic of a pack of pairs in the loop with viscosity and diffusion, sums of both sides,
+# counted in the source.
 OPERATIONS = 46
 # And of a solid's pair in the default form, its three loops together, displacements in two parts.
 SOLID_OPERATIONS = 56
@@ -38,7 +38,8 @@ def arguments():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bench", action="store_true", help="the bench only")
-    parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median counts")
+    parser.add_argument("--reps", type=int, default=5, help="repetitions, of which the median "
+                                                            "counts")
     parser.add_argument("--large", action="store_true",
                         help="with --bench: a million particles as well, as there are without it")
     return parser.parse_args()
@@ -47,7 +48,8 @@ def arguments():
 def run_bench(args):
     """Comment lines, and rows by (what, variant, particles, threads, part)."""
     command = [str(BUILD / "bench_bench"), "--reps", str(args.reps)]
-    out = subprocess.run(command + ["--large"] * (args.large or not args.bench), check=True, text=True,
+    out = subprocess.run(command + ["--large"] * (args.large or not args.bench), check=True,
+                         text=True,
                          capture_output=True).stdout
     ways = subprocess.run([str(BUILD / "bench_neighbours"), "--reps", str(args.reps)],
                           check=True, text=True, capture_output=True).stdout
@@ -136,7 +138,8 @@ def work_runs(threads):
                               "rate": 1e-6 * summary["particle_steps_per_second"]}
             whole = sum(seconds.values()) or 1
             share = ", ".join(f"{k} {100 * v / whole:.0f}" for k, v in seconds.items())
-            tops = [np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and len(c)]
+            tops = [np.max(np.abs(c)) for name, c in m1.items() if name.startswith("M1_d") and
+                    len(c)]
             peak = max(tops, default=float("nan"))
             rows.append((words, n, summary["steps"], summary["solid_substeps"],
                          f"{summary['wall_seconds']:.1f}",
@@ -152,14 +155,17 @@ def shared_work(threads):
     seconds = {1: [], threads: []}
     for _ in range(5):
         for n, found in seconds.items():
-            summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], "--until", "0.02", threads=n)
+            summary, _ = run_case("cases/gate.cfg", ["integrator=leapfrog"], "--until", "0.02",
+                                  threads=n)
             if summary is None:
                 return "The gate with dp = 0.5 mm did not run.", {}
             phases = summary["phase_seconds"]
             found.append((summary["wall_seconds"], sum(phases.values()) - phases["output"]))
     (one, steps_one), (many, steps_many) = (np.median(found, axis=0) for found in seconds.values())
     particles = sum(summary["particles"].values())
-    return (paragraph("shared work", particles=particles, one=one, many=many, threads=threads, many_2=one / many, steps_one=steps_one, steps_many=steps_many, steps_many_2=steps_one / steps_many),
+    return (paragraph("shared work", particles=particles, one=one, many=many, threads=threads,
+                      many_2=one / many, steps_one=steps_one, steps_many=steps_many,
+                      steps_many_2=steps_one / steps_many),
             {"with output": one / many, "steps alone": steps_one / steps_many})
 
 
@@ -169,9 +175,14 @@ def neighbour_words(rows):
              if key[0] == "neighbours"}
     n = next(key[2] for key in rows if key[0] == "neighbours")
     swept = {"clusters, pairs once": found["chunk", "list and sweep"],
-             "clusters": found["cluster", "list and sweep"], "tile": found["tile", "copy and sweep"],
+             "clusters": found["cluster", "list and sweep"],
+             "tile": found["tile", "copy and sweep"],
              "list": found["list", "sweep"]}
-    return (paragraph("neighbour words", n=n, swept=swept["clusters, pairs once"], pairs=found["chunk", "pairs"], clusters=swept["clusters"], pairs_2=found["cluster", "pairs"], tile=swept["tile"], list=swept["list"], build=found["list", "build"], entries=4 * found["list", "entries"], swept_2=min(swept, key=swept.get)))
+    return (paragraph("neighbour words", n=n, swept=swept["clusters, pairs once"],
+                      pairs=found["chunk", "pairs"], clusters=swept["clusters"],
+                      pairs_2=found["cluster", "pairs"], tile=swept["tile"], list=swept["list"],
+                      build=found["list", "build"], entries=4 * found["list", "entries"],
+                      swept_2=min(swept, key=swept.get)))
 
 
 def bench_tables(rows):
@@ -190,16 +201,20 @@ def bench_tables(rows):
         ["form", "threads", "ns"],
         [(key[1], key[3], f"{float(row['median']):.1f}") for key, row in rows.items()
          if key[0] == "solid" and key[4] == "step"]))
-    written = [(v, n, t, *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
-               for v in variants for n in sizes for t in threads if ("fluid", v, n, t, "snapshot") in rows]
+    written = [(v, n, t,
+                *(f"{value('fluid', v, n, t, part):.0f}" for part in ("snapshot", "checkpoint")))
+               for v in variants for n in sizes for t in threads
+               if ("fluid", v, n, t, "snapshot") in rows]
     if written:
         text.append("Time in ns per fluid particle of a snapshot and of a checkpoint, with sync of "
                     "files and folder:\n\n" +
                     table(["kernel", "particles", "threads", "snapshot", "checkpoint"], written))
-    counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)" for v in variants
+    counted = [f"{value('fluid', v, n, 1, 'instructions'):.0f} ({v}, {n} particles)"
+               for v in variants
                for n in sizes if ("fluid", v, n, 1, "instructions") in rows]
     text.append("Instructions a particle and evaluation: " + (", ".join(counted) or
-                "not measured, because this machine has no counter. [absence.md](absence.md) has counts by "
+                "not measured, because this machine has no counter. [absence.md](absence.md) has "
+                "counts by "
                 "valgrind") + ".")
     if any(key[0] == "neighbours" for key in rows):
         text.append(neighbour_words(rows))
@@ -210,21 +225,25 @@ def bench_tables(rows):
         met = value("fluid", rich, n, 1, "pairs")
         rate = met * OPERATIONS / value("fluid", rich, n, 1, "fluid")
         text.append(
-            paragraph("bench tables", peak=peak, rich=rich, n=n, rate=rate, rate_2=100 * rate / peak, met=met, operations=OPERATIONS))
+            paragraph("bench tables", peak=peak, rich=rich, n=n, rate=rate,
+                      rate_2=100 * rate / peak, met=met, operations=OPERATIONS))
     slots = next((float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[4] == "slots"), None)
     if slots:
         ns = next(float(row["median"]) for key, row in rows.items()
                   if key[:2] == ("solid", "default (mixed)") and key[3:] == (1, "step"))
         rate = slots * SOLID_OPERATIONS / ns
-        text.append(paragraph("bench tables 2", rate=rate, rate_2=100 * rate / peak, peak=peak, slots=slots, solid_operations=SOLID_OPERATIONS))
+        text.append(paragraph("bench tables 2", rate=rate, rate_2=100 * rate / peak, peak=peak,
+                              slots=slots, solid_operations=SOLID_OPERATIONS))
     if rich:
         bytes_each, ns = value("fluid", rich, n, 1, "memory"), value("fluid", rich, n, 1, "all")
         copy = value("machine", "copy", 0, 1, "read + write")
-        text.append(paragraph("bench tables 3", ns=bytes_each / ns, bytes_each=100 * bytes_each / ns / copy, copy=copy))
+        text.append(paragraph("bench tables 3", ns=bytes_each / ns,
+                              bytes_each=100 * bytes_each / ns / copy, copy=copy))
     if len(threads) > 1 and rich:
         one, many = threads[0], threads[-1]
-        speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p) for p in parts}
+        speed = {p: value("fluid", rich, n, one, p) / value("fluid", rich, n, many, p)
+                 for p in parts}
         serial = max(0.0, (many / speed["all"] - 1) / (many - 1))
         text.append(f"Speed-up of {many} threads over one, {n} particles: " + ", ".join(
             f"{p} {s:.2f}" for p, s in speed.items()) +
@@ -253,7 +272,8 @@ def summary(rows, numbers, speed):
     text = f"**How fast is it?** {len(targets) - len(missed)} of {len(targets)} targets are met" + \
         (f"; missed: {'; '.join(missed)}. " if missed else ". ")
     if gate:
-        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, {gate['ms']:.3g} "
+        text += (f"The elastic gate with dp = 0.5 mm takes {gate['seconds']:.3g} s, "
+                 f"{gate['ms']:.3g} "
                  f"ms a step of the "
                  f"fluid and {gate['rate']:.3g} million particle steps a second. ")
     return text + (f"All threads make its steps {speed['steps alone']:.2f} times as fast as one."
@@ -280,7 +300,8 @@ def other_processors(own):
             f"{median[key]:.3g}" for key in (
                 ("machine", "fma", 1, "float"), ("machine", "copy", 1, "read + write"),
                 ("solid", "default (double)", 1, "step"), ("fluid", "bare (mixed)", 1, "fluid"),
-                ("fluid", "dam_break (mixed)", 1, "fluid"), ("fluid", "dam_break (mixed)", 1, "all")))))
+                ("fluid", "dam_break (mixed)", 1, "fluid"),
+                ("fluid", "dam_break (mixed)", 1, "all")))))
     return rows
 
 
@@ -302,14 +323,18 @@ def main():
     load = os.getloadavg()[0]
     version = program_version()
     report = fill(
-        "performance.md", summary=summary(rows, numbers, speed), version=version, processor=notes[0],
+        "performance.md", summary=summary(rows, numbers, speed), version=version,
+        processor=notes[0],
         note=notes[1], load=load, reps=args.reps, file=path.name, shared=shared,
         targets=target_words(rows, numbers, speed), bench=bench_tables(rows),
-        steps=table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %", "ended"],
+        steps=table(["integrator", "cfl", "steps", "seconds", "lowest density, %", "highest, %",
+                     "ended"],
                     steps),
         work=table(["work", "threads", "fluid steps", "solid steps", "seconds", "ms a step",
-                    "million particle steps a second", "displacement, mm", "share of phases, %"], whole),
-        others=table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns", "bare sweep, ns",
+                    "million particle steps a second", "displacement, mm", "share of phases, %"],
+                   whole),
+        others=table(["processor", "fma, 1e9/s", "copy, GB/s", "solid in double, ns",
+                      "bare sweep, ns",
                       "dam_break sweep, ns", "dam_break all, ns"], other_processors(path)))
     (ROOT / "docs/performance.md").write_text(report)
     print("wrote docs/performance.md and", path.relative_to(ROOT))

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 """Runs the hard cases of tests/stability/suite.toml and says which pass.
 
-  tools/report/stability.py --quick     coarse and short; exit status 1 if a scene deviates from the table
+  tools/report/stability.py --quick     coarse and short; exit status 1 if a scene deviates from the
+  table
   tools/report/stability.py --report    the long form; writes docs/stability.md (make stability)
 
 Names that a criterion can use:
@@ -12,7 +13,8 @@ Names that a criterion can use:
   resting       mean kinetic energy of the last fifth over the largest of the first
   dens, lowest_density   largest |rho/rho0 - 1|, smallest rho/rho0 - 1
   lost, crossed          particles out of the domain; whether fluid entered a wall or solid
-  peak(c), settled(c, s) largest |value| of a probe's column; whether its last fifth stays within the share
+  peak(c), settled(c, s) largest |value| of a probe's column; whether its last fifth stays within
+  the share
                          s of its mean
   mean(c), lowest(c)     mean of the column's last fifth; its smallest value
   apart(c, d)            the largest difference of two columns
@@ -44,7 +46,8 @@ FACTORS = [None, 0.5, 0.75, 0.9, 1.0, 1.1, 1.25, 1.5]
 def columns(path):
     with open(path, encoding="utf-8") as file:
         rows = list(csv.reader(file))
-    names, values = rows[0], [[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])]
+    names, values = rows[0], [[float(v) for v in row] for row in rows[1:]
+                              if len(row) == len(rows[0])]
     return dict(zip(names, zip(*values))) if values else {name: (0.0,) for name in names}
 
 
@@ -99,7 +102,8 @@ def measure(folder, log):
 def run(command, folder, minutes):
     """The output of the program, and its user time. A run that takes longer is stopped."""
     begin = cpu_seconds()
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True) as process:
         try:
             log = process.communicate(timeout=60 * minutes)[0]
         except subprocess.TimeoutExpired:
@@ -146,7 +150,8 @@ class Run:
 
 def words(found):
     """The numbers behind a verdict."""
-    text = [f"gain {found['gain']:.2g}", f"drift {found['drift']:.2g}", f"density {found['dens']:.2g}"]
+    text = [f"gain {found['gain']:.2g}", f"drift {found['drift']:.2g}",
+            f"density {found['dens']:.2g}"]
     if not found["finished"]:
         text.insert(0, f"stopped at {found['time']:.3g} s: {found['message'].split(': ', 1)[-1]}")
     if found["crossed"]:
@@ -186,7 +191,8 @@ def run_suite(scenes, form, top, minutes):
 
 def integrators(top):
     """Rows (multiple of the solid's limit, result of the plate with each integrator)."""
-    plate = {"name": "plate", "case": "plate.cfg", "set": ["numerics.multirate=off", "end_time=5 ms"]}
+    plate = {"name": "plate", "case": "plate.cfg",
+             "set": ["numerics.multirate=off", "end_time=5 ms"]}
     rows = []
     for factor in FACTORS:
         cells = []
@@ -222,7 +228,8 @@ def summary(rows):
     last = "No run deviates from what the suite expects." if not odd else \
         f"{len(odd)} runs deviate from what the suite expects: {', '.join(odd)}."
     passed = len(scenes) - len(failed)
-    return (f"**Do the hard cases stay stable?** Of {len(scenes)} scenes {passed} pass with defaults, "
+    return (f"**Do the hard cases stay stable?** Of {len(scenes)} scenes {passed} pass with "
+            f"defaults, "
             f"{len(cured)} need a setting,\nand {len(failed) - len(cured)} have no remedy. "
             f"{len(rows) - len(scenes)} more runs show settings, or what happens without a remedy\n"
             f"that is on by default. {last}")
@@ -234,12 +241,14 @@ STABLE = re.compile(r"^(finished|gain|drift|dens|lowest_density)\b")
 
 def verdict_of(scene, found, stable):
     """`yes` or `no` and the part of the criterion; a dash where it says nothing in this form."""
-    parts = [part for part in scene["criterion"].split(" and ") if bool(STABLE.match(part)) == stable]
+    parts = [part for part in scene["criterion"].split(" and ")
+             if bool(STABLE.match(part)) == stable]
 
     def holds(part):
         return bool(eval(part, {"__builtins__": {}}, found))  # the table is our own
 
-    said = [part for part in parts if not (part.startswith("(time") and holds(part.split(" or ")[0][1:]))]
+    said = [part for part in parts
+            if not (part.startswith("(time") and holds(part.split(" or ")[0][1:]))]
     if not said:
         return "-"
     text = " and ".join(said).replace("|", "\\|")
@@ -261,7 +270,8 @@ def scene_row(row):
         measured = f"stopped by {by} at {found['time']:.3g} s; {measured}"
     right = verdict_of(scene, found, False)
     against = "-" if right == "-" else scene.get("against", "-")
-    return [scene["name"], f"{scene['about']} (`{scene['case']}`)", verdict_of(scene, found, True), right,
+    return [scene["name"], f"{scene['about']} (`{scene['case']}`)", verdict_of(scene, found, True),
+            right,
             against, verdict, form, measured, f"{seconds:.1f}"]
 
 
@@ -272,7 +282,8 @@ def write_report(rows, integrators, form, command):
                for row in rows if not row[2]]
     write(REPORT, "stability.md", summary=summary(rows), command=command, form=FORM[form],
           version=rows[0][3]["version"], map=stability_map.report(stability_map.load()),
-          scenes=table(["scene", "what it is", "stable", "right", "against", "result", "form", "measured",
+          scenes=table(["scene", "what it is", "stable", "right", "against", "result", "form",
+                        "measured",
                         "s"], map(scene_row, rows)),
           settings="\n".join(f"* {scene['name']}: {scene['settings']}" for scene in scenes
                              if "settings" in scene),
@@ -286,10 +297,13 @@ def main():
     parser.add_argument("--quick", action="store_true", help="coarse and short")
     parser.add_argument("--report", action="store_true", help="write docs/stability.md")
     parser.add_argument("--keep", action="store_true",
-                        help="keep the runs in build/stability and do not repeat those that are there")
+                        help="keep the runs in build/stability and do not repeat those that are "
+                             "there")
     parser.add_argument("--kept", action="store_true",
-                        help="the long form of scenes whose long run is kept, the quick form of others")
-    parser.add_argument("--minutes", type=float, default=60, help="stop a run that takes longer (60)")
+                        help="the long form of scenes whose long run is kept, the quick form of "
+                             "others")
+    parser.add_argument("--minutes", type=float, default=60, help="stop a run that takes longer "
+                                                                  "(60)")
     parser.add_argument("--only", default="", help="only scenes whose name contains this")
     args = parser.parse_args()
     scenes = tomllib.loads((SUITE / "suite.toml").read_text(encoding="utf-8"))["scene"]

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The stability map: runs a plate between waters (tests/stability/thin.cfg) over density, thickness,
-stiffness, one wet side or two, integrator and scheme. Keeps the results in docs/stability_map.json and draws
-docs/img/stability_map.png. tools/report/stability_report.py puts both into docs/stability.md.
+"""The stability map: runs a plate between waters (tests/stability/thin.cfg) over density,
+thickness, stiffness, one wet side or two, integrator and scheme. Keeps the results in
+docs/stability_map.json and draws docs/img/stability_map.png. tools/report/stability_report.py puts
+both into docs/stability.md.
 
-Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), then the picture
+Example: tools/report/stability_map.py --jobs 2       all 1440 plates (10 CPU-minutes), then the
+picture
          tools/report/stability_map.py --most 100     at most 100 of those that no result is kept of
          tools/report/stability_map.py --draw         the picture from the results that are kept"""
 import argparse
@@ -33,7 +35,8 @@ COLUMNS = ("density", "across", "sides", "integrator", "scheme", "substeps",
            "E",       # Pa
            "result",  # finished, stopped, or why it was not run
            "time",    # s
-           "gain",    # of a region by a term over the energy in play until then, at its largest (T-46)
+           # of a region by a term over the energy in play until then, at its largest (T-46)
+           "gain",
            "term",    # that has gained most
            "in_run")  # the gain of that term over the largest energy in play of the run
 
@@ -47,8 +50,8 @@ GREENHILL = 7.837          # weight x length^3 / stiffness at which a clamped co
 
 
 def statics(density, across, sides, young):
-    """Why a plate cannot stand by itself: beam theory for its deflection by the net pressure of the water
-    and for buckling by its weight, and its strain by either. Empty where it stands."""
+    """Why a plate cannot stand by itself: beam theory for its deflection by the net pressure of the
+    water and for buckling by its weight, and its strain by either. Empty where it stands."""
     rho, thick = density * WATER, across * DP
     bending = young * thick**3 / (12 * (1 - NU**2))
 
@@ -76,8 +79,10 @@ def case_text(sides):
 def run(scene, young, end):
     """The summary of a run."""
     density, across, sides, integrator, scheme = scene
-    settings = [f"scheme={scheme}", f"integrator={integrator}", f"across={across}", f"E={young:.9g}",
-                f"plate.density={density * WATER:.9g}", f"end_time={end}", "output.ledger_interval=1",
+    settings = [f"scheme={scheme}", f"integrator={integrator}", f"across={across}",
+                f"E={young:.9g}",
+                f"plate.density={density * WATER:.9g}", f"end_time={end}",
+                "output.ledger_interval=1",
                 "output.probe_interval=1", "output.snapshot_interval=1"]
     settings += [f"right={RIGHT[sides]}"] if sides == 2 else []
     return summary_of(case_text(sides), settings)
@@ -85,8 +90,8 @@ def run(scene, young, end):
 
 @functools.cache
 def stiffness(scene):
-    """Young's modulus at which the fluid's step is the limit of the solid's. The limit goes with the
-    speed of sound in the solid, so one short run with a stiff plate gives it."""
+    """Young's modulus at which the fluid's step is the limit of the solid's. The limit goes with
+    the speed of sound in the solid, so one short run with a stiff plate gives it."""
     young = 4e6 * scene[0]
     step = run(scene, young, 2e-3)["time_step"]
     return young * (step["solid"] / step["largest"])**2
@@ -117,13 +122,14 @@ def save(rows):
 
 
 def run_all(jobs, most):
-    """Runs the plates that no result is kept of: heavy ones first, since light ones take ten times as long,
-    and else in an order that covers the grid at any time."""
+    """Runs the plates that no result is kept of: heavy ones first, since light ones take ten times
+    as long, and else in an order that covers the grid at any time."""
     grid = list(itertools.product(DENSITIES, ACROSS, SIDES, INTEGRATORS, SCHEMES, SUBSTEPS))
     rows = [list(row.values()) for row in load()] if RESULTS.exists() else []
     known = {tuple(row[:6]) for row in rows}
     random.Random(1).shuffle(grid)
-    grid = sorted((point for point in grid if point not in known), key=lambda point: point[0] < 0.3)[:most]
+    grid = sorted((point for point in grid if point not in known),
+                  key=lambda point: point[0] < 0.3)[:most]
     with ThreadPoolExecutor(jobs) as pool:
         for count, row in enumerate(pool.map(result, grid), 1):
             rows.append(row)
@@ -157,7 +163,8 @@ def report(rows):
     gains = [row for row, verdict in zip(rows, verdicts) if verdict == "gains"]
     early = sum(verdict == "passes" and row["gain"] > LIMIT for row, verdict in zip(rows, verdicts))
     drawn = "" if len(rows) == grid_size() else (
-        f"The grid has {grid_size()} plates, {grid_size() // len(DENSITIES)} of each density. Here are "
+        f"The grid has {grid_size()} plates, {grid_size() // len(DENSITIES)} of each density. Here "
+        f"are "
         f"{len(rows)} of them, drawn at random for each density:\n" + ", ".join(
             f"{sum(row['density'] == d for row in rows)} of {d:g}" for d in DENSITIES) +
         " times that of water.\n")
@@ -166,7 +173,8 @@ def report(rows):
               for row in sorted(gains, key=lambda row: -row["in_run"])]
     head = ["density", "across", "wet sides", "integrator", "scheme", "sub-steps", "gain", "term"]
     return fill("stability_map.md", drawn=drawn, plates=len(rows) - verdicts.count("left out"),
-                early=early, stopped=verdicts.count("stopped"), gains=len(gains), percent=100 * LIMIT,
+                early=early, stopped=verdicts.count("stopped"), gains=len(gains),
+                percent=100 * LIMIT,
                 gained="\n" + table(head, gained) + "\n" if gains else "",
                 left_out=verdicts.count("left out"), end=END, height=HEIGHT, right=RIGHT[2],
                 versions=", ".join(common.load(RESULTS)["versions"]),
@@ -185,7 +193,8 @@ def draw(rows):
             return passes(0.15 + 0.7 * min(1, max(0, (math.log10(row["gain"] + 1e-12) + 6) / 4)))
         return {"left out": "0.93", "gains": "#e06a10", "stopped": "#9c1010"}[verdict]
 
-    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(11, 5.6), sharex=True, sharey=True)
+    figure, axes = plt.subplots(len(SIDES), len(ACROSS), figsize=(11, 5.6), sharex=True,
+                                sharey=True)
     for row in rows:
         panel = axes[SIDES.index(row["sides"])][ACROSS.index(row["across"])]
         x = DENSITIES.index(row["density"]) + INTEGRATORS.index(row["integrator"]) * 0.3
@@ -194,8 +203,10 @@ def draw(rows):
     for i, j in itertools.product(range(len(SIDES)), range(len(ACROSS))):
         panel = axes[i][j]
         panel.set(xlim=(-0.1, len(DENSITIES)), ylim=(-0.1, len(SUBSTEPS)))
-        panel.set_xticks([k + 0.45 for k in range(len(DENSITIES))], [f"{d:g}" for d in DENSITIES], fontsize=8)
-        panel.set_yticks([k + 0.45 for k in range(len(SUBSTEPS))], [f"{n:g}" for n in SUBSTEPS], fontsize=8)
+        panel.set_xticks([k + 0.45 for k in range(len(DENSITIES))], [f"{d:g}" for d in DENSITIES],
+                         fontsize=8)
+        panel.set_yticks([k + 0.45 for k in range(len(SUBSTEPS))], [f"{n:g}" for n in SUBSTEPS],
+                         fontsize=8)
         wet = "one side" if SIDES[i] == 1 else "both sides"
         panel.set_title(f"{ACROSS[j]} across, water on {wet}", fontsize=9)
         panel.tick_params(length=0)
@@ -203,7 +214,8 @@ def draw(rows):
     figure.supylabel("fluid step over the limit of the solid's step", fontsize=10)
     handles = [plt.Rectangle((0, 0), 1, 1, color=c) for c in
                (passes(0.15), passes(0.5), passes(0.85), "#f2c879", "#e06a10", "#9c1010", "0.93")]
-    words = ("gain 1e-6", "1e-4", "1e-2", "above 1 % at the start", "above 1 % of the run", "stopped",
+    words = ("gain 1e-6", "1e-4", "1e-2", "above 1 % at the start", "above 1 % of the run",
+             "stopped",
              "cannot stand by statics")
     figure.legend(handles, words, loc="upper center", ncol=7, fontsize=8, frameon=False)
     figure.tight_layout(rect=(0.01, 0, 1, 0.95))

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Sub-steps of the solid against a single rate: a dam break on an elastic obstacle
-(tests/stability/obstacle.cfg) whose fluid step holds 1 to 2 solid steps, and the motion of the article's
-cases. Keeps the results in docs/stability_substeps.json; tools/report/stability_report.py puts the tables into
-docs/stability.md.
+(tests/stability/obstacle.cfg) whose fluid step holds 1 to 2 solid steps, and the motion of the
+article's cases. Keeps the results in docs/stability_substeps.json; tools/report/stability_report.py
+puts the tables into docs/stability.md.
 
 Example: tools/report/stability_substeps.py                   all rows (40 CPU-minutes)
-         tools/report/stability_substeps.py --part obstacle   those of the obstacle, the others as they are kept"""
+         tools/report/stability_substeps.py --part obstacle   those of the obstacle, the others as
+         they are kept"""
 import argparse
 import json
 import math
@@ -68,7 +69,8 @@ def difference(one, other):
 
 
 def motions():
-    """What the article's cases change by a single rate, by half of dp, and by a density off by 1e-6."""
+    """What the article's cases change by a single rate, by half of dp, and by a density off by
+    1e-6."""
     rows = []
     for name, case, (spacing, half), end, axis in MOTIONS:
         for integrator in INTEGRATORS:
@@ -94,7 +96,8 @@ def values():
     for row in kept["obstacle"]:
         many, one = row["many"], row["single"]
         ratios.append(many["hourglass"] / one["hourglass"])
-        rows.append([row["name"], "finished" if many["finished"] else f"stopped at {many['time']:.3g} s",
+        rows.append([row["name"], "finished" if many["finished"] else f"stopped at "
+                                                                      f"{many['time']:.3g} s",
                      f"{many['substeps']:.2f}", f"{100 * many['gain']:.2g} %",
                      *(f"{each['hourglass']:.3g} ± {each['scatter']:.1g}" for each in (many, one)),
                      f"{ratios[-1]:.2f}", f"{many['elastic']:.3g}", f"{many['seconds']:.1f}",
@@ -103,16 +106,20 @@ def values():
                 *(f"{1e6 * row[key]:.3g}" for key in ("largest", "single", "half", "density"))]
                for row in kept["motions"]]
     finished = sum(row["many"]["finished"] for row in kept["obstacle"])
-    return {"substeps": table(["setting", "ends", "sub-steps a step", "gain", "hourglass", "single rate",
+    return {"substeps": table(["setting", "ends", "sub-steps a step", "gain", "hourglass",
+                               "single rate",
                                "ratio", "elastic", "CPU-s", "single rate"], rows),
             "substeps_finish": f"{finished} of {len(rows)} finish. The hourglass energy is "
-                               f"{min(ratios):.2f} to {max(ratios):.2f} times that of a single rate.",
-            "motions": table(["case", "dp", "integrator", "until", "largest displacement", "single rate",
+                               f"{min(ratios):.2f} to {max(ratios):.2f} times that of a single "
+                               f"rate.",
+            "motions": table(["case", "dp", "integrator", "until", "largest displacement",
+                              "single rate",
                               "half of dp", "density"], changes)}
 
 
 def mean_of(settings):
-    """The runs of all skins as one: means, the scatter of the hourglass energy, the largest gain."""
+    """The runs of all skins as one: means, the scatter of the hourglass energy, the largest
+    gain."""
     runs = [in_scratch(figures, CASE, (*settings, f"numerics.skin={skin}")) for skin in SKINS]
     mean = {key: float(f"{statistics.mean(each[key] for each in runs):.4g}") for key in runs[0]}
     return mean | {"finished": all(each["finished"] for each in runs),

@@ -30,7 +30,8 @@ KINDS = {
 
 
 def column(run, name):
-    """Times and values of a column of the probes or, if they have none of that name, of the ledger."""
+    """Times and values of a column of the probes or, if they have none of that name, of the
+    ledger."""
     for file in ("probes.csv", "ledger.csv"):
         if (Run(run).folder / file).exists():
             table = Run(run).table(file)
@@ -56,11 +57,13 @@ def period(error, run, _finest, _root):
 
 
 def damped(error, run):
-    """Frequency and decay of the damped sine that fits best. Noise disturbs it less than zero crossings. An
-    energy oscillates and decays twice as fast as the amplitude, about a mean that decays with it."""
+    """Frequency and decay of the damped sine that fits best. Noise disturbs it less than zero
+    crossings. An energy oscillates and decays twice as fast as the amplitude, about a mean that
+    decays with it."""
     time, value = window(*column(run, error["column"]), error)
     times = 2 if error.get("energy") else 1
-    frequency, decay = metrics.damped_sine(time, value, times * 2 * np.pi / error["reference"], times == 2)
+    frequency, decay = metrics.damped_sine(time, value, times * 2 * np.pi / error["reference"],
+                                           times == 2)
     return frequency / times, decay / times
 
 
@@ -100,7 +103,8 @@ def noise_about_mean(error, run, _finest, _root):
     time, value = column(run, error["column"])
     n = 1 + 2 * round(error["window"] / (time[1] - time[0]) / 2)
     mean = metrics.running_mean(value, n)
-    _, rest = window(time[n // 2:n // 2 + len(mean)], value[n // 2:n // 2 + len(mean)] - mean, error)
+    _, rest = window(time[n // 2:n // 2 + len(mean)], value[n // 2:n // 2 + len(mean)] - mean,
+                     error)
     return rest.std(), rest.std() / error["scale"]
 
 
@@ -181,7 +185,8 @@ def tip(error, run, _finest, _root):
     """End of a cantilever under a dead load against Euler's elastica, in lengths."""
     name, length = error["probe"], error["length"]
     x, y = metrics.elastica(error["load"])
-    mean = [window(*column(run, f"{name}_{axis}_m"), error)[1].mean() / length for axis in ("dx", "dy")]
+    mean = [window(*column(run, f"{name}_{axis}_m"), error)[1].mean() / length
+            for axis in ("dx", "dy")]
     return mean[1], np.hypot(mean[0] + 1 - x, mean[1] - y)
 
 

@@ -16,8 +16,8 @@ from common import PROGRAM, ROOT, BadFile
 from study_metrics import KINDS
 
 SCENES = {"solid": "solid alone", "fluid": "fluid alone", "coupled": "fluid and structure"}
-# Sources that no run comes by: they look ahead, list, or hold what the study itself has measured. What
-# presets set stands in the effective case.
+# Sources that no run comes by: they look ahead, list, or hold what the study itself has measured.
+# What presets set stands in the effective case.
 ASIDE = re.compile(r"(evidence|presets|citations|template|embedded|explain|forecast|"
                    r"manual\w*|preview|inspect)\.\w+")
 
@@ -67,7 +67,8 @@ def case_trouble(case):
         return f"file = {case['file']}: there is no such case"
     if case["scene"] not in SCENES:
         return f"scene = {case['scene']}: it is one of {', '.join(SCENES)}"
-    if not case["levels"] or not all(isinstance(level, str) or texts(level) for level in case["levels"]):
+    if not case["levels"] or not all(isinstance(level, str) or texts(level)
+                                     for level in case["levels"]):
         return "levels: is not a list of --set arguments, one or a list for each resolution"
     if not isinstance(case["across"], (int, float)) or not case["across"] > 0:
         return f"across = {case['across']}: is not a length in m"
@@ -133,8 +134,8 @@ def knob_points(study, name, levels):
 
 
 def points_of(study):
-    """Every point: (name, case, level, knob, value, --set arguments), the most important first: defaults,
-    points of presets, then the other knobs, each from coarse to fine."""
+    """Every point: (name, case, level, knob, value, --set arguments), the most important first:
+    defaults, points of presets, then the other knobs, each from coarse to fine."""
     chosen = {tuple(setting.partition("=")[::2]) for scenes in study["preset"].values()
               for setting in scenes.values()}
     points = []
@@ -199,7 +200,8 @@ def give_keys(points, study):
 
 
 def cached_record(runs, key):
-    """The cached record of a key. A run that failed for an outside reason is left out: it runs again."""
+    """The cached record of a key. A run that failed for an outside reason is left out: it runs
+    again."""
     try:
         record = json.loads((runs / key / "result.json").read_text()) if key else None
     except (OSError, ValueError):
@@ -229,9 +231,9 @@ def foreseen(case, p):
 
 
 def expected_costs(points, study, runs, data, ask_program):
-    """{key: CPU s} of the points that are not cached: as the last collected results tell of the same point,
-    else as the program foresees it with one thread, which is asked (`ask_program`) once and kept; not just
-    before a run, whose first timings that would disturb."""
+    """{key: CPU s} of the points that are not cached: as the last collected results tell of the
+    same point, else as the program foresees it with one thread, which is asked (`ask_program`) once
+    and kept; not just before a run, whose first timings that would disturb."""
     kept, before = runs / "forecasts.json", {}
     try:
         known = json.loads(kept.read_text())
@@ -244,7 +246,8 @@ def expected_costs(points, study, runs, data, ask_program):
     except (OSError, ValueError, KeyError):
         pass
     missing = {p["key"]: p for p in points if p["key"] and not cached_record(runs, p["key"])}
-    once = {key: before.get((p["name"], tuple(p["set"])), known.get(key)) for key, p in missing.items()}
+    once = {key: before.get((p["name"], tuple(p["set"])), known.get(key)) for key,
+            p in missing.items()}
     unknown = [key for key in once if once[key] is None and ask_program]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         once.update(zip(unknown, pool.map(

@@ -8,8 +8,9 @@ from study_points import SCENES
 from study_results import CROSSING, across, cost, finished, main_error, percent
 from study_tables import table
 
-# The rule that proposes presets, in means over cases and resolutions relative to the defaults: the largest
-# error of `draft`, the largest cost and error of `fine`, and the largest error in any point.
+# The rule that proposes presets, in means over cases and resolutions relative to the defaults: the
+# largest error of `draft`, the largest cost and error of `fine`, and the largest error in any
+# point.
 DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
 RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that
@@ -28,8 +29,8 @@ def mean(values):
 
 
 def candidates(study, scene):
-    """Settings of numerics by their mean (cost, error, worst error), and those with a point that failed or is
-    missing: {(knob, value): numbers or words}."""
+    """Settings of numerics by their mean (cost, error, worst error), and those with a point that
+    failed or is missing: {(knob, value): numbers or words}."""
     found = {("base", ""): (1.0, 1.0, 1.0)}
     cases = [c for c in study.cases if study.cases[c]["scene"] == scene]
     for knob, entry in study.knobs.items():
@@ -80,7 +81,8 @@ def front_section(study, scene):
     def named(k):
         return ", ".join(p for p, key in chosen.items() if key == k)
 
-    rows = [[study.label(*k), f"{c:.2f}", f"{e:.2f}", f"{worst:.2f}", "yes" if k in front else "", named(k)]
+    rows = [[study.label(*k), f"{c:.2f}", f"{e:.2f}", f"{worst:.2f}", "yes" if k in front else "",
+             named(k)]
             for k, (c, e, worst) in sorted(numbers.items(), key=lambda item: item[1][0])]
     rows += [[study.label(*k), f"**{v}**", "", "", "", named(k)]
              for k, v in settings.items() if isinstance(v, str)]
@@ -117,7 +119,8 @@ def preset_table(study):
         if finished(p) and error is None:
             continue
         fineness = f"{across(entry, p):.3g} {entry.get('what', 'across')}" if p["dp"] else "-"
-        rows.append([case, preset, fineness, percent(error) + (f" {CROSSING}" if study.crosses(p) else "")
+        rows.append([case, preset, fineness,
+                     percent(error) + (f" {CROSSING}" if study.crosses(p) else "")
                      if finished(p) else f"**{p['outcome']}**",
                      f"{cost(p):.3g}" if finished(p) else "-"])
     return table(["case", "preset", "resolution", "main error (%)", "CPU s"],
@@ -127,7 +130,8 @@ def preset_table(study):
 def write_evidence(study, path):
     """What the program says of its presets: the same numbers as a file that it carries."""
     text = io.StringIO(f"# Written by make accuracy: errors of the presets in the study of program "
-                       f"{', '.join(study.head['versions'])}; percent of the exact or finest result.\n")
+                       f"{', '.join(study.head['versions'])}; percent of the exact or finest "
+                       f"result.\n")
     text.seek(0, io.SEEK_END)
     rows = csv.writer(text, lineterminator="\n")
     rows.writerow("scene accuracy case error resolution what percent".split())
@@ -135,7 +139,8 @@ def write_evidence(study, path):
         entry, error = study.cases[case], study.error(p)
         if error is not None:
             rows.writerow([scene, preset, entry.get("title", case), main_error(entry),
-                           f"{across(entry, p):.3g}", entry.get("what", "across"), f"{100 * error:.3g}"])
+                           f"{across(entry, p):.3g}", entry.get("what", "across"),
+                           f"{100 * error:.3g}"])
     if not path.exists() or path.read_text(encoding="utf-8") != text.getvalue():
         path.write_text(text.getvalue(), encoding="utf-8")
         print(f"written {path}; make puts it into the program")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The report of the accuracy study (docs/accuracy.md and its figures) from its collected results."""
+"""The report of the accuracy study (docs/accuracy.md and its figures) from its collected
+results."""
 
 import json
 import os
@@ -11,9 +12,11 @@ from matplotlib.ticker import LogFormatter
 from common import COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
 from study_points import SCENES
 from study_presets import fronts, preset_table, write_evidence
-from study_results import (CROSSING, Study, across, against, cost, finished, machine_text, main_error,
+from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
+                           main_error,
                            percent)
-from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table, halving_table,
+from study_tables import (aims_table, base_table, best_knobs, failures, forecast_table,
+                          halving_table,
                           knob_table, order_table, ranked_knobs, schemes_table)
 
 MARKS = "osD^v<>ph*XP"
@@ -31,7 +34,8 @@ class PlainLog(LogFormatter):
 
 
 def groups_of(study, case):
-    """{group: [(knob, value)]} of the settings that the case has, in the order of the definition."""
+    """{group: [(knob, value)]} of the settings that the case has, in the order of the
+    definition."""
     groups = {}
     for knob, entry in study.knobs.items():
         for value in entry["values"]:
@@ -41,8 +45,8 @@ def groups_of(study, case):
 
 
 def draw_line(axes, study, points, **style):
-    """Points of one setting in the order of resolution; those that did not finish stand as crosses at the
-    top, over the time that they took."""
+    """Points of one setting in the order of resolution; those that did not finish stand as crosses
+    at the top, over the time that they took."""
     known = sorted((p for p in points if study.error(p)), key=lambda p: p["level"])
     style.setdefault("markersize", 4.5)
     if known:
@@ -51,7 +55,8 @@ def draw_line(axes, study, points, **style):
     if lost:
         if not known:
             axes.plot([], [], **dict(style, label=style["label"] + ": none finished"))
-        axes.plot([cost(p) for p in lost], [0.96] * len(lost), "x", color=style["color"], markersize=6,
+        axes.plot([cost(p) for p in lost], [0.96] * len(lost), "x", color=style["color"],
+                  markersize=6,
                   markeredgewidth=1.5, transform=axes.get_xaxis_transform(), clip_on=False)
 
 
@@ -59,7 +64,8 @@ def draw_group(axes, study, case, group, settings):
     front = study.front(case)
     axes.loglog([cost(p) for p in front], [100 * study.error(p) for p in front], color="0.85",
                 linewidth=7, solid_capstyle="round", zorder=1, label="Pareto front of all settings")
-    draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6, zorder=4,
+    draw_line(axes, study, study.of(case, "base"), color="black", marker="o", linewidth=1.6,
+              zorder=4,
               label="defaults")
     knobs = list(dict.fromkeys(knob for knob, _ in settings))
     for number, (knob, value) in enumerate(settings):
@@ -75,7 +81,8 @@ def draw_group(axes, study, case, group, settings):
 
 def draw_case(study, case, path):
     groups = groups_of(study, case)
-    figure, panels = plt.subplots(len(groups), 1, figsize=(WIDTH, 0.4 + PANEL * len(groups)), sharex=True,
+    figure, panels = plt.subplots(len(groups), 1, figsize=(WIDTH, 0.4 + PANEL * len(groups)),
+                                  sharex=True,
                                   sharey=True, squeeze=False)
     for axes, (group, settings) in zip(panels[:, 0], groups.items()):
         draw_group(axes, study, case, group, settings)
@@ -95,15 +102,18 @@ def case_text(study, case):
     entry = study.cases[case]
     sources = [f"* {e['name']}, against {against(e)}: {e['source']}."
                for e in entry["error"] if e.get("source")]
-    front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles" for p in study.front(case))
-    return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""), case=case,
+    front = "\n".join(f"* {study.setting(p)}, {across(entry, p):.3g} particles"
+                      for p in study.front(case))
+    return fill("accuracy_case.md", title=entry.get("title", case), words=entry.get("words", ""),
+                case=case,
                        error=main_error(entry), against=against(entry["error"][0]),
                        references="\n".join(sources),
                        table=base_table(study, case), front=front or "no finished point")
 
 
 def summary(study):
-    """Three sentences: the price of half the error, the finest runs, the settings that save most."""
+    """Three sentences: the price of half the error, the finest runs, the settings that save
+    most."""
     price, finest, none = [], [], []
     for case, entry in study.cases.items():
         title = entry.get("title", case)
@@ -116,7 +126,8 @@ def summary(study):
     text = "**What does accuracy cost?** "
     if price:
         (low, easy), (high, hard) = min(price), max(price)
-        text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} ({hard}) times "
+        text += (f"Refinement to half the main error costs {low:.1f} ({easy}) to {high:.1f} "
+                 f"({hard}) times "
                  "the CPU time")
         text += (f". It does not reduce the error of: {', '.join(none)}. " if none else ". ")
     if finest:
@@ -138,20 +149,24 @@ def circumstances(study):
     timings = [t for p in points for t in p["timing"]]
     machines = "; ".join(map(machine_text, study.head["machines"])) or "unknown machine"
     versions = ", ".join(study.head["versions"]) or "unknown"
-    lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a run: "
+    lines = [f"* Program {versions} (sources {study.head['program']}), {machines}, threads of a "
+             f"run: "
              f"{study.threads()}.",
              f"* {len(points)} of {len(study.points)} points ran, in {len(timings)} runs."]
     if timings:
         loads = [t["load"] for t in timings]
-        lines.append(f"* Load average before a run: median {np.median(loads):.1f}, {min(loads):.1f} to "
+        lines.append(f"* Load average before a run: median {np.median(loads):.1f}, "
+                     f"{min(loads):.1f} to "
                      f"{max(loads):.1f}.")
     for mark, is_so, words in (("†", study.busy, "was timed beside other work"),
                                ("‡", study.beside, "was timed beside another run of the study"),
-                               ("§", study.older, "is of an older program with the same effective case")):
+                               ("§", study.older, "is of an older program with the same effective "
+                                                  "case")):
         number = sum(map(is_so, points))
         lines.append(f"* {mark} {words}: {number} of {len(points)} points.")
     if not any(t.get("joules") is not None for t in timings):
-        lines.append("* Energy (J) is not measured: the machine has no counter in /sys/class/powercap.")
+        lines.append("* Energy (J) is not measured: the machine has no counter in "
+                     "/sys/class/powercap.")
     return "\n".join(lines)
 
 
@@ -160,9 +175,11 @@ def forecast_section(path):
         return "Not measured: `make forecast` does it."
     try:
         data = json.loads(read_text(path))
-        return ("The table compares the forecast of `--explain` with runs of the shipped cases (`make "
+        return ("The table compares the forecast of `--explain` with runs of the shipped cases "
+                "(`make "
                 "forecast`). "
-                f"Runs were cut short to about {data['seconds']:g} s. {machine_text(data['machine'])}.\n\n"
+                f"Runs were cut short to about {data['seconds']:g} s. "
+                f"{machine_text(data['machine'])}.\n\n"
                 f"{forecast_table(data)}")
     except (ValueError, KeyError, TypeError) as problem:
         raise BadFile(f"{path}: not the forecasts of tools/report/forecast.py ({problem})") from None
@@ -176,7 +193,8 @@ def write(data, out, evidence=None):
     for case in study.cases:
         draw_case(study, case, out / "img" / f"accuracy_{case}.png")
     rules = study.definition["study"]
-    knobs = "\n\n".join(f"### {entry.get('title', case)}: {main_error(entry)}\n\n{knob_table(study, case)}"
+    knobs = "\n\n".join(f"### {entry.get('title', case)}: "
+                        f"{main_error(entry)}\n\n{knob_table(study, case)}"
                         for case, entry in study.cases.items())
     inside = data.resolve().is_relative_to(ROOT)
     text = fill(
@@ -184,7 +202,8 @@ def write(data, out, evidence=None):
         summary=summary(study), crossing=CROSSING,
         data=Path(os.path.relpath(data, ROOT)) if inside else data.name,
         circumstances=circumstances(study), note=rules.get("note", ""),
-        repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study), schemes=schemes_table(study),
+        repeat_below=rules.get("repeat_below", np.inf), aims=aims_table(study),
+        schemes=schemes_table(study),
         cases="\n".join(case_text(study, c) for c in study.cases), order=order_table(study),
         halving=halving_table(study), knobs=knobs, best=best_knobs(study), fronts=fronts(study),
         presets=preset_table(study), forecast=forecast_section(data.with_name("forecast.json")),

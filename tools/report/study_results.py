@@ -14,7 +14,8 @@ def machine(root):
     words = flags.read_text().split() if flags.exists() else ["unknown compiler"]
     compiler = f"{words[0]} {words[-1]}" if len(words) > 1 else words[0]
     options = " ".join(w for w in words if w.startswith(("-O", "-march", "-mcpu")))
-    return {"cpu": common.machine(), "cores": os.cpu_count(), "compiler": f"{compiler} {options}".strip()}
+    return {"cpu": common.machine(), "cores": os.cpu_count(),
+            "compiler": f"{compiler} {options}".strip()}
 
 
 def machine_text(m):
@@ -82,8 +83,8 @@ class Study:
         return self.label(p["knob"], p["value"]) + (f" {CROSSING}" if self.crosses(p) else "")
 
     def crosses(self, p, error=None):
-        """Whether a finer run with the same setting has a larger error: it changed its sign on the way, so
-        the small value is a zero crossing, not an accuracy."""
+        """Whether a finer run with the same setting has a larger error: it changed its sign on the
+        way, so the small value is a zero crossing, not an accuracy."""
         error = error or main_error(self.cases[p["case"]])
         own = p.get("errors", {}).get(error)
         return bool(own) and any(own < 0.9 * (q["errors"].get(error) or 0) for q in
@@ -150,7 +151,8 @@ class Study:
         return p.get("program") not in (None, self.head.get("program"))
 
     def marks(self, p):
-        return "".join(mark for mark, is_so in (("†", self.busy), ("‡", self.beside), ("§", self.older))
+        return "".join(mark for mark,
+                       is_so in (("†", self.busy), ("‡", self.beside), ("§", self.older))
                        if is_so(p))
 
 

@@ -23,18 +23,20 @@ def joules():
     """Counters of the processor packages in J, or None where there are none."""
     zones = list(POWERCAP.glob("intel-rapl:?"))
     try:
-        return sum(int((zone / "energy_uj").read_text()) for zone in zones) * 1e-6 if zones else None
+        return sum(int((zone / "energy_uj").read_text())
+                   for zone in zones) * 1e-6 if zones else None
     except (OSError, ValueError):
         return None
 
 
 def timed(command, threads, limit):
-    """Runs it: exit status or None for too long, its timing (s, J), stderr. The limit is of CPU time, so
-    that a busy machine, or one where each run waits for its turn, changes nothing."""
+    """Runs it: exit status or None for too long, its timing (s, J), stderr. The limit is of CPU
+    time, so that a busy machine, or one where each run waits for its turn, changes nothing."""
     environment = dict(os.environ, OMP_NUM_THREADS=str(threads))
     with tempfile.TemporaryFile("w+", errors="replace") as stderr:
         load, energy, start = os.getloadavg()[0], joules(), time.monotonic()
-        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=stderr,
+        process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL,
+                                   stderr=stderr,
                                    preexec_fn=lambda: setrlimit(RLIMIT_CPU, (limit, limit + 5)))
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = status = os.waitstatus_to_exitcode(status)
@@ -50,7 +52,8 @@ def timed(command, threads, limit):
 def run_once(folder, p, study):
     """A run in its folder: how it ended, its summary, and its timing."""
     shutil.rmtree(folder, ignore_errors=True)
-    command = [*shlex.split(study["prefix"]), str(PROGRAM), str(ROOT / study["case"][p["case"]]["file"]),
+    command = [*shlex.split(study["prefix"]), str(PROGRAM),
+               str(ROOT / study["case"][p["case"]]["file"]),
                "--quiet", "--out", str(folder), *set_arguments(p["set"])]
     limit = study["study"].get("time_limit", 600)
     status, timing, said = timed(command, study["study"].get("threads", 1), limit)
@@ -77,7 +80,8 @@ def record_of(p, outcome, message, summary):
                 dp=summary.get("parameters", {}).get("dp"), steps=summary.get("steps"),
                 solid_steps=summary.get("solid_substeps"), particles=summary.get("particles"),
                 particle_steps=counters.get("particle_steps"),
-                evaluations=(counters.get("evaluations") or 0) + (counters.get("solid_evaluations") or 0),
+                evaluations=(counters.get("evaluations") or 0) +
+                (counters.get("solid_evaluations") or 0),
                 hash=summary.get("state_hash"))
 
 
@@ -96,7 +100,8 @@ def run_point(p, study, runs, again=False):
         return before
     run = folder / "run"
     outcome, message, summary, timing = run_once(run, p, study)
-    record = dict(record_of(p, outcome, message, summary), timing=[timing], program=study["program"])
+    record = dict(record_of(p, outcome, message, summary), timing=[timing],
+                  program=study["program"])
     if outcome == "finished":
         record["timing"] += [run_once(run, p, study)[3]
                              for _ in range(repeats_of(timing["cpu"], study["study"]) - 1)]

@@ -27,14 +27,17 @@ def aims_table(study):
             p = min(good, key=cost, default=None)
             cells.append(f"{cost(p):.3g} s: {study.setting(p)}, {across(entry, p):.3g} particles"
                          if p else "-")
-        rows.append([entry.get("title", case), main_error(entry), against(entry["error"][0]), *cells])
+        rows.append([entry.get("title", case), main_error(entry), against(entry["error"][0]),
+                     *cells])
     return table(["case", "error", "against"] + [f"{100 * aim:g} %" for aim in AIMS], rows)
 
 
 def cheapest(study, points, aim):
-    """Cost and text of the cheapest point within an error; zero crossings only where nothing else is."""
+    """Cost and text of the cheapest point within an error; zero crossings only where nothing else
+    is."""
     good = sorted((study.crosses(p), cost(p)) for p in points if (study.error(p) or np.inf) <= aim)
-    return (good[0][1], f"{good[0][1]:.3g} s{f' {CROSSING}' if good[0][0] else ''}") if good else (None, "-")
+    return (good[0][1],
+            f"{good[0][1]:.3g} s{f' {CROSSING}' if good[0][0] else ''}") if good else (None, "-")
 
 
 def schemes_table(study):
@@ -46,16 +49,19 @@ def schemes_table(study):
             continue
         cells = []
         for aim in AIMS[1:4]:
-            (new, say_new), (old, say_old) = cheapest(study, standard, aim), cheapest(study, paper, aim)
+            (new, say_new), (old, say_old) = cheapest(study, standard, aim), cheapest(study, paper,
+                                                                                      aim)
             cells.append(f"{say_new} / {say_old}" + (f" = {new / old:.2f}" if new and old else ""))
         errors = [" to ".join(percent(study.error(p)) for p in (points[0], points[-1]))
-                  for points in ([p for p in of if study.error(p)] for of in (standard, paper)) if points]
+                  for points in ([p for p in of if study.error(p)] for of in (standard, paper))
+                  if points]
         steps = [cost(p) / p["particle_steps"] / (cost(q) / q["particle_steps"])
                  for p, q in zip(standard, paper) if finished(p) and finished(q)]
         rows.append([entry.get("title", case), main_error(entry), *errors, *cells,
                      f"{np.median(steps):.2f}" if steps else "-"])
     return table(["case", "error", "standard, coarsest to finest (%)", "paper (%)",
-                  *(f"{100 * aim:g} %: standard / paper" for aim in AIMS[1:4]), "particle step"], rows)
+                  *(f"{100 * aim:g} %: standard / paper" for aim in AIMS[1:4]), "particle step"],
+                 rows)
 
 
 def base_table(study, case):
@@ -85,9 +91,9 @@ def base_table(study, case):
 def convergence(spacing, value):
     """From (dp, value) of three runs, finest first: order, extrapolated value, relative band.
 
-    Celik et al., J. Fluids Eng. 130 (2008) 078001: p solves p ln r21 = |ln|e32/e21| + q(p)|; the grid
-    convergence index with a safety factor of 1.25 (Roache 1994). Without monotone convergence, or
-    with p < 0.5, three times the largest difference (after Eca and Hoekstra 2014)."""
+    Celik et al., J. Fluids Eng. 130 (2008) 078001: p solves p ln r21 = |ln|e32/e21| + q(p)|; the
+    grid convergence index with a safety factor of 1.25 (Roache 1994). Without monotone convergence,
+    or with p < 0.5, three times the largest difference (after Eca and Hoekstra 2014)."""
     (h1, h2, h3), (f1, f2, f3) = spacing, value
     e21, e32 = f2 - f1, f3 - f2
     widest = 3 * max(abs(e21), abs(e32), abs(f3 - f1))
@@ -106,13 +112,15 @@ def convergence(spacing, value):
     if p < 0.5:
         return dict(none, why=f"p = {p:.2f} < 0.5")
     gain = r21 ** min(p, 2.0) - 1
-    return {"order": p, "extrapolated": f1 - e21 / gain, "band": 1.25 * abs(e21) / gain / scale, "why": ""}
+    return {"order": p, "extrapolated": f1 - e21 / gain, "band": 1.25 * abs(e21) / gain / scale,
+            "why": ""}
 
 
 def orders(values):
     """Order of the three finest runs, and of the three that begin one level coarser."""
     c = convergence(*zip(*values[:3]))
-    before = convergence(*zip(*values[1:4])) if len(values) > 3 else {"order": None, "why": "three only"}
+    before = convergence(*zip(*values[1:4])) if len(values) > 3 else {"order": None,
+                                                                      "why": "three only"}
     return c, f"{before['order']:.2f}" if before["order"] else f"none ({before['why']})"
 
 
@@ -130,10 +138,12 @@ def order_table(study):
             rows.append([entry.get("title", case), error["name"], against(error),
                          *(f"{v:.5g}" for _, v in values[:3]),
                          f"{c['order']:.2f}" if c["order"] else f"none ({c['why']})", before,
-                         f"{c['extrapolated']:.5g}" if c["order"] else "-", f"{100 * c['band']:.2g}",
+                         f"{c['extrapolated']:.5g}" if c["order"] else "-",
+                         f"{100 * c['band']:.2g}",
                          "-" if reference is None else f"{reference:.5g}"])
     return table(["case", "quantity", "against", "finest", "middle", "coarsest", "observed order",
-                  "order one level coarser", "extrapolated", "band of the finest (%)", "reference"], rows)
+                  "order one level coarser", "extrapolated", "band of the finest (%)", "reference"],
+                 rows)
 
 
 def halving_table(study):
@@ -141,7 +151,8 @@ def halving_table(study):
     for case, entry in study.cases.items():
         for error, reference in [(e["name"], against(e)) for e in entry["error"]]:
             b = study.slope(case, error)
-            points = sorted((p for p in study.base(case) if p["errors"].get(error)), key=lambda p: -p["dp"])
+            points = sorted((p for p in study.base(case) if p["errors"].get(error)),
+                            key=lambda p: -p["dp"])
             if len(points) < 2:
                 continue
             order = np.polyfit(np.log([p["dp"] for p in points]),
@@ -155,7 +166,8 @@ def halving_table(study):
 
 
 def knob_rows(study, case, error):
-    """(gain, knob, value, {level: cell}, whether all finished, whether any error is a zero crossing)."""
+    """(gain, knob, value, {level: cell}, whether all finished, whether any error is a zero
+    crossing)."""
     for knob, entry in study.knobs.items():
         for value in entry["values"]:
             points = study.of(case, knob, value)
@@ -193,10 +205,12 @@ def ranked_knobs(study, scene):
     """(least gain, largest gain, knob, value, whether any error is a zero crossing), best first."""
     found, crossed = {}, set()
     for case in (c for c in study.cases if study.cases[c]["scene"] == scene):
-        for gain, knob, value, _, sound, zero in knob_rows(study, case, main_error(study.cases[case])):
+        for gain, knob, value, _, sound, zero in knob_rows(study, case,
+                                                           main_error(study.cases[case])):
             found.setdefault((knob, value), []).append(gain if sound else 0)
             crossed |= {(knob, value)} if zero else set()
-    return sorted(((min(g), max(g), *k, k in crossed) for k, g in found.items() if min(g) > 0), reverse=True)
+    return sorted(((min(g), max(g), *k, k in crossed) for k, g in found.items() if min(g) > 0),
+                  reverse=True)
 
 
 def best_knobs(study):
@@ -227,7 +241,8 @@ def forecast_cells(row):
     cells = [f"{row['until']:g} of {row['end']:g}"]
     for key, number in (("steps", "{:,.0f}"), ("seconds", "{:.1f}")):
         wanted, got = row["foreseen"][key], row["taken"][key]
-        cells += [f"{number.format(wanted)} / {number.format(got)}", f"{100 * (wanted / got - 1):+.0f}"]
+        cells += [f"{number.format(wanted)} / {number.format(got)}",
+                  f"{100 * (wanted / got - 1):+.0f}"]
     return head + cells + [f"{row['taken']['load']:.1f}"]
 
 
@@ -237,9 +252,11 @@ def speed_up(data):
             for r in data["rows"] if "failed" not in r}
     text = ""
     for threads in sorted({n for _, n in each if n > 1}):
-        gains = [each[case, 1] / each[case, n] for case, n in each if n == threads and (case, 1) in each]
+        gains = [each[case, 1] / each[case, n] for case, n in each if n == threads and
+                 (case, 1) in each]
         if gains:
-            text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast as one, "
+            text += (f" {threads} threads were {min(gains):.2f} to {max(gains):.2f} times as fast "
+                     f"as one, "
                      f"{np.exp(np.mean(np.log(gains))):.2f} times in the geometric mean.")
     return text
 
@@ -247,7 +264,8 @@ def speed_up(data):
 def forecast_table(data):
     off = [abs(r["foreseen"]["seconds"] / r["taken"]["seconds"] - 1)
            for r in data["rows"] if "failed" not in r]
-    text = (f"The seconds are right within 20 % in {sum(x <= 0.2 for x in off)} of {len(data['rows'])} runs."
+    text = (f"The seconds are right within 20 % in {sum(x <= 0.2 for x in off)} of "
+            f"{len(data['rows'])} runs."
             f"{speed_up(data)}")
     return table(["case", "threads", "until (s)", "steps forecast / measured", "error (%)",
                   "seconds forecast / measured", "error (%)", "load before"],

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The benchmark of Turek and Hron (2006): runs its cases, reads drag, lift and the displacement of A,
-finds out whether they rest, repeat themselves or do neither yet, and writes docs/turek_hron.md.
+"""The benchmark of Turek and Hron (2006): runs its cases, reads drag, lift and the displacement of
+A, finds out whether they rest, repeat themselves or do neither yet, and writes docs/turek_hron.md.
 
 examples:
   tools/report/turek_hron.py run fsi2 --across 10        runs the case into runs/turek_hron/fsi2-10
@@ -28,9 +28,9 @@ CASES = ROOT / "cases" / "turek_hron"
 KEPT = ROOT / "docs" / "turek_hron.json"
 PAGE = ROOT / "docs" / "turek_hron.md"
 
-# Mean, amplitude and frequency (Hz) in mm and N/m; amplitude and frequency None: steady. Turek and Hron
-# (2006) for CSM, CFD and FSI1; the finest levels quoted by the verification pages of solids4foam for FSI2;
-# Turek et al. (2010) for FSI3.
+# Mean, amplitude and frequency (Hz) in mm and N/m; amplitude and frequency None: steady. Turek and
+# Hron (2006) for CSM, CFD and FSI1; the finest levels quoted by the verification pages of
+# solids4foam for FSI2; Turek et al. (2010) for FSI3.
 REFERENCE = {
     "csm1": {"ux": (-7.187, None, None), "uy": (-66.10, None, None)},
     "csm2": {"ux": (-0.469, None, None), "uy": (-16.97, None, None)},
@@ -54,11 +54,13 @@ OTHERS = [
     ("OpenFOAM (solids4foam), FSI3", -2.3, 44 * 3600, "verification pages of solids4foam"),
     ("OpenFOAM (solids4foam), FSI3", 3.5, 1306 * 3600, "verification pages of solids4foam"),
 ]
-# Case, quantity, part of it, and the largest error in per cent of the finest run (cost: core-hours).
+# Case, quantity, part of it, and the largest error in per cent of the finest run (cost:
+# core-hours).
 TARGETS = [
     ("cfd1", "drag", "mean", 2),
     ("cfd2", "drag", "mean", 2),
-    ("cfd3", "drag", "mean", 3), ("cfd3", "lift", "amplitude", 10), ("cfd3", "lift", "frequency", 2),
+    ("cfd3", "drag", "mean", 3), ("cfd3", "lift", "amplitude", 10),
+    ("cfd3", "lift", "frequency", 2),
     ("fsi1", "ux", "mean", 5), ("fsi1", "uy", "mean", 5), ("fsi1", "drag", "mean", 5),
     ("fsi1", "lift", "mean", 5),
     ("fsi2", "uy", "amplitude", 3), ("fsi2", "uy", "frequency", 2), ("fsi2", "run", "cost", 2),
@@ -66,8 +68,10 @@ TARGETS = [
 ]
 PERIODS = 6      # at the end that mean and amplitude are taken of, at least
 HARMONICS = 4    # that make up a period
-SAME = 0.05      # of the size of a period: its trend over half of the periods, and its standard error
-REST = 0.02      # of the mean of a series at rest: its trend over a quarter of the run, and its error
+# of the size of a period: its trend over half of the periods, and its standard error
+SAME = 0.05
+# of the mean of a series at rest: its trend over a quarter of the run, and its error
+REST = 0.02
 STARTS = ("ramp", "kick", "tilt")  # constants of the start of a run only
 PARTS = 24       # of the last half of a run, whose means judge whether it rests
 ALONE = 8        # parts without correlation that those of a series at rest stand for, at least
@@ -93,7 +97,8 @@ def columns(folder):
 
 
 def fit(times, values, frequency):
-    """Least squares of a mean and the harmonics of a frequency: coefficients and mean square left."""
+    """Least squares of a mean and the harmonics of a frequency: coefficients and mean square
+    left."""
     angle = 2 * np.pi * frequency * times[:, None] * np.arange(1, HARMONICS + 1)
     base = np.hstack([np.ones((len(times), 1)), np.cos(angle), np.sin(angle)])
     found, *_ = np.linalg.lstsq(base, values, rcond=None)
@@ -101,7 +106,8 @@ def fit(times, values, frequency):
 
 
 def frequency_of(times, values):
-    """The frequency whose harmonics leave least of a series: near the highest line of its spectrum."""
+    """The frequency whose harmonics leave least of a series: near the highest line of its
+    spectrum."""
     length, step = times[-1] - times[0], (times[-1] - times[0]) / (len(times) - 1)
     drift = np.polyval(np.polyfit(times, values, 1), times)
     lines = np.abs(np.fft.rfft((values - drift) * np.hanning(len(values)), 8 * len(values)))
@@ -122,9 +128,9 @@ def windows(times, frequency, count):
 
 
 def settled(sizes, same):
-    """Whether sizes of one sign show no trend: over half of them it is below a share of their mean, or
-    over all of them not larger than twice the error that their scatter gives it. The standard error of
-    their mean must not exceed that share either."""
+    """Whether sizes of one sign show no trend: over half of them it is below a share of their mean,
+    or over all of them not larger than twice the error that their scatter gives it. The standard
+    error of their mean must not exceed that share either."""
     count, whole = len(sizes), abs(np.mean(sizes))
     order = np.arange(count) - 0.5 * (count - 1)
     slope = float(order @ sizes / (order @ order))
@@ -149,9 +155,10 @@ def swings(times, values):
 
 
 def rest(times, late):
-    """State of the last half of a run without a period, its mean and the standard error of the mean. It is
-    steady within its noise if it does not swing and neither the means of its parts nor the scatter in them
-    have a trend. The correlation of neighbouring parts makes them stand for fewer: ALONE at least."""
+    """State of the last half of a run without a period, its mean and the standard error of the
+    mean. It is steady within its noise if it does not swing and neither the means of its parts nor
+    the scatter in them have a trend. The correlation of neighbouring parts makes them stand for
+    fewer: ALONE at least."""
     pieces = np.array_split(late, min(PARTS, len(late)))
     parts, scatter = np.array([p.mean() for p in pieces]), np.array([p.std() for p in pieces])
     off, count = parts - parts.mean(), len(parts)
@@ -165,8 +172,8 @@ def rest(times, late):
 
 
 def sizes_of(times, values, frequency, count):
-    """The first harmonic of each of the last periods, in phase with that of all of them together. So
-    noise makes it neither larger nor smaller on average."""
+    """The first harmonic of each of the last periods, in phase with that of all of them together.
+    So noise makes it neither larger nor smaller on average."""
     late = times >= times[-1] - count / frequency
     whole = first(fit(times[late], values[late], frequency)[0])
     own = [first(fit(times[s], values[s], frequency)[0]) for s in windows(times, frequency, count)]
@@ -179,8 +186,8 @@ def first(coefficients):
 
 
 def period(times, values):
-    """Frequency and number of the periods at the end that repeat themselves, or none: as many as there
-    are in the last half of the run, or fewer, but six at least."""
+    """Frequency and number of the periods at the end that repeat themselves, or none: as many as
+    there are in the last half of the run, or fewer, but six at least."""
     late = times >= 0.5 * times[-1]
     frequency = frequency_of(times[late], values[late])
     if not frequency:
@@ -189,7 +196,8 @@ def period(times, values):
     while count >= PERIODS:
         late = times >= times[-1] - count / frequency
         own = frequency_of(times[late], values[late])
-        if own and (count + 1) / own <= times[-1] and settled(sizes_of(times, values, own, count), SAME):
+        if own and (count + 1) / own <= times[-1] and settled(sizes_of(times, values, own, count),
+                                                              SAME):
             return own, count
         count = count * 3 // 4
     return None
@@ -203,21 +211,25 @@ def middle_and_size(coefficients):
 
 
 def summary(times, values, found):
-    """Mean, amplitude (of the largest and least values of the mean period), their standard errors and the
-    frequency; without a period: the mean and the scatter of the last half."""
+    """Mean, amplitude (of the largest and least values of the mean period), their standard errors
+    and the frequency; without a period: the mean and the scatter of the last half."""
     if found:
         frequency, count = found
-        own = np.array([fit(times[s], values[s], frequency)[0] for s in windows(times, frequency, count)])
+        own = np.array([fit(times[s], values[s], frequency)[0]
+                        for s in windows(times, frequency, count)])
         middle, size = middle_and_size(own.mean(axis=0))
         # Jackknife: how the result moves as one period after the other is left out.
-        left = np.array([middle_and_size(np.delete(own, k, axis=0).mean(axis=0)) for k in range(count)])
+        left = np.array([middle_and_size(np.delete(own, k, axis=0).mean(axis=0))
+                         for k in range(count)])
         errors = np.sqrt((count - 1) * left.var(axis=0))
         strongest = np.argmax(np.hypot(*own.mean(axis=0)[1:].reshape(2, HARMONICS))) + 1
         return {"state": "periodic", "mean": middle, "amplitude": size, "mean_error": errors[0],
-                "amplitude_error": errors[1], "frequency": float(strongest * frequency), "periods": count}
+                "amplitude_error": errors[1], "frequency": float(strongest * frequency),
+                "periods": count}
     late = times >= 0.5 * times[-1]
     state, mean, off = rest(times[late], values[late])
-    return {"state": state, "mean": mean, "amplitude": float(np.std(values[late])), "frequency": None,
+    return {"state": state, "mean": mean, "amplitude": float(np.std(values[late])),
+            "frequency": None,
             "mean_error": off}
 
 
@@ -312,19 +324,22 @@ def judged(best, quantity, part, limit):
     if found["state"] == "periodic" or found["state"].startswith("steady") and part == "mean":
         size = wanted[("mean", "amplitude", "frequency").index(part)]
         off, known = 100 * (found[part] / size - 1), 200 * abs(found.get(f"{part}_error", 0) / size)
-        word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit else
+        word = ("met" if abs(off) + known <= limit else "**missed**" if abs(off) - known > limit
+                else
                 "undecided: noise")
         return f"{off:+.1f}{f' ± {0.5 * known:.1f}' if known else ''} % | {limit} % | {word}"
     return f"{found['state']} | {limit} % | not shown"
 
 
 def headline(kept):
-    """The targets, and what the finest run of each case shows of them, with each set of its constants."""
+    """The targets, and what the finest run of each case shows of them, with each set of its
+    constants."""
     finest = {(k["case"], *constants(k)): k for k in kept}  # sorted by resolution
     lines = ["| case | across | target | found | asked | |", "|---|---|---|---|---|---|"]
     for of_case in dict.fromkeys(t[0] for t in TARGETS):
         for best in (k for k in finest.values() if k["case"] == of_case):
-            lines += [f"| {of_case.upper()} | {best['across']}{changed(best)} | {quantity} {part} | "
+            lines += [f"| {of_case.upper()} | {best['across']}{changed(best)} | {quantity} {part} "
+                      f"| "
                       f"{judged(best, quantity, part, limit)} |"
                       for case, quantity, part, limit in TARGETS if case == of_case]
     missing = [c.upper() for c in REFERENCE if c not in {k[0] for k in finest}]
@@ -336,8 +351,10 @@ def headline(kept):
 def report():
     kept = json.loads(KEPT.read_text())
     text = ["# The benchmark of Turek and Hron", "",
-            "Written by `tools/report/turek_hron.py report` from `docs/turek_hron.json`. The first table holds the "
-            "finest run of each case, with the constants of the case and with others. Errors are those "
+            "Written by `tools/report/turek_hron.py report` from `docs/turek_hron.json`. The first "
+            "table holds the "
+            "finest run of each case, with the constants of the case and with others. Errors are "
+            "those "
             "against the finest reference.", "",
             *headline(kept), "",
             (ROOT / "docs" / "turek_hron_notes.md").read_text().strip(), "",
@@ -362,7 +379,8 @@ def report():
              "| program | error of the amplitude of uy, % | core-seconds of the run | source |",
              "|---|---|---|---|"]
     text += [f"| {n} | {e:+.1f} | {c:.0f} | {s} |" for n, e, c, s in OTHERS]
-    text += ["", "SPHinXsys, `test_2d_fsi2`, 10 across, channel 1.1 m long without an outlet: 8 to 12 CPU "
+    text += ["", "SPHinXsys, `test_2d_fsi2`, 10 across, channel 1.1 m long without an outlet: 8 to "
+                 "12 CPU "
              "seconds a second, uy 77 to 81 mm, 1.72 to 1.78 Hz (timed on two cores).", ""]
     PAGE.write_text("\n".join(text), encoding="utf-8")
 
@@ -379,11 +397,13 @@ def pictures(run):
                 f"  {k['across']} across" +
                 "".join(f",\n  {c.split('.')[-1]}" for c in constants(k)))
                for k in json.loads(KEPT.read_text())
-               if k["case"] == case and k["series"]["uy"]["state"] == "periodic" and k["cpu_seconds"]]
+               if k["case"] == case and k["series"]["uy"]["state"] == "periodic" and
+               k["cpu_seconds"]]
         other = [(cost, abs(off)) for name, off, cost, _ in OTHERS if name.endswith(case.upper())]
         ax.loglog(*zip(*other), mark, mfc="none", color="0.4", label=f"OpenFOAM, {case.upper()}")
         if own:
-            ax.loglog([k[0] for k in own], [k[1] for k in own], mark, label=f"sphfsi, {case.upper()}")
+            ax.loglog([k[0] for k in own], [k[1] for k in own], mark,
+                      label=f"sphfsi, {case.upper()}")
             for cost, off, name in own:
                 ax.annotate(name, (cost, off), fontsize=8, va="center")
     # Twenty seconds of FSI2, 77 to 81 mm beside 81.6 mm (timed on two cores).
@@ -398,7 +418,8 @@ def pictures(run):
     fig, axes = plt.subplots(len(series), 1, figsize=(7, 1.4 * len(series)), sharex=True)
     for axis, (name, values) in zip(axes, series.items()):
         axis.plot(times, values, lw=0.6)
-        late = [v for t, v in zip(times, values) if t > times[-1] / 2]  # the start may be far larger
+        # the start may be far larger
+        late = [v for t, v in zip(times, values) if t > times[-1] / 2]
         margin = 0.2 * (max(late) - min(late)) or 1
         axis.set_ylim(min(late) - margin, max(late) + margin)
         axis.set_ylabel(f"{name}, {UNIT[name]}")
@@ -420,7 +441,8 @@ def main():
     run.add_argument("--threads", type=int, default=os.cpu_count())
     run.add_argument("--program", type=Path, default=ROOT / "sphfsi")
     for name in ("read", "keep"):
-        sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+", type=Path)
+        sub.add_parser(name, help=f"{name} what runs show").add_argument("runs", nargs="+",
+                                                                         type=Path)
     sub.add_parser("report", help="write docs/turek_hron.md")
     draw = sub.add_parser("pictures", help="draw error against cost, and the histories of a run")
     draw.add_argument("history", nargs="?", type=Path)

@@ -22,7 +22,8 @@ def rms_against(time, value, ref):
     inside = (ref.time >= time[0]) & (ref.time <= time[-1])
     if not inside.any():
         raise BadFile(f"{ref.path}: no time in common with the run")
-    return float(np.sqrt(np.mean((np.interp(ref.time[inside], time, value) - ref.value[inside]) ** 2)))
+    return float(np.sqrt(np.mean((np.interp(ref.time[inside], time, value) -
+                                  ref.value[inside]) ** 2)))
 
 
 # --- 3.1 ---
@@ -53,7 +54,8 @@ def cantilever(report):
         return f"{share:.2f} % ({BY_NAME[found].words})", share <= 1
     report.try_target("cantilever", "amplitude loss at most 1 % a second", loss)
     plate, elastic = reference("cantilever_thin_plate"), reference("cantilever_elasticity")
-    head = ["period (s)", "error (%)", "mean period, error (%)", "phase at the end (deg)", "amplitude (mm)",
+    head = ["period (s)", "error (%)", "mean period, error (%)", "phase at the end (deg)",
+            "amplitude (mm)",
             "loss (%/s)", "RMSE, elasticity (mm)", "RMSE, thin plate (mm)", *COST[1:]]
     lines = [
         paragraph("cantilever", period=PERIOD, amplitude=1e3 * AMPLITUDE), "",
@@ -62,7 +64,8 @@ def cantilever(report):
         *report.draw("plot_m1", ["cantilever-20", "cantilever-20-symplectic", "cantilever-40",
                                  "cantilever-80"], "cantilever-m1",
                      "Deflection of the free end, and its difference from the references"),
-        *report.draw("plot_fields", ["cantilever-20", "cantilever-20-symplectic"], "cantilever-fields",
+        *report.draw("plot_fields", ["cantilever-20", "cantilever-20-symplectic"],
+                     "cantilever-fields",
                      "Von Mises stress at 0.57 s and 0.70 s, Verlet and symplectic (ts/dp = 20)",
                      "--time", 0.57, 0.7),
         *ledgers(report, ["cantilever-"])]
@@ -75,7 +78,8 @@ def table_one(report, plate, elastic):
     kappas = (0, 1, 10, 50)
     lines = ["### Table 1 of the paper", "",
              paragraph("table one"), "",
-             "| ts/dp | paper | " + " | ".join(f"kappa = {k}" for k in kappas) + " |", "|---" * 6 + "|"]
+             "| ts/dp | paper | " + " | ".join(f"kappa = {k}" for k in kappas) + " |",
+             "|---" * 6 + "|"]
     for ratio in (10, 20, 40, 80):
         cells = []
         for kappa in kappas:
@@ -102,8 +106,10 @@ def settled(run):
 
 
 def deflections():
-    """Deflections by two-dimensional elasticity and by the thin plate, with the plate's own weight, m."""
-    return [float(reference(f"hydrostatic_plate_{name}").value[-1]) for name in ("elasticity", "thin_plate")]
+    """Deflections by two-dimensional elasticity and by the thin plate, with the plate's own weight,
+    m."""
+    return [float(reference(f"hydrostatic_plate_{name}").value[-1])
+            for name in ("elasticity", "thin_plate")]
 
 
 def plate_targets(report, sides):
@@ -115,20 +121,23 @@ def plate_targets(report, sides):
 
     def closer():
         """The error at half the paper's spacing, and whether it is smaller than at the paper's."""
-        fine, coarse = off("plate-3.125mm-leapfrog"), off(report.first("plate-leapfrog", "plate-verlet"))
+        fine, coarse = off("plate-3.125mm-leapfrog"), off(report.first("plate-leapfrog",
+                                                                       "plate-verlet"))
         return f"{100 * fine:+.2f} %", abs(fine) < abs(coarse)
 
     def steady(name, what):
         s = settled(report.run(name))
         return f"{-100 * s[what] / s['mean']:.2f} %", -s[what] / s["mean"] < 0.02
     for name, words in sides:
-        report.try_target("hydrostatic plate", f"settled deflection within 4 % of 2-D elasticity, {words}",
+        report.try_target("hydrostatic plate", f"settled deflection within 4 % of 2-D elasticity, "
+                                               f"{words}",
                           lambda name=name: close(name))
         for what, measure in (("std", "standard deviation"), ("half", "half of the range")):
             report.try_target("hydrostatic plate",
                               f"fluctuation after 0.5 s below 2 % ({measure}), {words}",
                               lambda name=name, what=what: steady(name, what))
-    report.try_target("hydrostatic plate", "deflection closer to 2-D elasticity at half the spacing", closer)
+    report.try_target("hydrostatic plate",
+                      "deflection closer to 2-D elasticity at half the spacing", closer)
     report.try_target("hydrostatic plate",
                       "fluctuation after 0.5 s below 2 % (standard deviation), half the spacing",
                       lambda: steady("plate-3.125mm-leapfrog", "std"))
@@ -149,7 +158,8 @@ def plate(report):
                 f"{1e5 * top[1]:.2f} at {1e3 * top[0]:.1f}",
                 f"{metrics.strongest(time[early], dy[early]):.0f}", *cost(run)]
 
-    head = ["deflection (1e-5 m)", "from elasticity (%)", "from thin plate (%)", "standard deviation (%)",
+    head = ["deflection (1e-5 m)", "from elasticity (%)", "from thin plate (%)",
+            "standard deviation (%)",
             "half range (%)", "faster than 5 ms (%)", "first peak (1e-5 m, ms)",
             "first frequency (Hz)", *COST]
     return [
@@ -157,7 +167,8 @@ def plate(report):
         *report.table(head, starting("plate"), cells), *both_integrators(report, sides),
         *plate_figure(report, exact, thin),
         *report.draw("plot_fields", ["plate-verlet", "plate"], "plate-fields",
-                     "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time", 0.3),
+                     "Pressure and stress at 0.3 s, Verlet and symplectic (dp = 6.25 mm)", "--time",
+                     0.3),
         paragraph("plate 2"), "",
         paragraph("plate 3"), "", *ledgers(report, ["plate"])]
 
@@ -169,9 +180,13 @@ def both_integrators(report, sides):
         return [f"*What symplectic gives over Verlet: {problem}.*", ""]
     ratio = b["fast"] / a["fast"]
     verdict = ("Verlet's is the larger, as the paper says" if ratio > 1.2 else
-               "the paper's claim that symplectic is steadier is not confirmed here" if ratio > 0.8 else
+               "the paper's claim that symplectic is steadier is not confirmed here" if ratio > 0.8
+               else
                "symplectic's is the larger, against the paper's claim")
-    return [paragraph("both integrators", mean=100 * abs(b["mean"] / a["mean"] - 1), std=-100 * a["std"] / a["mean"], std_2=-100 * b["std"] / b["mean"], fast=-100 * a["fast"] / a["mean"], fast_2=-100 * b["fast"] / b["mean"], verdict=verdict), ""]
+    return [paragraph("both integrators", mean=100 * abs(b["mean"] / a["mean"] - 1),
+                      std=-100 * a["std"] / a["mean"], std_2=-100 * b["std"] / b["mean"],
+                      fast=-100 * a["fast"] / a["mean"], fast_2=-100 * b["fast"] / b["mean"],
+                      verdict=verdict), ""]
 
 
 def plate_figure(report, exact, thin):
@@ -188,7 +203,8 @@ def plate_figure(report, exact, thin):
                       linewidth=2.2 - 0.5 * k, label=BY_NAME[name].words)
         axes.axhline(1e5 * exact, color="0.2", linestyle=(0, (5, 2)), linewidth=1,
                      label="2-D elasticity")
-        axes.axhline(1e5 * thin, color="0.5", linestyle=(0, (1.5, 1.5)), linewidth=1, label="thin plate")
+        axes.axhline(1e5 * thin, color="0.5", linestyle=(0, (1.5, 1.5)), linewidth=1,
+                     label="thin plate")
         axes.set(xlabel="Time (s)", xlim=(0, end))
     whole.set(ylabel=r"M1 deflection ($10^{-5}$ m)", ylim=(-8.5, -5.5))
     whole.legend(ncol=2, fontsize=7)
@@ -214,11 +230,13 @@ def gate(report):
     for name, words in (("gate", "dp = 0.5 mm, symplectic"), ("gate-verlet", "dp = 0.5 mm, Verlet"),
                         ("gate-leapfrog", "dp = 0.5 mm, leapfrog"),
                         ("gate-0.25mm-leapfrog", "dp = 0.25 mm, leapfrog")):
-        report.try_target("gate", f"RMS against the measured horizontal curve at most 3.5 mm, {words}",
+        report.try_target("gate", f"RMS against the measured horizontal curve at most 3.5 mm, "
+                                  f"{words}",
                           lambda name=name: (lambda n: (f"{n['rms']:.1f} mm", n["rms"] <= 3.5))(
                               numbers(report.run(name))))
         report.try_target("gate", f"peak within 3 mm of the measured one, {words}",
-                          lambda name=name: (lambda n: (f"{n['short']:.1f} mm short", abs(n["short"]) <= 3))(
+                          lambda name=name: (lambda n: (f"{n['short']:.1f} mm short",
+                                                        abs(n["short"]) <= 3))(
                               numbers(report.run(name))))
     dry_target(report, "gate", "gate", "gate-verlet", "gate-leapfrog")
     top = 1e3 * reference("gate_antoci_2007_x").value.max()
@@ -266,7 +284,8 @@ def gate_reading(report, numbers):
         try:
             n = numbers(report.run(name))
             lines.append(f"* {words}: {n['peak'] - base['peak']:+.1f} and "
-                         f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} instead of {base['rms']:.1f}")
+                         f"{n['late'] - base['late']:+.1f}, RMS {n['rms']:.1f} instead of "
+                         f"{base['rms']:.1f}")
         except (Missing, BadFile) as problem:
             lines.append(f"* {words}: {problem}")
     return [*lines, "", paragraph("gate reading 2"), ""]
@@ -277,14 +296,16 @@ def interface(report, names):
     """Gaps and penetration between water and structure over the snapshots."""
     lines = ["### Interface", "",
              paragraph("interface"), "",
-             "| run | closest | median, wetted surface | surface with a gap (%) | pressed into bodies, "
+             "| run | closest | median, wetted surface | surface with a gap (%) | pressed into "
+             "bodies, "
              "walls | snapshots with any (%) |", "|---" * 6 + "|"]
     for name in names:
         try:
             run = report.run(name)
             closest, median, gaps = contact(run)
             bodies, walls, share = pressed_in(run)
-            lines.append(f"| {BY_NAME[name].words} | {closest:.2f} | {median:.2f} | {100 * gaps:.1f} | "
+            lines.append(f"| {BY_NAME[name].words} | {closest:.2f} | {median:.2f} | "
+                         f"{100 * gaps:.1f} | "
                          f"{bodies}, {walls} | {100 * share:.0f} |")
         except (Missing, BadFile) as problem:
             lines.append(f"| {BY_NAME[name].words} | *{problem}* | | | | |")
@@ -297,7 +318,8 @@ def dry_target(report, case, *names):
         def dry(name=name):
             bodies, walls, share = pressed_in(report.run(name))
             return f"{bodies} in bodies, {walls} in walls, {100 * share:.0f} % of the snapshots", share == 0
-        report.try_target(case, f"no water pressed into bodies or walls, {BY_NAME[name].words}", dry)
+        report.try_target(case, f"no water pressed into bodies or walls, {BY_NAME[name].words}",
+                          dry)
 
 
 def contact_time(run, least=2e-4):
@@ -314,14 +336,16 @@ def in_air(length, young):
     return metrics.beam_frequency(young, 0.4, 1250, 0.007, length)
 
 
-ABOUT_MEAN = ("Frequency and RMS are of the difference from the mean over 0.2 s around each instant. The "
+ABOUT_MEAN = ("Frequency and RMS are of the difference from the mean over 0.2 s around each "
+              "instant. The "
               "frequency is counted by changes of sign.")
 
 
 def about_mean(time, value, since):
     fast_time, fast = metrics.about_running_mean(time, value, 0.2)
     late = fast_time > since
-    return [f"{metrics.mean_frequency(fast_time[late], fast[late]):.1f}", f"{1e3 * fast[late].std():.2f}"]
+    return [f"{metrics.mean_frequency(fast_time[late], fast[late]):.1f}",
+            f"{1e3 * fast[late].std():.2f}"]
 
 
 def named(names):
@@ -345,19 +369,24 @@ def baffle(report):
     coarse = report.coarse("baffle-2.5mm", "baffle-4mm")
     shown = report.shown("baffle", coarse)
     return [
-        paragraph("baffle", depth=1e3 * depth, speed=speed, in_air=in_air(0.08, 5.7e6), in_air_2=in_air(0.064, 5.7e6), about_mean=ABOUT_MEAN), "",
-        *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)", "largest M1 (mm)",
+        paragraph("baffle", depth=1e3 * depth, speed=speed, in_air=in_air(0.08, 5.7e6),
+                  in_air_2=in_air(0.064, 5.7e6), about_mean=ABOUT_MEAN), "",
+        *report.table(["bore depth (mm)", "bore speed (m/s)", "first contact (s)",
+                       "largest M1 (mm)",
                        "at (s)",
                        "frequency after 0.7 s (Hz)", "RMS (mm)", "mean after 0.7 s (mm)", *COST],
                        starting("baffle"), cells),
-        *report.draw("plot_m1", ["baffle-verlet", "baffle", "baffle-leapfrog", "baffle-2mm-leapfrog",
+        *report.draw("plot_m1",
+                     ["baffle-verlet", "baffle", "baffle-leapfrog", "baffle-2mm-leapfrog",
                                  *coarse],
                      "baffle-m1", "Horizontal displacement of the tip", "--column", "M1_dx_m"),
         *report.draw("plot_m1", ["baffle-2mm-leapfrog", "baffle-2mm-embedded", "baffle-2mm-slow",
                                  "baffle-2mm-fast"],
-                     "baffle-sensitivity", "What the assumptions do: free length, speed of the plate",
+                     "baffle-sensitivity", "What the assumptions do: free length, speed of the "
+                                           "plate",
                      "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "baffle-fields", f"Pressure and von Mises stress, {named(shown)}",
+        *report.draw("plot_fields", shown, "baffle-fields", f"Pressure and von Mises stress, "
+                                                            f"{named(shown)}",
                      "--time", 0.3, 0.4, 0.6, 1.0, "--window", 0.6, 1.1, -0.01, 0.24),
         *interface(report, ["baffle", "baffle-verlet", "baffle-leapfrog", "baffle-2mm-leapfrog",
                             "baffle-2.5mm", "baffle-2.5mm-verlet", "baffle-2.5mm-leapfrog",
@@ -387,16 +416,21 @@ def sluice(report):
                        "mean after 1 s (mm)",
                        "deviation after 1 s (mm)", "frequency after 1 s (Hz)", "RMS (mm)", *COST],
                        starting("sluice"), cells),
-        *report.draw("plot_m1", ["sluice-verlet", "sluice", "sluice-leapfrog", "sluice-2mm-leapfrog",
+        *report.draw("plot_m1",
+                     ["sluice-verlet", "sluice", "sluice-leapfrog", "sluice-2mm-leapfrog",
                                  *coarse],
-                     "sluice-m1", "Horizontal displacement of the gate's lower end", "--column", "M1_dx_m"),
-        *report.draw("plot_m1", ["sluice-2mm-leapfrog", "sluice-2mm-opening10", "sluice-2mm-opening40",
+                     "sluice-m1", "Horizontal displacement of the gate's lower end", "--column",
+                     "M1_dx_m"),
+        *report.draw("plot_m1",
+                     ["sluice-2mm-leapfrog", "sluice-2mm-opening10", "sluice-2mm-opening40",
                                  "sluice-2mm-slow", "sluice-2mm-viscous"], "sluice-sensitivity",
                      "What the assumptions do: opening, speed of the plate; and what alpha does",
                      "--column", "M1_dx_m"),
-        *report.draw("plot_fields", shown, "sluice-fields", f"Pressure and von Mises stress, {named(shown)}",
+        *report.draw("plot_fields", shown, "sluice-fields", f"Pressure and von Mises stress, "
+                                                            f"{named(shown)}",
                      "--time", 0.3, 0.5, 1.0, 1.5, *window),
-        *report.draw("plot_fields", shown, "sluice-vorticity", f"Vorticity after 1 s, {named(shown)}",
+        *report.draw("plot_fields", shown, "sluice-vorticity", f"Vorticity after 1 s, "
+                                                               f"{named(shown)}",
                      "--time", 1.1, 1.3, 1.5, 1.7, "--field", "vorticity", *window),
         *interface(report, ["sluice", "sluice-verlet", "sluice-leapfrog", "sluice-2mm-leapfrog",
                             "sluice-2.5mm", "sluice-2.5mm-verlet", "sluice-2.5mm-leapfrog",

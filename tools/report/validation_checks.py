@@ -35,7 +35,8 @@ def still(report):
         report.try_target("still water, 10 s", f"pressure error (L2) at most 1 %, {words}",
                           lambda name=name: (lambda r: (f"{100 * r[0]:.2f} %",
                                                         r[0] <= 0.01))(rest(report.run(name))))
-        report.try_target("still water, 10 s", f"kinetic energy below 1e-6 of the potential, {words}",
+        report.try_target("still water, 10 s", f"kinetic energy below 1e-6 of the potential, "
+                                               f"{words}",
                           lambda name=name: (lambda r: (f"{r[1]:.1e}",
                                                         r[1] < 1e-6))(rest(report.run(name))))
     return [
@@ -52,7 +53,8 @@ def beat(run):
     k = np.pi / width
     omega = float(np.sqrt(G * k * np.tanh(k * height)))
     found, decay = metrics.damped_sine(ledger["time"], ledger["momentum_x"], omega)
-    damping = float(scheme(run)["artificial_viscosity"]) * number(run, "h_over_dp") * run.spacing() * \
+    damping = float(scheme(run)["artificial_viscosity"]) * number(run,
+                                                                  "h_over_dp") * run.spacing() * \
         run.summary["derived"]["c0"] / 8
     return found / omega, decay, 2 * damping * k * k
 
@@ -83,7 +85,8 @@ def wave(report):
     report.try_target("standing wave", "order of convergence at least 1", converges)
     return [
         paragraph("wave"), "",
-        *report.table(["frequency over theory", "shear stiffness of the lattice (p/rho)", "decay (1/s)",
+        *report.table(["frequency over theory", "shear stiffness of the lattice (p/rho)",
+                       "decay (1/s)",
                        "2 nu k^2 (1/s)", *COST],
                       starting("wave"), cells),
         paragraph("wave 2"), "",
@@ -91,7 +94,8 @@ def wave(report):
 
 
 def shear_line(report):
-    """How the frequency follows the lattice's stiffness, over the runs that differ in nothing else."""
+    """How the frequency follows the lattice's stiffness, over the runs that differ in nothing
+    else."""
     names = report.has(*(f"wave-{n}-{h}" for n in (20, 40) for h in (1.35, 1.5, 1.6, 1.7, 1.8, 2)))
     if len(names) < 4:
         return []
@@ -99,7 +103,8 @@ def shear_line(report):
     stiff = [metrics.lattice_shear(float(number(run, "h_over_dp"))) for run in runs]
     off = [100 * (beat(run)[0] - 1) for run in runs]
     slope, rest = np.polyfit(stiff, off, 1)
-    return [paragraph("shear line", runs=len(runs), off=np.corrcoef(stiff, off)[0, 1], slope=slope / 100, rest=rest), ""]
+    return [paragraph("shear line", runs=len(runs), off=np.corrcoef(stiff, off)[0, 1],
+                      slope=slope / 100, rest=rest), ""]
 
 
 def fade(run):
@@ -109,7 +114,8 @@ def fade(run):
     time, energy = ledger["time"], ledger["kinetic"]
     rate = 16 * np.pi ** 2 * number(run, "nu") / number(run, "L") ** 2
     own = -np.polyfit(time[time > 0.1], np.log(energy[time > 0.1]), 1)[0]
-    shares = [float(np.interp(t, time, energy) / energy[0] / np.exp(-rate * t)) for t in (0.1, 0.25, 1.0)]
+    shares = [float(np.interp(t, time, energy) / energy[0] / np.exp(-rate * t))
+              for t in (0.1, 0.25, 1.0)]
     return own / rate, shares
 
 
@@ -188,8 +194,10 @@ def front(report):
     report.try_target("dry dam break", f"{square}, after a shift of the time's origin",
                       lambda: moved("front-40-square"))
     report.try_target("dry dam break",
-                      "the same table read as t sqrt(g/a) of a column of height 2a, after a shift of the "
-                      "time's origin", lambda: moved(report.first("front-80", "front-40", "front-20")))
+                      "the same table read as t sqrt(g/a) of a column of height 2a, after a shift "
+                      "of the "
+                      "time's origin",
+                      lambda: moved(report.first("front-80", "front-40", "front-20")))
     return [
         paragraph("front"), "",
         *report.table(["t sqrt(2g/a)", "shifted", "t sqrt(g/a)", "shifted", "steps", "solid steps",
@@ -202,7 +210,8 @@ def front(report):
 def front_figure(report, known_t, known_x, curve):
     lines = [(name, 2, r"height 2a, $t\sqrt{2g/a}$, " + BY_NAME[name].words)
              for name in report.has("front-80", "front-40", "front-20")[:1]]
-    lines += [(name, 1, r"square, $t\sqrt{g/a}$, a/dp = 40") for name in report.has("front-40-square")]
+    lines += [(name, 1, r"square, $t\sqrt{g/a}$, a/dp = 40")
+              for name in report.has("front-40-square")]
     if not lines:
         return ["*No figure: no run of the front has finished.*", ""]
     figure, axes = plt.subplots(figsize=(0.6 * WIDTH, 3), layout="constrained")
@@ -221,7 +230,8 @@ def impact_figure(report, sensors, curve):
         return ["*No figure: no run of the impact has finished.*", ""]
     figure, axes = plt.subplots(1, 3, figsize=(WIDTH, 2.6), layout="constrained", sharey=True)
     for place, (probe, height, top) in zip(axes, sensors):
-        place.axhline(top, color="black", linestyle=(0, (5, 2)), linewidth=0.9, label="measured peak")
+        place.axhline(top, color="black", linestyle=(0, (5, 2)), linewidth=0.9,
+                      label="measured peak")
         for colour, name in zip(COLOURS, names):
             place.plot(*curve(report.run(name), probe, 5), color=colour, linewidth=0.8,
                        label=BY_NAME[name].words)
@@ -294,9 +304,11 @@ def beam(report):
 
     def cells(run):
         dx, dy, x, y, off, left = measure(run)
-        return [f"{dx:.4f}, {dy:.4f}", f"{x:.4f}, {y:.4f}", f"{100 * off:.2f}", f"{left:.1e}", *cost(run)]
+        return [f"{dx:.4f}, {dy:.4f}", f"{x:.4f}, {y:.4f}", f"{100 * off:.2f}", f"{left:.1e}",
+                *cost(run)]
     return [paragraph("beam"), "",
-            *report.table(["tip", "elastica", "error (% of L)", "remaining motion", "steps", "solid steps",
+            *report.table(["tip", "elastica", "error (% of L)", "remaining motion", "steps",
+                           "solid steps",
                            "s (threads)"],
                           starting("elastica"), cells)]
 
@@ -316,7 +328,8 @@ def patch(report):
         done = found = None
     if not found or done.returncode:
         value = "failed" if done is not None else "not built: make validate builds it"
-        report.target("patch test", "a linear field is exact to round-off", value, False if done else None)
+        report.target("patch test", "a linear field is exact to round-off", value, False if done
+                      else None)
         return [f"*{program.name}: {value}.*", ""]
     report.target("patch test", "a linear field is exact to round-off", f"{float(found[1]):.1e}",
                   float(found[1]) < 1e-13)
@@ -347,7 +360,8 @@ def block(report):
     report.try_target("free rotation", "angular momentum conserved to 1e-6; strain energy below "
                                        "1e-3 of the kinetic energy", target)
     return [paragraph("block"), "",
-            *report.table(["angular momentum", "strain over kinetic energy", "error of the corner (of L)",
+            *report.table(["angular momentum", "strain over kinetic energy",
+                           "error of the corner (of L)",
                            "steps", "solid steps",
                            "s (threads)"], starting("block"), cells)]
 
@@ -361,7 +375,8 @@ def bar(report):
         try:
             rms = float(run.summary["references"]["exact"]["rms_relative"])
         except (KeyError, TypeError, ValueError):
-            raise BadFile(f"{run.folder / 'summary.json'}: no number rms_relative of the reference exact") \
+            raise BadFile(f"{run.folder / 'summary.json'}: no number rms_relative of the reference "
+                          f"exact") \
                 from None
         return (dy.mean() / static - 1, 2 * np.diff(turns).mean() / (4 * length / speed) - 1,
                 rms)

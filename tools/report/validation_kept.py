@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Results of long runs of the validation that are kept in the repository, docs/validation/NAME.zip.
 
-An archive holds what the report reads of a run without its snapshots: summary.json, the effective case,
-probes.csv, ledger.csv, and in measured.json the numbers that take the snapshots or every row. Runs of the
-quick selection are not kept, since they are run again in minutes. A kept result counts as long as its
-case is what the specification gives now, whichever version of the program it is of."""
+An archive holds what the report reads of a run without its snapshots: summary.json, the effective
+case, probes.csv, ledger.csv, and in measured.json the numbers that take the snapshots or every row.
+Runs of the quick selection are not kept, since they are run again in minutes. A kept result counts
+as long as its case is what the specification gives now, whichever version of the program it is
+of."""
 
 import io
 import json
@@ -98,7 +99,8 @@ class Kept:
         try:
             with zipfile.ZipFile(path) as file:
                 texts = {name: file.read(name).decode() for name in file.namelist()}
-        except (OSError, zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, ValueError, RuntimeError,
+        except (OSError, zipfile.BadZipFile, zipfile.LargeZipFile, EOFError, ValueError,
+                RuntimeError,
                 NotImplementedError, zlib.error) as problem:
             raise BadFile(f"{path}: not a readable archive ({problem})") from None
         strange = set(texts) - {*NEEDED, *TABLES}
@@ -124,12 +126,15 @@ class Kept:
         if run.summary.get("exit_reason") not in ENDED:
             raise BadFile(f"{spec.folder}: has not ended, so it is not kept")
         check_ended(run)
-        files = {name: read_text(spec.folder / name) for name in ("summary.json", "case.cfg", *TABLES)
+        files = {name: read_text(spec.folder / name)
+                 for name in ("summary.json", "case.cfg", *TABLES)
                  if name not in TABLES or (spec.folder / name).is_file()}
         if not self.means(spec, files["case.cfg"]):
-            raise BadFile(f"{spec.folder}: of another case than {spec.name} means now, so it is not kept")
+            raise BadFile(f"{spec.folder}: of another case than {spec.name} means now, so it is "
+                          f"not kept")
         # Where it was run says nothing about the result.
-        files["summary.json"] = re.sub(r'(?m)^(\s*"(?:case|restarted_from|forked_from)": ").*/', r"\1",
+        files["summary.json"] = re.sub(r'(?m)^(\s*"(?:case|restarted_from|forked_from)": ").*/',
+                                       r"\1",
                                        files["summary.json"])
         # A run that a guard ended has no numbers in the report.
         measured = {} if run.failure() else measure_all(run)

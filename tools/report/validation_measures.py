@@ -20,7 +20,8 @@ class Missing(Exception):
 
 
 class NotRun(Missing):
-    """There are no files of a run; the text says what is wrong with its kept result, if there is one."""
+    """There are no files of a run; the text says what is wrong with its kept result, if there is
+    one."""
 
     def __init__(self, wrong=""):
         super().__init__("not run" + (f"; what is kept of it {wrong}" if wrong else ""))
@@ -100,13 +101,15 @@ def water(file, step):
 
 @whole_run([""], "play", "lost", "gain", "momentum_x", "momentum_y", "mass", "density")
 def balance(run):
-    """From the ledger: the available energy, the dissipated energy, the largest spurious gain; momentum
-    and relative change of the mass at the end; the largest relative deviation of the density."""
+    """From the ledger: the available energy, the dissipated energy, the largest spurious gain;
+    momentum and relative change of the mass at the end; the largest relative deviation of the
+    density."""
     ledger = read_ledger(run)
     lost, mass = ledger["dissipated"], ledger["mass"]
     gain = np.max(np.maximum.accumulate(lost) - lost)
     return tuple(map(float, (
-        energy_shares(ledger)[1], lost[-1], gain, ledger["momentum_x"][-1], ledger["momentum_y"][-1],
+        energy_shares(ledger)[1], lost[-1], gain, ledger["momentum_x"][-1],
+        ledger["momentum_y"][-1],
         mass[-1] / mass[0] - 1 if mass[0] else 0.0, np.nanmax(ledger["dens_extreme"]))))
 
 
@@ -135,9 +138,9 @@ def contact(run):
 
 @whole_run(["gate", "baffle", "sluice"], "bodies", "walls", "share")
 def pressed_in(run):
-    """Water among the particles of one body or wall, which leave no sector of 120 degrees free within 1.2
-    spacings (some 0.8 spacings below the surface), or that hangs below the tank's floor at y = 0.
-    The most at once in bodies, in walls; the share of the snapshots with any."""
+    """Water among the particles of one body or wall, which leave no sector of 120 degrees free
+    within 1.2 spacings (some 0.8 spacings below the surface), or that hangs below the tank's floor
+    at y = 0. The most at once in bodies, in walls; the share of the snapshots with any."""
     file, dp, bodies, walls, any_in = snapshots(run), run.spacing(), 0, 0, 0
     for step in range(len(file.times)):
         kind, body, x = (file.load(step, name) for name in ("kind", "body", "Points"))
@@ -204,7 +207,8 @@ def rest(run):
     height, file = number(run, "H"), snapshots(run)
     step = len(file.times) - 1
     here = file.load(step, "kind") == 0
-    x, p, v = (file.load(step, name)[here].astype(float) for name in ("Points", "pressure", "velocity"))
+    x, p, v = (file.load(step, name)[here].astype(float)
+               for name in ("Points", "pressure", "velocity"))
     exact = 1000 * G * (height - x[:, 1])
     slope = np.polyfit(height - x[:, 1], p, 1)[0] / (1000 * G)
     energy = float((0.5 * (v ** 2).sum(axis=1)).sum() / (G * x[:, 1]).sum())
@@ -213,7 +217,8 @@ def rest(run):
 
 @whole_run(["front"], "time", "way")
 def front_of(run):
-    """Time and place of the foremost water in the snapshots; drops of fewer than four do not count."""
+    """Time and place of the foremost water in the snapshots; drops of fewer than four do not
+    count."""
     file, dp = snapshots(run), run.spacing()
     way = []
     for step in range(len(file.times)):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The section of the validation report on the solid's sub-steps: gate and plate with and without them."""
+"""The section of the validation report on the solid's sub-steps: gate and plate with and without
+them."""
 
 from sphfsi.draw_ledger import read_ledger
 from common import BadFile, np
@@ -63,7 +64,9 @@ def rates(report):
         report.target("sub-steps", f"no more spurious energy than by a single rate, {words}",
                       f"{gains[0]:.3g} J/m, limit {gains[1]:.3g} J/m", gains[0] <= gains[1])
     return [paragraph("rates 2"), "",
-            *lines, "", "Velocities and forces at the interface are extrapolated to the instant at which "
-                        "they are used (docs/theory.md, Sec. 7). The energies are in the ledgers of 3.2 "
+            *lines, "", "Velocities and forces at the interface are extrapolated to the instant at "
+                        "which "
+                        "they are used (docs/theory.md, Sec. 7). The energies are in the ledgers "
+                        "of 3.2 "
                         "and 3.3.",
             ""]

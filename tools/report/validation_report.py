@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Writes docs/validation.md and its figures from the existing runs.
 
-A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or was not
-run, its table says so. An error in a run, a row, a target or a section is reported in its place, and the rest
-continues."""
+A missing run is replaced by its kept result (validation_kept.py). If a run failed, has not ended or
+was not run, its table says so. An error in a run, a row, a target or a section is reported in its
+place, and the rest continues."""
 
 import datetime
 import subprocess
@@ -25,18 +25,20 @@ paragraph = words_of("validation_words.md")
 
 
 class Report:
-    """Data of all sections: the folder of figures, targets, runs that failed just now, kept results."""
+    """Data of all sections: the folder of figures, targets, runs that failed just now, kept
+    results."""
 
     def __init__(self, docs, failed, kept):
         self.docs, self.images, self.failed = Path(docs), Path(docs) / "img", failed
         self.targets, self.kept = [], kept
         self.runs = {}      # name: the run, or why there is none
         self.wrong = {}     # what is wrong with files or the program: where it was met first
-        self.replaced = {}  # runs that are damaged, and what is kept of them stands instead: what is wrong
+        # runs that are damaged, and what is kept of them stands instead: what is wrong
+        self.replaced = {}
 
     def why(self, where, problem):
-        """The text instead of a result, while an exception is handled. A missing run is no fault. A missing
-        file or an unexpected error makes the command fail."""
+        """The text instead of a result, while an exception is handled. A missing run is no fault. A
+        missing file or an unexpected error makes the command fail."""
         if isinstance(problem, Missing):
             return str(problem)
         text = sentence(problem)
@@ -44,8 +46,8 @@ class Report:
         return text
 
     def load(self, spec):
-        """The result of a run: its own folder if it has ended there with the present case, else the kept
-        result, else its own folder as it is."""
+        """The result of a run: its own folder if it has ended there with the present case, else the
+        kept result, else its own folder as it is."""
         own = damage = None
         try:
             if (spec.folder / "summary.json").is_file():
@@ -79,7 +81,8 @@ class Report:
         check_standing(run)
         ended = run.summary["time"]
         raise Missing(f"failed at t = {ended:.3g} s: {run.summary['message']}"
-                      if run.summary["exit_reason"] == "guard" else f"unfinished, at t = {ended:.3g} s")
+                      if run.summary["exit_reason"] == "guard" else f"unfinished, at t = "
+                                                                    f"{ended:.3g} s")
 
     def run(self, name):
         """A finished run; Missing or BadFile says why there is none."""
@@ -113,18 +116,20 @@ class Report:
         return found[0]
 
     def coarse(self, *families):
-        """Runs with the paper's two integrators: the first family with a finished run, or the last."""
+        """Runs with the paper's two integrators: the first family with a finished run, or the
+        last."""
         pairs = [[f"{name}-verlet", name] for name in families]
         return next((pair for pair in pairs if self.has(*pair)), pairs[-1])
 
     def shown(self, fine, coarse):
-        """The runs that a figure compares: the finer ones, if both of the paper's integrators or leapfrog
-        have finished."""
+        """The runs that a figure compares: the finer ones, if both of the paper's integrators or
+        leapfrog have finished."""
         pair = self.has(f"{fine}-verlet", fine)
         return pair if len(pair) == 2 else self.has(f"{fine}-leapfrog") or pair or coarse
 
     def target(self, case, words, value, met):
-        """A row of the table of targets. met: True, False, None if there is no run, or why it is unknown."""
+        """A row of the table of targets. met: True, False, None if there is no run, or why it is
+        unknown."""
         told = {True: "met", False: MISSED, None: "not run"}
         self.targets.append((case, words, value, told.get(met, met)))
 
@@ -151,8 +156,8 @@ class Report:
 
     # --- figures ---
     def draw(self, tool, names, image, caption, *options):
-        """A figure by one of the drawing tools, or why there is none. If the snapshots are not kept, the
-        existing picture stays, and the report says which runs it shows."""
+        """A figure by one of the drawing tools, or why there is none. If the snapshots are not
+        kept, the existing picture stays, and the report says which runs it shows."""
         runs = [self.run(name) for name in self.has(*names)]
         if not runs:
             return [f"*No figure: none of {', '.join(names)} has finished.*", ""]
@@ -164,13 +169,15 @@ class Report:
             if not full:
                 return ["*No figure: the snapshots are not kept, and it has not been drawn before.*", ""]
             runs = full
-        done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"), *(str(run.folder) for run in runs),
+        done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"),
+                               *(str(run.folder) for run in runs),
                                "--out", str(path), *map(str, options)],
                               capture_output=True, text=True, check=False)
         if done.returncode:
             return [f"*No figure: {self.why(path.name, BadFile(last_line(done)))}*", ""]
         versions = dict.fromkeys(run.summary.get("version", "?") for run in runs)
-        return self.picture(path, caption, f"{', '.join(run.name for run in runs)} by {', '.join(versions)}")
+        return self.picture(path, caption, f"{', '.join(run.name for run in runs)} by "
+                                           f"{', '.join(versions)}")
 
     def save(self, figure, image, caption):
         path = self.images / f"validation-{image}.png"
@@ -190,7 +197,8 @@ class Report:
         except (OSError, ValueError) as problem:
             return [f"*No figure: the snapshots are not kept, and {path.name} cannot be read "
                     f"({problem}).*", ""]
-        return [f"![{caption}](img/{path.name})", "", f"*{caption}; an earlier picture, of {origin}*", ""]
+        return [f"![{caption}](img/{path.name})", "", f"*{caption}; an earlier picture, of "
+                                                      f"{origin}*", ""]
 
 
 def series(run, column, since=-1.0):
@@ -296,12 +304,15 @@ def write_section(report, title, section):
     return [f"## {title}", "", *body]
 
 
-# Where the difference of a missed target comes from: case, a part of the target's words, the reason.
+# Where the difference of a missed target comes from: case, a part of the target's words, the
+# reason.
 REASONS = [
     ("cantilever", "", "discretisation of the clamp and of the solid (Sec. 3.1)"),
-    ("hydrostatic plate", "half the spacing", "acoustic wave of the column: the start is not the discrete "
+    ("hydrostatic plate", "half the spacing", "acoustic wave of the column: the start is not the "
+                                              "discrete "
      "equilibrium, and the paper's alpha hardly damps it"),
-    ("hydrostatic plate", "fluctuation", "acoustic wave of the column: the start is not the discrete "
+    ("hydrostatic plate", "fluctuation", "acoustic wave of the column: the start is not the "
+                                         "discrete "
                                          "equilibrium "
      "because the lattice sum of h/dp = 1.35 is 0.983"),
     ("gate", "measured", "stiffness of the body: linear rubber in plane strain instead of the "
@@ -310,15 +321,18 @@ REASONS = [
     ("sluice gate", "water pressed", "a few particles at a time, pressed into the bed in spite of "
                                      "`wall_repulsion`; "
      "the cause was not studied"),
-    ("still water", "Eq. 6", "density diffusion of Eq. 6, which treats the hydrostatic gradient as noise"),
+    ("still water", "Eq. 6", "density diffusion of Eq. 6, which treats the hydrostatic gradient as "
+                             "noise"),
     ("still water", "", "lattice sum of h/dp = 1.35 and compression of the water"),
-    ("standing wave", "order", "shear stiffness of the even lattice, which depends on h/dp and not on "
+    ("standing wave", "order", "shear stiffness of the even lattice, which depends on h/dp and not "
+                               "on "
                                "the spacing"),
     ("standing wave", "", "shear stiffness of the even lattice at this h/dp"),
     ("dry dam break", "impact peak", "water hammer of a compressible fluid without air; a wider "
                                      "kernel damps its "
      "noise"),
-    ("dry dam break", "", "uncertain reading of the published times, and the membrane that needs time "
+    ("dry dam break", "", "uncertain reading of the published times, and the membrane that needs "
+                          "time "
                           "to open"),
 ]
 
@@ -336,7 +350,8 @@ def summary(targets):
     met = [row for row in targets if row[3] == "met"]
     missed = [row for row in targets if row[3] == MISSED]
     other = len(targets) - len(met) - len(missed)
-    return (f"**Does it agree with theory and experiment?** {len(met)} of {len(targets)} targets are met: "
+    return (f"**Does it agree with theory and experiment?** {len(met)} of {len(targets)} targets "
+            f"are met: "
             f"{counted(met)}. {len(missed)} are missed: {counted(missed)}. " +
             (f"{other} could not be judged. " if other else "") +
             "The second table says where each difference comes from.")
@@ -350,17 +365,19 @@ def target_tables(targets):
     lines = ["## Targets that are met", "", "| case | target | found | |", "|---|---|---|---|",
              *("| " + " | ".join(row) + " |" for row in met), "",
              "## Targets that are missed", "",
-             "| case | target | found | | where the difference comes from |", "|---|---|---|---|---|",
+             "| case | target | found | | where the difference comes from |",
+             "|---|---|---|---|---|",
              *("| " + " | ".join([*row, reason(row[0], row[1])]) + " |" for row in missed), ""]
     if rest:
-        lines += ["## Targets that are not judged", "", "| case | target | found | |", "|---|---|---|---|",
+        lines += ["## Targets that are not judged", "", "| case | target | found | |",
+                  "|---|---|---|---|",
                   *("| " + " | ".join(row) + " |" for row in rest), ""]
     return lines
 
 
 def write_report(docs, failed, kept, newest):
-    """Returns what is wrong with files or the program, a sentence each. `newest`: the present version of the
-    program."""
+    """Returns what is wrong with files or the program, a sentence each. `newest`: the present
+    version of the program."""
     report = Report(docs, failed, kept)
     report.images.mkdir(parents=True, exist_ok=True)
     body = []
@@ -371,10 +388,12 @@ def write_report(docs, failed, kept, newest):
     taken = sum(report.run(name).folder != BY_NAME[name].folder for name in done)
     head = [
         "# Validation", "", summary(report.targets), "",
-        "`make validate` (`tools/report/validation.py`) writes this report. Nothing in it is edited by hand: "
+        "`make validate` (`tools/report/validation.py`) writes this report. Nothing in it is "
+        "edited by hand: "
         "the numbers "
         "come from the runs, the sentences from the tool.", "",
-        "* Program " + (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items())
+        "* Program " +
+        (", ".join(f"{version} ({len(names)} runs)" for version, names in versions.items())
                          or newest) + ".",
         f"* {taken} of the {len(done)} runs are kept results (`docs/validation/`).",
         f"* Date and machine of the report: {datetime.date.today()}, {machine()}.",
@@ -382,7 +401,8 @@ def write_report(docs, failed, kept, newest):
         "show ratios at "
         "best.", "", *target_tables(report.targets)]
     tail = ["## What was run", "",
-            "A run that is not listed as finished has no number in this report. The names are those of "
+            "A run that is not listed as finished has no number in this report. The names are "
+            "those of "
             "`tools/report/validation_runs.py`; `--only =NAME` runs one of them.", "",
             *what_was_run(report, versions)]
     path = report.docs / "validation.md"

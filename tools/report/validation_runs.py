@@ -15,9 +15,11 @@ from validation_sound import ENDED, check_ended
 FOLDER = ROOT / "runs" / "validation"
 PRINTED_SOLID = ["{}.gradient=linear", "{}.hourglass_form=printed"]
 
-# Rough seconds of a run with ratio = 1 or dp = 1 mm by leapfrog, or by the integrator of its file, which go
-# with the cube of the resolution: enough to begin with the longest. Other cases take seconds.
-SECONDS = {"cantilever": 6e-3, "hydrostatic_plate": 8e4, "gate": 35, "wet_baffle": 1000, "sluice_gate": 1350,
+# Rough seconds of a run with ratio = 1 or dp = 1 mm by leapfrog, or by the integrator of its file,
+# which go with the cube of the resolution: enough to begin with the longest. Other cases take
+# seconds.
+SECONDS = {"cantilever": 6e-3, "hydrostatic_plate": 8e4, "gate": 35, "wet_baffle": 1000,
+           "sluice_gate": 1350,
            "still_water": 7000, "verify/standing_wave": 4e-4, "verify/elastica": 4e-2}
 SLOWER = {"verlet": 1.6, "symplectic": 3.5}
 
@@ -30,7 +32,8 @@ class Spec:
         self.name, self.case, self.sets = name, ROOT / "cases" / f"{case}.cfg", list(sets)
         self.words, self.quick, self.folder = words, quick, FOLDER / name
         keys = dict(item.split("=", 1) for item in self.sets)
-        across = float(keys["ratio"]) if "ratio" in keys else 1 / float(keys.get("dp", "10").split()[0])
+        across = float(keys["ratio"]) if "ratio" in keys else 1 / float(keys.get("dp",
+                                                                                 "10").split()[0])
         self.cost = SECONDS.get(case, 0) * across ** 3 * SLOWER.get(keys.get("integrator"), 1)
 
     def arguments(self):
@@ -41,7 +44,8 @@ def all_integrators(name, case, sets, words, quick=False):
     """The same run with the paper's two integrators and with leapfrog, which has a longer step."""
     return [Spec(name, case, [*sets, "integrator=symplectic"], f"{words}, symplectic", quick),
             Spec(f"{name}-verlet", case, [*sets, "integrator=verlet"], f"{words}, Verlet", quick),
-            Spec(f"{name}-leapfrog", case, [*sets, "integrator=leapfrog"], f"{words}, leapfrog", quick)]
+            Spec(f"{name}-leapfrog", case, [*sets, "integrator=leapfrog"], f"{words}, leapfrog",
+                 quick)]
 
 
 def cantilevers():
@@ -66,7 +70,8 @@ def plates():
         return [f"dp={size} mm"]
     return [*all_integrators("plate", "hydrostatic_plate", at("6.25"), "dp = 6.25 mm"),
             *all_integrators("plate-12.5mm", "hydrostatic_plate", at("12.5"), "dp = 12.5 mm", True),
-            Spec("plate-3.125mm-leapfrog", "hydrostatic_plate", [*at("3.125"), "integrator=leapfrog"],
+            Spec("plate-3.125mm-leapfrog", "hydrostatic_plate",
+                 [*at("3.125"), "integrator=leapfrog"],
                  "dp = 3.125 mm, leapfrog"),
             Spec("plate-12.5mm-h1.5", "hydrostatic_plate",
                  [*at("12.5"), "integrator=leapfrog", "numerics.h_over_dp=1.5"],
@@ -84,7 +89,8 @@ def gates():
     printed = ["gate.viscosity_form=printed", *(s.format("gate") for s in PRINTED_SOLID)]
 
     def changed(name, sets, words, quick=False):
-        return Spec(f"gate-1mm-{name}", "gate", [*coarse, *sets], f"dp = 1 mm, leapfrog, {words}", quick)
+        return Spec(f"gate-1mm-{name}", "gate", [*coarse, *sets], f"dp = 1 mm, leapfrog, {words}",
+                    quick)
     return [*all_integrators("gate", "gate", ["dp=0.5 mm"], "dp = 0.5 mm"),
             *all_integrators("gate-1mm", "gate", ["dp=1 mm"], "dp = 1 mm", True),
             Spec("gate-0.25mm-leapfrog", "gate", ["dp=0.25 mm", "integrator=leapfrog"],
@@ -147,7 +153,8 @@ def sluices():
             *[Spec(f"sluice-{name}", "sluice_gate",
                    [*at(size), f"integrator={integrator.lower()}", "water.wall_repulsion=0"],
                    f"dp = {size} mm, {integrator}, without repulsion")
-              for name, size, integrator in (("bare", 1, "symplectic"), ("bare-verlet", 1, "Verlet"),
+              for name, size,
+              integrator in (("bare", 1, "symplectic"), ("bare-verlet", 1, "Verlet"),
                                              ("2.5mm-bare-verlet", 2.5, "Verlet"))],
             changed("leapfrog", [], ""), changed("opening10", ["opening=10 mm"], ", opening 10 mm"),
             changed("opening40", ["opening=40 mm"], ", opening 40 mm"),
@@ -172,7 +179,8 @@ def verifications():
                    [f"ratio={n}", f"numerics.h_over_dp={h}"], f"H/dp = {n}, h/dp = {h}", n < 40)
               for h in (1.35, 1.5) for n in (10, 20, 40)]
     specs += [Spec(f"wave-20-1.5-{name}", "verify/standing_wave",
-                   ["ratio=20", "numerics.h_over_dp=1.5", setting], f"H/dp = 20, h/dp = 1.5, {words}", True)
+                   ["ratio=20", "numerics.h_over_dp=1.5", setting], f"H/dp = 20, h/dp = 1.5, "
+                                                                    f"{words}", True)
               for name, setting, words in (
                   ("symplectic", "integrator=symplectic", "symplectic"),
                   ("c20", "water.max_speed=2*sqrt(g*H)", "c0 = 20 sqrt(gH)"),
@@ -180,16 +188,19 @@ def verifications():
                   ("diffusion", "water.density_diffusion=0.01", "delta = 0.01"),
                   ("viscous", "water.artificial_viscosity=0.05", "alpha = 0.05"),
                   ("suction", "numerics.suction=on", "walls may pull"))]
-    specs += [Spec(f"wave-{n}-{h}", "verify/standing_wave", [f"ratio={n}", f"numerics.h_over_dp={h}"],
+    specs += [Spec(f"wave-{n}-{h}", "verify/standing_wave",
+                   [f"ratio={n}", f"numerics.h_over_dp={h}"],
                    f"H/dp = {n}, h/dp = {h}", n < 40)
               for h in (1.6, 1.7, 1.8, 2) for n in (20, 40)]
-    specs += [Spec(f"taylor-green-{n}", "verify/taylor_green", [f"ratio={n}"], f"L/dp = {n}", n < 100)
+    specs += [Spec(f"taylor-green-{n}", "verify/taylor_green", [f"ratio={n}"], f"L/dp = {n}",
+                   n < 100)
               for n in (25, 50, 100)]
     # Morris et al. 1997 for the viscosity, and particles evened out at stagnation points, too.
     evened = ["water.artificial_viscosity=0", "water.laminar_viscosity=nu", "numerics.h_over_dp=2",
               "water.shifting=10", "water.shifting_speed=largest"]
     specs += [Spec(f"taylor-green-{n}-shifted", "verify/taylor_green", [f"ratio={n}", *evened],
-                   f"L/dp = {n}, laminar viscosity, h/dp = 2, shifted", n < 100) for n in (25, 50, 100)]
+                   f"L/dp = {n}, laminar viscosity, h/dp = 2, shifted", n < 100)
+              for n in (25, 50, 100)]
     specs += [Spec("taylor-green-50-unshifted", "verify/taylor_green", ["ratio=50", *evened[:3]],
                    "L/dp = 50, laminar viscosity, h/dp = 2", True)]
     specs += [Spec(f"front-{n}", "verify/dam_break_front", [f"ratio={n}"], f"a/dp = {n}", n < 80)
@@ -201,14 +212,16 @@ def verifications():
               for n in (30, 60) for h in (1.35, 2)]
     specs += [Spec(f"block-{n}", "verify/rotating_block", [f"ratio={n}", "turns=1"], f"L/dp = {n}",
                    n == 10) for n in (10, 20)]
-    specs += [Spec(f"elastica-{n}", "verify/elastica", [f"ratio={n}"], f"thickness/dp = {n}", n < 16)
+    specs += [Spec(f"elastica-{n}", "verify/elastica", [f"ratio={n}"], f"thickness/dp = {n}",
+                   n < 16)
               for n in (4, 8, 16)]
     specs += [Spec(f"bar-{n}", "verify/stretched_bar", [f"ratio={n}"], f"thickness/dp = {n}", True)
               for n in (5, 10, 20)]
     return specs
 
 
-SPECS = [*cantilevers(), *plates(), *gates(), *single_rates(), *baffles(), *sluices(), *verifications()]
+SPECS = [*cantilevers(), *plates(), *gates(), *single_rates(), *baffles(), *sluices(),
+         *verifications()]
 BY_NAME = {spec.name: spec for spec in SPECS}
 
 
@@ -217,10 +230,11 @@ RETIRED = ("interface = auto", "interface = impedance", "gradients = plain")
 
 
 def physics(text):
-    """Lines of an effective case that the results depend on: comments name the program, the paths of
-    files the place where it ran, and numerics.skin says only when particles are sorted."""
+    """Lines of an effective case that the results depend on: comments name the program, the paths
+    of files the place where it ran, and numerics.skin says only when particles are sorted."""
     return [line for line in text.splitlines()
-            if line.strip() and not line.startswith(("#", "file ", "title ", "source ", "label ", "skin "))]
+            if line.strip() and
+            not line.startswith(("#", "file ", "title ", "source ", "label ", "skin "))]
 
 
 def holds_results(folder):
@@ -261,14 +275,16 @@ class Program:
     def __init__(self, path):
         self.path, self.cases = str(path), {}
         try:
-            done = subprocess.run([self.path, "--version"], capture_output=True, text=True, check=True)
+            done = subprocess.run([self.path, "--version"], capture_output=True, text=True,
+                                  check=True)
         except (OSError, subprocess.CalledProcessError):
             raise BadFile(f"cannot run {path}; build it with make") from None
         self.version = done.stdout.split()[-1]
 
     def effective(self, case, *arguments):
         """The effective case of a file and settings, as text."""
-        done = subprocess.run([self.path, "--effective", str(case), *arguments], capture_output=True,
+        done = subprocess.run([self.path, "--effective", str(case), *arguments],
+                              capture_output=True,
                               text=True, check=False)
         if done.returncode:
             raise BadFile(f"{case}: {last_line(done)}")
@@ -276,8 +292,8 @@ class Program:
 
     def means(self, spec, text):
         """Whether the effective case of a run, which another version may have written, is what the
-        specification means now: the present program gives keys that were not there, or that held what
-        is no longer known, their defaults."""
+        specification means now: the present program gives keys that were not there, or that held
+        what is no longer known, their defaults."""
         meant = (spec.case, *spec.arguments())
         if meant not in self.cases:
             try:
@@ -288,7 +304,8 @@ class Program:
         if physics(text) == physics(now):
             return True
         files = iter([line for line in now.splitlines() if line.startswith("file ")])
-        lines = [next(files, line) if line.startswith("file ") else line for line in text.splitlines()
+        lines = [next(files, line) if line.startswith("file ") else line
+                 for line in text.splitlines()
                  if line not in RETIRED]
         with tempfile.NamedTemporaryFile("w", suffix=".cfg", encoding="utf-8") as old:
             old.write("\n".join([*lines, ""]))
@@ -301,8 +318,8 @@ class Program:
 
 class Runner:
     """Runs what is not up to date, several at a time with a thread each: a run gives the same bits
-    on any number of threads, and separate runs share no barrier. `kept`: the kept results, which count
-    as run unless `again`; `keep`: those of the longer runs are kept as they end."""
+    on any number of threads, and separate runs share no barrier. `kept`: the kept results, which
+    count as run unless `again`; `keep`: those of the longer runs are kept as they end."""
 
     def __init__(self, program, kept, any_version=False, again=False, keep=False):
         self.program, self.kept, self.lock = program, kept, threading.Lock()
@@ -310,8 +327,8 @@ class Runner:
         self.failed = {}
 
     def state(self, spec):
-        """How a run stands: new, finished, ended (and would end again), interrupted, or other: what is there
-        cannot be used; and why not."""
+        """How a run stands: new, finished, ended (and would end again), interrupted, or other: what
+        is there cannot be used; and why not."""
         if not holds_results(spec.folder):
             return "new", ""
         try:
@@ -368,14 +385,16 @@ class Runner:
 
     def start(self, spec, goes_on):
         self.say(f"{'continues' if goes_on else 'runs'} {spec.name}: {spec.words}")
-        command = [self.program.path, str(spec.case), "--out", str(spec.folder), "--quiet", "--threads", "1",
+        command = [self.program.path, str(spec.case), "--out", str(spec.folder), "--quiet",
+                   "--threads", "1",
                    *spec.arguments(), *(["--restart"] if goes_on else [])]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
     def discard(self, spec, why):
         """Removes the folder of a run that cannot be used, and says why."""
         if is_busy(spec.folder):
-            raise BadFile(f"{spec.folder}: another process writes there; wait for it, or use other --runs")
+            raise BadFile(f"{spec.folder}: another process writes there; wait for it, or use other "
+                          f"--runs")
         self.say(f"discards {spec.folder}: {why}; {spec.name} is run anew")
         shutil.rmtree(spec.folder)
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Checks that the folder of a finished run has all that the report reads, complete and of the right type.
-Numbers of an incomplete run, or a traceback within a section, would be worse than none."""
+"""Checks that the folder of a finished run has all that the report reads, complete and of the right
+type. Numbers of an incomplete run, or a traceback within a section, would be worse than none."""
 
 import math
 
@@ -61,7 +61,8 @@ def check_ended(run):
 def interval(run, key):
     """An output interval in s of the effective case."""
     path = run.folder / "case.cfg"
-    text = next((keys[key] for kind, _, keys in run.case() if kind == "output" and key in keys), None)
+    text = next((keys[key] for kind, _, keys in run.case() if kind == "output" and key in keys),
+                None)
     try:
         return float(text.split()[0])
     except (AttributeError, IndexError, ValueError):
@@ -69,7 +70,8 @@ def interval(run, key):
 
 
 def is_written(run, name):
-    """Whether the run writes this table: probes.csv only for probes without an interval of their own."""
+    """Whether the run writes this table: probes.csv only for probes without an interval of their
+    own."""
     if name == "ledger.csv":
         return interval(run, TABLES[name]) > 0
     return any(kind == "probe" and (keys.get("interval") or "0").split()[0] == "0"
@@ -88,9 +90,11 @@ def check_table(run, name):
             # Of no solid at all the least det F is inf.
             if column != "det_low" and not np.isfinite(values).all():
                 row = np.flatnonzero(~np.isfinite(values))[0]
-                raise BadFile(f"{path}, row {row + 1} of the data: {column} is {values[row]}, not a finite "
+                raise BadFile(f"{path}, row {row + 1} of the data: {column} is {values[row]}, not "
+                              f"a finite "
                               "number")
     end, last = run.summary["time"], table["time_s"][-1]
     if last < end - LATE * interval(run, TABLES[name]):
-        raise BadFile(f"{path}: ends at t = {last:.6g} s, though the run has finished at {end:.6g} s; it has "
+        raise BadFile(f"{path}: ends at t = {last:.6g} s, though the run has finished at {end:.6g} "
+                      f"s; it has "
                       "been cut short")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The figures of tools/report/verify_contact.py: how each is taken from finished runs. A figure is (words, value,
-limit or None); it is kept if |value| <= limit. run.constants holds what the tool has set."""
+"""The figures of tools/report/verify_contact.py: how each is taken from finished runs. A figure is
+(words, value, limit or None); it is kept if |value| <= limit. run.constants holds what the tool has
+set."""
 import functools
 import math
 
@@ -22,8 +23,8 @@ def speed_after(run, column, count=100):
 
 # --- pressure ---
 def press_of(stiffer, limit):
-    """What floor and joint add to the compression of the blocks, as the height of a layer of the softer
-    block."""
+    """What floor and joint add to the compression of the blocks, as the height of a layer of the
+    softer block."""
     def measure(run):
         table, dp, soft = run.table(), run.dp, min(1, stiffer)
         strain = -1e-4 * (1 - 0.3 ** 2)
@@ -44,7 +45,8 @@ def disc_of(speed, limits):
         found = (speed_after(run, "disc_cy_m") / speed, float(y[0] - y.min()) - run.dp,
                  float(touching[-1]) - run.dp / speed)
         rows = []
-        for words, value, wanted, limit in zip(("restitution", "way of the centre", "time in contact"), found,
+        for words, value, wanted, limit in zip(("restitution", "way of the centre",
+                                                "time in contact"), found,
                                                (back, way, until), limits):
             rows.append((f"{words}, % more than {wanted:.4g}", 100 * (value / wanted - 1), limit))
         balance = abs(ledger["dissipated_J_per_m"]).max() / ledger["kinetic_J_per_m"][0]
@@ -59,8 +61,8 @@ def measure_bars(run):
 
 # --- line contact ---
 def measure_line(runs):
-    """Loads at two ways of the plate. The lattice moves the whole curve by a part of dp; its slope does not
-    know."""
+    """Loads at two ways of the plate. The lattice moves the whole curve by a part of dp; its slope
+    does not know."""
     ways, loads = [], []
     for run in runs:
         ways.append(run.constants["D"])
@@ -101,7 +103,8 @@ def slope_of(limit):
     def measure(run):
         norm, slope, friction, t, x, start = incline(run)
         way = 0.5 * (slope - friction) * norm * (t[-1] - start) ** 2
-        return [("way down, % more than t^2/2 g (sin a - mu cos a)", 100 * (float(x[-1]) / way - 1), limit)]
+        return [("way down, % more than t^2/2 g (sin a - mu cos a)", 100 * (float(x[-1]) / way - 1),
+                 limit)]
     return measure
 
 
@@ -135,7 +138,8 @@ def gaps(run, step):
         mine = solid & (body == k)
         for side in (first[mine, 1].min(), first[mine, 1].max()):
             rows.append(x[mine & (abs(first[:, 1] - side) < 1e-6), 1].mean())
-    return [(above - below) / run.dp for below, above in zip([-0.5 * run.dp, *rows[1::2]], rows[0::2])]
+    return [(above - below) / run.dp for below,
+            above in zip([-0.5 * run.dp, *rows[1::2]], rows[0::2])]
 
 
 def measure_stack(run):
@@ -143,7 +147,8 @@ def measure_stack(run):
     table = run.table()
     half = len(table["time_s"]) // 2
     moved = max(float(np.hypot(table[f"{b}_cx_m"][half:] - table[f"{b}_cx_m"][half],
-                               table[f"{b}_cy_m"][half:] - table[f"{b}_cy_m"][half]).max()) for b in "abc")
+                               table[f"{b}_cy_m"][half:] - table[f"{b}_cy_m"][half]).max())
+                for b in "abc")
     overlap = [1 - gap for gap in gaps(run, -1)]
     return [("moves from 5 to 10 s, dp", moved / run.dp, 1e-3),
             ("largest overlap at rest, dp", max(overlap), 0.01)]
@@ -182,7 +187,8 @@ def measure_beams(run):
 
 # --- what must not pass ---
 def particles(shots, step):
-    x, kind, body = shots.load(step, "Points")[:, :2], shots.load(step, "kind"), shots.load(step, "body")
+    x, kind, body = shots.load(step, "Points")[:, :2], shots.load(step, "kind"), shots.load(step,
+                                                                                            "body")
     return x, kind == KINDS["wall"], kind == KINDS["solid"], body
 
 
@@ -213,11 +219,13 @@ def measure_bullet(run):
             x = shots.load(step, "Points")[:, :2]
             target = solid & (body == 0) if run.constants["held"] else wall
             passed += inside(x[solid & (body == 1)], outline(x[target], first[target]))
-    return [("particles that have passed", passed, 0), ("1: the run stopped", int(run.stopped), None)]
+    return [("particles that have passed", passed, 0),
+            ("1: the run stopped", int(run.stopped), None)]
 
 
 def measure_driven(run):
-    """The ram moves by 60 of the 115 mm between itself and the floor. The blocks begin 5 mm apart."""
+    """The ram moves by 60 of the 115 mm between itself and the floor. The blocks begin 5 mm
+    apart."""
     table = run.table()
     apart = 0.005 + table["U_dy_m"] - table["L_dy_m"]
     return [("largest overlap of the blocks, dp", -float(apart.min()) / run.dp, 0.5),

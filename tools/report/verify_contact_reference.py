@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""References of tools/report/verify_contact.py that share no code with the solver: a disc of finite elements that
-meets a rigid wall, a beam by finite differences that lies down on a floor, a disc between plates by Johnson's
-formula."""
+"""References of tools/report/verify_contact.py that share no code with the solver: a disc of finite
+elements that meets a rigid wall, a beam by finite differences that lies down on a floor, a disc
+between plates by Johnson's formula."""
 import math
 
 import numpy as np
@@ -9,8 +9,8 @@ import numpy as np
 
 # --- a disc of four-node elements ---
 def disc_mesh(n, radius):
-    """Nodes, elements and the nodes of the circle: a block of n by n elements amid four that reach the
-    circle."""
+    """Nodes, elements and the nodes of the circle: a block of n by n elements amid four that reach
+    the circle."""
     s, layers = np.linspace(-1, 1, n + 1), max(1, round(0.6 * n))
     u, v = np.meshgrid(s, s)
     size, bulge = 0.45 * radius, 0.12
@@ -50,8 +50,10 @@ class Disc:
         self.slope, self.weight = np.array(slopes), np.array(weights)
         area = self.weight.sum(axis=0)
         self.mass = density * np.bincount(elements.ravel(), np.repeat(area / 4, 4), len(self.nodes))
-        sides = [np.hypot(*(self.nodes[elements[:, k]] - self.nodes[elements[:, k - 1]]).T) for k in range(4)]
-        self.step = 0.5 * min(s.min() for s in sides) / math.sqrt((self.lame + 2 * self.shear) / density)
+        sides = [np.hypot(*(self.nodes[elements[:, k]] - self.nodes[elements[:, k - 1]]).T)
+                 for k in range(4)]
+        self.step = 0.5 * min(s.min()
+                              for s in sides) / math.sqrt((self.lame + 2 * self.shear) / density)
 
     def force(self, u):
         ux, uy = u[self.element, 0], u[self.element, 1]
@@ -60,16 +62,20 @@ class Disc:
         yx, yy = (bx * uy).sum(axis=1), 1 + (by * uy).sum(axis=1)
         det = xx * yy - xy * yx
         q = (self.lame / 2 * (det * det - 1) - self.shear) / det
-        pxx, pxy = self.weight * (self.shear * xx + q * yy), self.weight * (self.shear * xy - q * yx)
-        pyx, pyy = self.weight * (self.shear * yx - q * xy), self.weight * (self.shear * yy + q * xx)
+        pxx, pxy = self.weight * (self.shear * xx + q * yy), self.weight * (self.shear * xy - q *
+                                                                            yx)
+        pyx, pyy = self.weight * (self.shear * yx - q * xy), self.weight * (self.shear * yy + q *
+                                                                            xx)
         fx = -(pxx[:, None] * bx + pxy[:, None] * by).sum(axis=0)
         fy = -(pyx[:, None] * bx + pyy[:, None] * by).sum(axis=0)
-        return np.stack([np.bincount(self.element.ravel(), f.ravel(), len(self.nodes)) for f in (fx, fy)], -1)
+        return np.stack([np.bincount(self.element.ravel(), f.ravel(), len(self.nodes))
+                         for f in (fx, fy)], -1)
 
 
 def disc_impact(speed, radius, density, young, poisson, n):
-    """Of a disc that falls on a rigid wall: restitution, way of its centre after the first touch, m, and time
-    until the last one, s. The wall is a spring per node, as stiff as a twentieth of an element."""
+    """Of a disc that falls on a rigid wall: restitution, way of its centre after the first touch,
+    m, and time until the last one, s. The wall is a spring per node, as stiff as a twentieth of an
+    element."""
     disc = Disc(n, radius, density, young, poisson)
     below = disc.edge[disc.nodes[disc.edge, 1] < 0]
     spring = 20 * young
@@ -92,7 +98,8 @@ def disc_impact(speed, radius, density, young, poisson, n):
 
 # --- a beam that lies down ---
 def beam_elements(q, stiffness, length):
-    """Forces and tangents of the elements of Reissner's beam (1972); q is x, y, angle of each node."""
+    """Forces and tangents of the elements of Reissner's beam (1972); q is x, y, angle of each
+    node."""
     axial, lateral, bending = stiffness
     d, angle = np.diff(q[:, :2], axis=0) / length, 0.5 * (q[1:, 2] + q[:-1, 2])
     c, s, turn = np.cos(angle), np.sin(angle), np.diff(q[:, 2]) / length
@@ -118,9 +125,9 @@ def beam_elements(q, stiffness, length):
 
 
 def lying_beam(length, thick, young, poisson, weight, drop, n=200):
-    """Heights of n + 1 points of the axis of a beam that is held level at one end and lies on a floor `drop`
-    below it: plane strain, shear coefficient 5/6, `weight` per length. The floor yields by a thousandth of
-    `thick`."""
+    """Heights of n + 1 points of the axis of a beam that is held level at one end and lies on a
+    floor `drop` below it: plane strain, shear coefficient 5/6, `weight` per length. The floor
+    yields by a thousandth of `thick`."""
     plane = young / (1 - poisson ** 2)
     stiffness = plane * thick, 5 / 6 * young / (2 * (1 + poisson)) * thick, plane * thick ** 3 / 12
     q, part = np.zeros((n + 1, 3)), length / n
@@ -146,7 +153,8 @@ def lying_beam(length, thick, young, poisson, weight, drop, n=200):
 
 # --- a disc between plates ---
 def disc_compression(load, radius, young, poisson):
-    """How much two rigid plates approach each other under a load per depth (Johnson 1985, Sec. 5.6)."""
+    """How much two rigid plates approach each other under a load per depth (Johnson 1985, Sec.
+    5.6)."""
     plane = young / (1 - poisson ** 2)
     half = math.sqrt(4 * load * radius / (math.pi * plane))
     return 2 * load / (math.pi * plane) * (2 * math.log(4 * radius / half) - 1)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The figures of tools/report/verify_fluid.py: how each is taken from a finished run. A figure is (words, value,
-limit or None); it is kept if |value| <= limit."""
+"""The figures of tools/report/verify_fluid.py: how each is taken from a finished run. A figure is
+(words, value, limit or None); it is kept if |value| <= limit."""
 import csv
 import math
 
@@ -28,7 +28,8 @@ class Near:
 
     def around(self, place):
         cx, cy = np.floor(place / self.size).astype(int)
-        return [k for dx in (-1, 0, 1) for dy in (-1, 0, 1) for k in self.cells.get((cx + dx, cy + dy), ())]
+        return [k for dx in (-1, 0, 1) for dy in (-1, 0, 1)
+                for k in self.cells.get((cx + dx, cy + dy), ())]
 
     def distance(self, place):
         """To the nearest point, or the size of a cell where none is nearer."""
@@ -45,7 +46,8 @@ def snapshots(run):
 
 
 def entered(run):
-    """Particle-snapshots within half a spacing of a wall's or body's particle; the least distance, in dp."""
+    """Particle-snapshots within half a spacing of a wall's or body's particle; the least distance,
+    in dp."""
     count, least, dp = 0, 1.0, run.dp
     for shots, step in snapshots(run):
         x, kind = shots.load(step, "Points")[:, :2], shots.load(step, "kind")
@@ -58,7 +60,8 @@ def entered(run):
 
 def penetration(run):
     count, least = entered(run)
-    return [("particles that have entered, by snapshots", count, 0), ("nearest to a body, dp", least, None)]
+    return [("particles that have entered, by snapshots", count, 0),
+            ("nearest to a body, dp", least, None)]
 
 
 def largest_group(points, reach):
@@ -78,9 +81,9 @@ def largest_group(points, reach):
 
 
 def distances(water, bodies, sign):
-    """How far fluid particles are from the face of a body at their height, in the direction of sign and in
-    the unit of the coordinates, which is dp; nan above the body. The face is half a spacing outside the
-    centres."""
+    """How far fluid particles are from the face of a body at their height, in the direction of sign
+    and in the unit of the coordinates, which is dp; nan above the body. The face is half a spacing
+    outside the centres."""
     rows, edge = np.floor(bodies[:, 1]).astype(int), {}
     for row, x in zip(rows, sign * bodies[:, 0]):
         edge[row] = max(edge.get(row, -math.inf), x)
@@ -89,11 +92,12 @@ def distances(water, bodies, sign):
 
 
 def cavity(run, face, sign):
-    """Widest gap between a submerged upright face and the fluid, in dp, over all snapshots. The face is that
-    of the bodies within 24 dp of x = face, wherever it has bent to, with fluid in the direction of sign. A
-    row of 1.5 dp is submerged if at least six particles lie in the 8 dp beside the face, and at least five
-    touch it in the 8 dp above; a jet or a film is none. Only the largest group of particles within 32 dp of
-    x = face counts, linked by 2 dp: drops in the air are no water that the face is under."""
+    """Widest gap between a submerged upright face and the fluid, in dp, over all snapshots. The
+    face is that of the bodies within 24 dp of x = face, wherever it has bent to, with fluid in the
+    direction of sign. A row of 1.5 dp is submerged if at least six particles lie in the 8 dp beside
+    the face, and at least five touch it in the 8 dp above; a jet or a film is none. Only the
+    largest group of particles within 32 dp of x = face counts, linked by 2 dp: drops in the air are
+    no water that the face is under."""
     widest, dp = 0.0, run.dp
     for shots, step in snapshots(run):
         x, kind = shots.load(step, "Points")[:, :2] / dp, shots.load(step, "kind")
@@ -113,8 +117,8 @@ def cavity(run, face, sign):
 # --- still water ---
 def rest_of(depth):
     def measure(run):
-        """Over the snapshots of the last tenth, and of the tenth before half of the run: L2 error of the
-        pressure of all particles, fastest particle; level by the probe."""
+        """Over the snapshots of the last tenth, and of the tenth before half of the run: L2 error
+        of the pressure of all particles, fastest particle; level by the probe."""
         end, speed, error, height = run.end_time, [], {0.5: [], 1.0: []}, []
         for shots, step in snapshots(run):
             if step == 0:
@@ -123,7 +127,8 @@ def rest_of(depth):
                 if (part - 0.1) * end < shots.times[step] <= part * end * 1.0001:
                     fluid = shots.load(step, "kind") == FLUID
                     y, p = shots.load(step, "Points")[fluid, 1], shots.load(step, "pressure")[fluid]
-                    found.append(float(np.sqrt(np.mean((p / (1000 * G * depth) - (depth - y) / depth) ** 2))))
+                    found.append(float(np.sqrt(np.mean((p / (1000 * G * depth) - (depth - y) /
+                                                        depth) ** 2))))
                     if part == 1:
                         v = shots.load(step, "velocity")[fluid, :2]
                         height.append(y.mean())
@@ -140,8 +145,10 @@ def rest_of(depth):
     return measure
 
 
-REST = [("L2 error of the pressure, % of rho g H", 1), ("its change from 50 to 100 s, % of rho g H", 0.1),
-        ("level at a gauge, % of H", 0.1), ("centre of mass, % of H higher than at the start", None),
+REST = [("L2 error of the pressure, % of rho g H", 1),
+        ("its change from 50 to 100 s, % of rho g H", 0.1),
+        ("level at a gauge, % of H", 0.1),
+        ("centre of mass, % of H higher than at the start", None),
         ("fastest particle, 1e-3 sqrt(gH)", 1)]
 
 
@@ -153,8 +160,9 @@ def wave_of(judged):
                 ("loss of amplitude a period, %", loss, 2 if "loss" in judged else None)]
 
     def measure(run):
-        """The kinetic energy is greatest twice a period: parabolas through its maxima give both. Each is
-        sought half a period after the one before it; where one is missing there is no period."""
+        """The kinetic energy is greatest twice a period: parabolas through its maxima give both.
+        Each is sought half a period after the one before it; where one is missing there is no
+        period."""
         H, k = 0.3, 2 * math.pi / 0.9
         period = 2 * math.pi / math.sqrt(G * k * math.tanh(k * H))
         within = 0.17 * period
@@ -180,8 +188,8 @@ def wave_of(judged):
 
 def travel_of(judged):
     def measure(run):
-        """First component in space of eight gauges, from one to five periods: its phase turns with omega, its
-        size is the amplitude."""
+        """First component in space of eight gauges, from one to five periods: its phase turns with
+        omega, its size is the amplitude."""
         p = run.table("probes.csv")
         H, k, a = 0.36, 2 * math.pi / 1.2, 0.03
         T = math.tanh(k * H)
@@ -200,8 +208,8 @@ def travel_of(judged):
 
 # --- impact ---
 def over(measure):
-    """For runs that differ in round-off alone: of each figure the mean and its standard deviation over the
-    runs, and of what must not be the worst run."""
+    """For runs that differ in round-off alone: of each figure the mean and its standard deviation
+    over the runs, and of what must not be the worst run."""
     worst = {"particles": np.max, "nearest": np.min, "widest": np.max}
 
     def measure_all(runs):
@@ -224,7 +232,8 @@ def impact_of(limit):
         mean = np.convolve(q, np.ones(21) / 21, "same")
         plateau = (t > 0.85) & (t < 1.25)
         later = t > 1.3
-        return [("deviation from the 20 ms mean in the plateau, rho g H", float(np.std((q - mean)[plateau])),
+        return [("deviation from the 20 ms mean in the plateau, rho g H",
+                 float(np.std((q - mean)[plateau])),
                  limit),
                 ("mean of the plateau, rho g H", float(q[plateau].mean()), None),
                 ("later peak, mean over 20 ms, rho g H", float(mean[later][:-10].max()), None),
@@ -237,8 +246,8 @@ def impact_of(limit):
 IMPACT = {"impulse": 1274, "before": 0.007, "after": 0.104, "peak": 18569}
 
 
-# Later peaks at 3, 30 and 80 mm over rho g H, t sqrt(g/H) of each: Lobovsky et al. 2014, H = 0.3 m, one run,
-# read from the curves that PySPH's examples/db_exp_data.py has.
+# Later peaks at 3, 30 and 80 mm over rho g H, t sqrt(g/H) of each: Lobovsky et al. 2014, H = 0.3 m,
+# one run, read from the curves that PySPH's examples/db_exp_data.py has.
 LATER = {"P1": (0.909, 5.97), "P3": (0.927, 5.95), "P4": (0.827, 5.99)}
 
 
@@ -268,21 +277,25 @@ def measure_gate_impact(run):
     during = (t >= top - IMPACT["before"]) & (t <= top + IMPACT["after"])
     push = float(np.trapezoid(p[during], t[during]))
     return [("front, largest deviation from the measured one, %", float(max(off, key=abs)), 5),
-            ("front from t = sqrt(H/g) on, largest deviation, %", float(max(off[time > 1], key=abs)), 5),
-            ("impulse of the first peak, % more than measured", 100 * (push / IMPACT["impulse"] - 1), 10),
+            ("front from t = sqrt(H/g) on, largest deviation, %",
+             float(max(off[time > 1], key=abs)), 5),
+            ("impulse of the first peak, % more than measured",
+             100 * (push / IMPACT["impulse"] - 1), 10),
             ("first peak, mean over 5 ms, % more than measured",
              100 * (float(short.max()) / IMPACT["peak"] - 1), None),
             ("time of the first peak, sqrt(H/g)", float(top) * math.sqrt(G / H), None)]
 
 
 def measure_front(run):
-    """Martin and Moyce's series of the square column (as in Lobovsky et al. 2014, Fig. 12). No instant of its
-    release is known, so the time counts from where the front is at 1.44 a, a point of the series."""
+    """Martin and Moyce's series of the square column (as in Lobovsky et al. 2014, Fig. 12). No
+    instant of its release is known, so the time counts from where the front is at 1.44 a, a point
+    of the series."""
     time, place = reference("dam_break_martin_moyce_1952.csv")
     width, t, x = 0.05715, [], []
     for shots, step in snapshots(run):
         t.append(shots.times[step] * math.sqrt(G / width))
-        x.append(float(shots.load(step, "Points")[shots.load(step, "kind") == FLUID, 0].max()) / width)
+        x.append(float(shots.load(step, "Points")[shots.load(step, "kind") == FLUID, 0].max()) /
+                 width)
     known = float(np.interp(1.44, place, time))
     shift = float(np.interp(1.44, x, t)) - known
     late = time >= known
@@ -293,8 +306,8 @@ def measure_front(run):
 
 # --- several runs at once ---
 def measure_free_front(runs):
-    """The way of the front against potential flow (tools/report/dam_break_potential.py), whose time begins with the
-    release, as in the runs, of which each is finer than the one before."""
+    """The way of the front against potential flow (tools/report/dam_break_potential.py), whose time
+    begins with the release, as in the runs, of which each is finer than the one before."""
     time, place = reference("dam_break_front_potential.csv")
     H, largest, means, rows = 0.6, [], [], []
     for run in runs:
@@ -333,9 +346,9 @@ def more(values):
 
 
 def measure_baffle(runs):
-    """Half of the runs have dp, half dp/2. In each half only the skin of the search differs, which does not
-    matter. Of each load the largest row, its largest mean over 20 rows (20 ms), and the impulse to 0.4 s; of
-    the foot the largest row."""
+    """Half of the runs have dp, half dp/2. In each half only the skin of the search differs, which
+    does not matter. Of each load the largest row, its largest mean over 20 rows (20 ms), and the
+    impulse to 0.4 s; of the foot the largest row."""
     top = {"tip": [], "vertical": [], "horizontal": [], "moment": [], "foot": []}
     means, impulses = {}, {}
     for run in runs:
@@ -344,19 +357,26 @@ def measure_baffle(runs):
         for name, column in (("vertical", "load_fy_N_per_m"), ("horizontal", "load_fx_N_per_m"),
                              ("moment", "load_mz_Nm_per_m")):
             row, early = p[column], p["time_s"] <= 0.4
-            means.setdefault(name, []).append(float(abs(np.convolve(row, np.ones(20) / 20, "valid")).max()))
-            impulses.setdefault(name, []).append(float(np.trapezoid(row[early], p["time_s"][early])))
+            means.setdefault(name, []).append(float(abs(np.convolve(row, np.ones(20) / 20,
+                                                                    "valid")).max()))
+            impulses.setdefault(name,
+                                []).append(float(np.trapezoid(row[early], p["time_s"][early])))
         for name, column, unit in (("tip", "tip_dx_m", 1e3), ("vertical", "load_fy_N_per_m", 1),
-                                   ("horizontal", "load_fx_N_per_m", 1), ("moment", "load_mz_Nm_per_m", 1)):
+                                   ("horizontal", "load_fx_N_per_m", 1),
+                                   ("moment", "load_mz_Nm_per_m", 1)):
             top[name].append(unit * float(abs(p[column]).max()))
     half, rows = len(runs) // 2, []
-    for words, part, limit in (("4 across", slice(0, half), 3), ("8 across", slice(half, None), 1.5)):
+    for words, part, limit in (("4 across", slice(0, half), 3),
+                               ("8 across", slice(half, None), 1.5)):
         tip = np.array(top["tip"][part])
-        rows += [(f"{words}: largest tip displacement, mean of {half}, mm", float(tip.mean()), None),
+        rows += [(f"{words}: largest tip displacement, mean of {half}, mm", float(tip.mean()),
+                  None),
                  (f"{words}: the same, % more than converged ({BAFFLE_TIP} mm)",
                   float(100 * (tip.mean() / BAFFLE_TIP - 1)), limit),
-                 (f"{words}: its standard deviation, %", float(100 * tip.std(ddof=1) / tip.mean()), None)]
-    for name, words, unit in (("vertical", "vertical load", "N/m"), ("horizontal", "horizontal load", "N/m"),
+                 (f"{words}: its standard deviation, %", float(100 * tip.std(ddof=1) / tip.mean()),
+                  None)]
+    for name, words, unit in (("vertical", "vertical load", "N/m"),
+                              ("horizontal", "horizontal load", "N/m"),
                               ("moment", "moment of the load", "N")):
         one, two = np.mean(top[name][:half]), np.mean(top[name][half:])
         spread = 100 * np.std(top[name][half:], ddof=1) / two
@@ -383,5 +403,6 @@ def measure_turned(runs):
     rows = [("not turned: largest tip displacement, mm", tips[0], None)]
     for angle, tip, pressure in zip((15, 30, 45), tips[1:], pressures[1:]):
         rows += [(f"{angle} degrees: tip displacement, % more", 100 * (tip / tips[0] - 1), 1),
-                 (f"{angle} degrees: mean pressure, % more", 100 * (pressure / pressures[0] - 1), 1)]
+                 (f"{angle} degrees: mean pressure, % more", 100 * (pressure / pressures[0] - 1),
+                  1)]
     return rows

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Runs small scenes with open boundaries and says how far each is off (make verify-open, some minutes on
-one core): a vortex that leaves, a weir with given discharge, a flow that reverses periodically.
+"""Runs small scenes with open boundaries and says how far each is off (make verify-open, some
+minutes on one core): a vortex that leaves, a weir with given discharge, a flow that reverses
+periodically.
 
 examples:
   tools/report/verify_open.py               writes docs/open_verification.md
@@ -44,11 +45,14 @@ def on_grid(points, x, values, reach):
 
 
 def measure_vortex(ratio):
-    """Beside a channel twice as long, over 1.3 m that end 0.1 m before the outlet; per cent of the swirl."""
+    """Beside a channel twice as long, over 1.3 m that end 0.1 m before the outlet; per cent of the
+    swirl."""
     dp, swirl = 1 / ratio, 0.3
-    grid = np.array([(x, y) for x in np.arange(-0.6, 0.701, 0.05) for y in np.arange(-0.4, 0.41, 0.05)])
+    grid = np.array([(x, y) for x in np.arange(-0.6, 0.701, 0.05)
+                     for y in np.arange(-0.4, 0.41, 0.05)])
     with tempfile.TemporaryDirectory() as folder:
-        runs = [open_run("open_vortex", [f"ratio={ratio}", f"length={length} m"], f"{folder}/{length}")
+        runs = [open_run("open_vortex", [f"ratio={ratio}", f"length={length} m"],
+                         f"{folder}/{length}")
                 for length in (1.6, 3.2)]
         most, left, left_long = 0.0, 0.0, 0.0
         for (t, x, v), (_, far_x, far_v) in zip(fluid(runs[0]), fluid(runs[1])):
@@ -61,7 +65,8 @@ def measure_vortex(ratio):
                 left_long = float(np.hypot(*(far - (1, 0)).T).max())
     return [("RMS difference from a channel twice as long, largest in time, % of the swirl",
              100 * most / swirl, 5),
-            ("largest velocity beside the stream's, 2.2 s, % of the swirl", 100 * left / swirl, None),
+            ("largest velocity beside the stream's, 2.2 s, % of the swirl", 100 * left / swirl,
+             None),
             ("the same in the long channel", 100 * left_long / swirl, None)], \
         sum(run.seconds for run in runs)
 
@@ -89,8 +94,8 @@ def womersley(y, time):
 
 
 def measure_reversal(ratio):
-    """The second period; profile halfway between the boundaries, pressure between 0.4 and 1.6 m. Particles of
-    the buffers do not count: the last row of each comes and goes."""
+    """The second period; profile halfway between the boundaries, pressure between 0.4 and 1.6 m.
+    Particles of the buffers do not count: the last row of each comes and goes."""
     omega = 2 * math.pi / 4
     with tempfile.TemporaryDirectory() as folder:
         run = open_run("open_reversal", [f"ratio={ratio}"], f"{folder}/run")
@@ -129,9 +134,11 @@ RUNS = [("vortex, 30 spacings over the channel", measure_vortex, 30),
 
 def report(known):
     rows = [(name, *figure) for name, scene in known.items() for figure in scene["figures"]]
-    return {"answer": judged([(f"{name}, {what}", found, limit) for name, what, found, limit in rows]),
+    return {"answer": judged([(f"{name}, {what}", found, limit) for name, what, found,
+                              limit in rows]),
             "figures": table(["scene", "figure", "found", "limit"],
-                             [[name, what, cell(found, limit), "" if limit is None else number(limit)]
+                             [[name, what, cell(found, limit), "" if limit is None
+                               else number(limit)]
                               for name, what, found, limit in rows]),
             "seconds": table(["scene", "processor time, s"],
                              [[name, f"{scene['seconds']:.0f}"] for name, scene in known.items()])}
@@ -146,4 +153,5 @@ def run_scene(name):
 
 
 if __name__ == "__main__":
-    runfiles.run_tool(lambda: run_scenes(__doc__, [row[0] for row in RUNS], run_scene, REPORT, report))
+    runfiles.run_tool(lambda: run_scenes(__doc__, [row[0] for row in RUNS], run_scene, REPORT,
+                                         report))
