@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # The tests of the numerics on 128-bit NEON vectors: cross-compiled for AArch64, run under qemu.
 #   tests/neon.sh UNITY_SRC [test ...]
-# Needs gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and qemu-user-static (Debian's names). What writes HDF5
-# is left out, so that no HDF5 for the other machine is wanted.
+# Needs gcc-aarch64-linux-gnu, libc6-dev-arm64-cross and qemu-user-static (Debian's names). What
+# writes HDF5 is left out, so that no HDF5 for the other machine is wanted.
 set -eu
 cd "$(dirname "$0")/.."
 unity=$1
@@ -22,7 +22,8 @@ flags="-std=gnu11 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-m
 rm -f $out/lib.a
 sh tools/embed.sh $out/embedded.c cases/templates/*.cfg data/*
 for file in src/*/*.c $out/embedded.c tests/support/*.c; do
-    if [ "$file" = src/app/main.c ] || grep -Eq '<hdf5.h>|"output/snapshot' "$file"; then continue; fi
+    if [ "$file" = src/app/main.c ] ||
+        grep -Eq '<hdf5.h>|"output/snapshot' "$file"; then continue; fi
     object=$out/$(echo "${file%.c}" | tr / _).o
     $CC $flags -c "$file" -o "$object"
     ${CC%gcc}ar rcs $out/lib.a "$object"

@@ -4,8 +4,8 @@
 # Unity programs below BUILD/tests, one for each tests/*/test_*.c, and the scripts
 # tests/*/test_*.{py,sh}, which pass with exit status 0 and are skipped with 77.
 # Environment: FILTER (part of a test's path), TEST_DIRS (groups to run), TEST_KINDS (c py sh),
-# TEST_JOBS (at a time, 2), TEST_TIMEOUT (seconds each, 600), PYTHON, SPHFSI (the program under test).
-# The last line is always `N passed, N failed, N skipped`; Unity's test cases count one each.
+# TEST_JOBS (at a time, 2), TEST_TIMEOUT (seconds each, 600), PYTHON, SPHFSI (the program under
+# test). The last line is always `N passed, N failed, N skipped`; Unity's test cases count one each.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 

@@ -134,7 +134,8 @@ find_python() {
         return
     done
     lacks "Python 3 with numpy, matplotlib and h5py" \
-        "python3-numpy python3-matplotlib python3-h5py python3-cffi" "python numpy python-matplotlib"
+        "python3-numpy python3-matplotlib python3-h5py python3-cffi" \
+            "python numpy python-matplotlib"
 }
 
 # A virtual environment from the first python that can make one and reach the package index.
@@ -246,7 +247,8 @@ fetch_unity_from_debian() {
 # `zig cc` is clang with wasi-libc. Debian's clang 14 has no relaxed SIMD.
 zig_works() {
     echo 'int main(void) { return 0; }' | env ZIG_{LOCAL,GLOBAL}_CACHE_DIR=build/web/cache \
-        "$1" cc -target wasm32-wasi -msimd128 -mrelaxed-simd -x c -o build/probe.wasm - >/dev/null 2>&1
+        "$1" cc -target wasm32-wasi -msimd128 -mrelaxed-simd -x c -o build/probe.wasm - >/dev/null \
+            2>&1
     local status=$?
     rm -f build/probe.wasm
     return $status
@@ -306,7 +308,8 @@ install_packages() {
     $run install -y --no-install-recommends "$@" >>build/apt.log 2>&1 </dev/null && return
     # A package list from last month names files that the mirror no longer has.
     { $run update && $run install -y --no-install-recommends "$@" </dev/null; } \
-        >>build/apt.log 2>&1 || say "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
+        >>build/apt.log 2>&1 || say \
+            "apt-get did not succeed: $(grep '^E:' build/apt.log | tail -n 1)"
 }
 
 unique() { printf '%s\n' "$@" | awk '!seen[$0]++'; }

@@ -151,9 +151,10 @@ def forecast(plan):
         said = subprocess.run(command(plan, k, "unused", "--explain"), capture_output=True,
                               text=True)
         if said.returncode:
-            raise BadFile(f"run {k}: {said.stderr.strip().splitlines()[-1].removeprefix('sphfsi: ')}")
-        found = re.search(r"([\d.e+-]+) (s|min|h) on this machine when idle, memory ([\d.e+-]+) (MB|GB)",
-                          said.stdout)
+            raise BadFile(f"run {k}: "
+                          f"{said.stderr.strip().splitlines()[-1].removeprefix('sphfsi: ')}")
+        found = re.search(r"([\d.e+-]+) (s|min|h) on this machine when idle, "
+                          r"memory ([\d.e+-]+) (MB|GB)", said.stdout)
         if found:
             seconds.append(float(found[1]) * {"s": 1, "min": 60, "h": 3600}[found[2]])
             memory.append(float(found[3]) * {"MB": 1, "GB": 1000}[found[4]])
@@ -239,7 +240,8 @@ def run_one(out, k):
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda n, _: child.send_signal(n))
     status = child.wait()
-    return 0 if status == 2 and runfiles.Run(folder).summary.get("exit_reason") == "guard" else status
+    return 0 if status == 2 and runfiles.Run(folder).summary.get("exit_reason") == "guard" \
+        else status
 
 
 # --- what came out ---

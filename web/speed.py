@@ -35,7 +35,8 @@ def native_seconds(program, name, folder):
                         "1",
                         "--quiet", *sets], check=True, stderr=subprocess.DEVNULL)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, time.monotonic() - begin
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, \
+        time.monotonic() - begin
 
 
 def worker_cpu(browser):

@@ -55,7 +55,8 @@ def find_dp(case: Case, seconds: float, until: float, threads: int,
     for power in range(math.ceil(math.log10(own)) + 1, -9, -1):
         for dp in (number * 10.0**power for number in ROUND_NUMBERS):
             cost = _cost(plan, dp)
-            if not 0.1 * seconds <= cost["seconds"] <= 3 * seconds or cost["particles"] > MAX_PARTICLES:
+            if not 0.1 * seconds <= cost["seconds"] <= 3 * seconds or \
+                cost["particles"] > MAX_PARTICLES:
                 continue
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")

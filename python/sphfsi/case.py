@@ -216,7 +216,8 @@ class Case:
         return find_dp(self, seconds, until, threads, notes or log.info)
 
     def __repr__(self) -> str:
-        return f"<case {self.path or 'of a text'}{''.join(f', {item}' for item in _sets(self.changes))}>"
+        changes = "".join(f", {item}" for item in _sets(self.changes))
+        return f"<case {self.path or 'of a text'}{changes}>"
 
 
 class _Stopping:

@@ -171,7 +171,8 @@ def draw_column(above, below, column, curves, refs, legend):
             style = dict(styles[ref], color=colour, markeredgecolor=colour, linewidth=0.8)
             if ref.measured:
                 style.update(linestyle="-", markersize=2.6)
-                style["markerfacecolor"] = "white" if style["markerfacecolor"] == "white" else colour
+                style["markerfacecolor"] = "white" if style["markerfacecolor"] == "white" \
+                    else colour
             below.plot(t, scale * (np.interp(t, time, value) - v), **style)
     end = max(time[-1] for _, time, _ in curves)
     above.set(ylabel=words, xlim=(0, 1.02 * end or 1))

@@ -207,7 +207,8 @@ class Refinement:
         report: dict[str, Any] = {}
         for name in runs[0]:
             if any(name not in run for run in runs):
-                raise BadFile(f"{self.folder}: the runs do not all have the column {name} of {file}")
+                raise BadFile(f"{self.folder}: the runs do not all have the column {name} "
+                              f"of {file}")
             columns = [run[name] for run in runs]
             ends = columns[0].measures["final"]
             shown = file != "ledger.csv" or (name.endswith("_J_per_m") and ends != 0)

@@ -147,7 +147,8 @@ class Simulation:
 
     def _finish(self, status: int) -> None:
         if self._problem is not None:
-            raise Error("a force or motion of the program has failed; the simulation cannot go on") \
+            raise Error("a force or motion of the program has failed; the simulation "
+                        "cannot go on") \
                 from self._problem
         check(status)
 

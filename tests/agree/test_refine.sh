@@ -2,7 +2,8 @@
 # Three resolutions: the runs, their resumption, and what does not fit.
 . tests/support/shell.sh
 refine=("${PYTHON:-python3}" tools/refine.py)
-"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null || { echo "cffi or numpy is missing"; exit 77; }
+"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||
+    { echo "cffi or numpy is missing"; exit 77; }
 run() { "${refine[@]}" -n 3 "$@" --threads 1 --quiet; }
 case=(cases/cantilever.cfg --set ratio=8 --until 0.02 --out "$dir/r")
 
@@ -43,7 +44,8 @@ grep -q young "$dir/error" || fail "the message does not name what differs: $(ca
 # A resolution in which a body vanishes is named before anything runs.
 run cases/cantilever.cfg --set ratio=2 --ratio 4 --out "$dir/none" 2>"$dir/error"
 [ $? = 1 ] || fail "a body without particles was accepted"
-grep -q 'refine: at dp = 0.16 m, 16 times the case.s: .*use a smaller --ratio' "$dir/error" || fail "$(cat "$dir/error")"
+grep -q 'refine: at dp = 0.16 m, 16 times the case.s: .*use a smaller --ratio' "$dir/error" ||
+    fail "$(cat "$dir/error")"
 [ ! -e "$dir/none" ] || fail "something was run all the same"
 
 # Probes with a rate of their own; without any the energies are left.
@@ -58,7 +60,8 @@ run "$dir/own.cfg" --set ratio=8 --until 0.02 --out "$dir/own" \
 run "$dir/none.cfg" --set ratio=8 --until 0.02 --out "$dir/bare" 2>"$dir/error" ||
     fail "without probes: $(cat "$dir/error")"
 grep -q '"ledger"' "$dir/bare/refine.json" || fail "no energies"
-grep -q '"why_no_order": "[^"]' "$dir/bare/refine.json" || fail "it does not say why there is no order"
+grep -q '"why_no_order": "[^"]' "$dir/bare/refine.json" ||
+    fail "it does not say why there is no order"
 
 # Two resolutions, a restart.
 for n in 2 7; do
@@ -81,7 +84,8 @@ grep -q -- --ratio "$dir/error" && fail "the ratio is blamed: $(cat "$dir/error"
 # The program names the tools that its old options have become.
 for option in --refine --ratio=2 --budget; do
     "$sphfsi" $option 3 cases/gate.cfg 2>"$dir/error"
-    [ $? = 1 ] && [ "$(wc -l <"$dir/error")" = 1 ] && grep -q 'is a tool now: tools/' "$dir/error" ||
+    [ $? = 1 ] && [ "$(wc -l <"$dir/error")" = 1 ] &&
+        grep -q 'is a tool now: tools/' "$dir/error" ||
         fail "$option: $(cat "$dir/error")"
 done
 run "${case[@]}" --restart 2>"$dir/error" && fail "a restart was accepted"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A run that stops and goes on gives the same bits as one that does not: state, rows, snapshots;
-# whatever the scene and the integrator, with checkpoints in between, and with another number of threads.
+# whatever the scene and the integrator, with checkpoints in between, and with another number of
+# threads.
 set -u
 sphfsi=${SPHFSI:-./sphfsi}
 dir=$(mktemp -d)
@@ -79,7 +80,8 @@ run "${set[@]}" --out "$dir/threads" --threads 3 --until 0.01
 run "${set[@]}" --out "$dir/threads" --threads 2 --restart
 agree "$dir/symplectic-mixed-whole" "$dir/threads" "another number of threads"
 
-# From the older of two checkpoints, off the grid of every output: later rows are dropped and redone.
+# From the older of two checkpoints, off the grid of every output: later rows are dropped and
+# redone.
 run "${set[@]}" --out "$dir/older" --set output.checkpoint_interval=0.00333
 mapfile -t checkpoints < <(ls "$dir"/older/*.ckpt)
 [ ${#checkpoints[@]} = 2 ] || fail "${#checkpoints[@]} checkpoints instead of 2"

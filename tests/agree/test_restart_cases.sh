@@ -41,9 +41,11 @@ short() {
 
 done=0
 short cantilever 1e-3 ratio=4
-short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm gate_length=80mm W=0.1m H=0.14m \
+short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm gate_length=80mm W=0.1m \
+    H=0.14m \
     top=0.16m
-short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm W=0.1m H=0.14m gate.density=110 \
+short gate 0.005 "dp=2.5 mm" gate_thickness=10mm wall=10mm held=10mm W=0.1m H=0.14m \
+    gate.density=110 \
     top=0.16m
 short hydrostatic_plate 0.004 "dp=25 mm"
 short wet_baffle 0.002 "dp=2 mm"

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Clusters, also in chunks, a tile of candidates and a list of neighbours give the same sums:
-# bench/neighbours.c, which counts true neighbours by itself. And both benchmark programs are built and start.
+# bench/neighbours.c, which counts true neighbours by itself. And both benchmark programs are built
+# and start.
 bench=${BUILD:-build/release}
 if [ ! -x "$bench/bench_neighbours" ]; then
     echo "there are no benchmark programs in $bench"
     exit 77
 fi
-"$bench/bench_bench" --help 2>&1 | grep -q '^usage' || { echo "FAILED: bench_bench --help"; exit 1; }
+"$bench/bench_bench" --help 2>&1 | grep -q '^usage' ||
+    { echo "FAILED: bench_bench --help"; exit 1; }
 OMP_NUM_THREADS=1 "$bench/bench_neighbours" --reps 1 | awk -F, '
     { print; value[$2 "," $5] = $7 }
     END {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# How a run ends that is stopped: after a guard with a fork with half the step into another folder, after a
-# signal with a restart. The options are right to the letter, and they run.
+# How a run ends that is stopped: after a guard with a fork with half the step into another folder,
+# after a signal with a restart. The options are right to the letter, and they run.
 . tests/support/shell.sh
 export OMP_NUM_THREADS=1
 cp tests/fault/still.cfg "$dir/still water.cfg"
@@ -38,7 +38,8 @@ still=(../sphfsi "../still water.cfg" --set numerics.cfl=1 --until 0.5 --threads
 got=$(cd below && command 2 "${still[@]}" --out "../b c")
 last=../$(newest "b c")
 is "$got" "--fork $last --set numerics.cfl=0.5 and another --out"
-grep -q "^last valid state, for a restart: .*b c/step-.*; state at the stop: .*b c/fields" below/out ||
+grep -q "^last valid state, for a restart: .*b c/step-.*; state at the stop: .*b c/fields" \
+    below/out ||
     fail "where the last states are: $(cat below/out)"
 # With steps half as long the water stays at rest.
 (cd below && "${still[@]}" --fork "$last" --set numerics.cfl=0.5 --out "../b c-2" --quiet) \
@@ -49,8 +50,8 @@ grep -q '"exit_reason": "finished"' "b c-2/summary.json" || fail "the fork has n
 got=$(command 2 ./sphfsi thrown.cfg --quiet --out t)
 is "$got" "--fork $(newest t) --set numerics.solid_safety=0.45 and another --out"
 
-# Where shorter steps would stop it again: contact at its limit, a motion that is not finite at a time
-# between those that are checked before the run, and a speed that the case gives.
+# Where shorter steps would stop it again: contact at its limit, a motion that is not finite at a
+# time between those that are checked before the run, and a speed that the case gives.
 others() { sed -n 's/^change the case, then //p' out; }
 cat >met.cfg <<'END'
 dp = 1 cm
@@ -84,7 +85,8 @@ ledger_interval = 0.07003
 END
 command 2 ./sphfsi moved.cfg --quiet --out n >/dev/null
 is "$(others)" "go on: the same command with --fork $(newest n) and another --out"
-grep -q '^sphfsi: moved.cfg:9: t = 0.07003 s: \[motion m\] gives \[wall side\]' err || fail "$(cat err)"
+grep -q '^sphfsi: moved.cfg:9: t = 0.07003 s: \[motion m\] gives \[wall side\]' err ||
+    fail "$(cat err)"
 sed 's/^x = .*/x = 9*t/
 s/^shape = box -0.04.*/&\nshape = box 0.1, 0, 0.14, 0.1\nshape = box -0.04, -0.04, 0.14, 0/' \
     moved.cfg >fast.cfg
@@ -93,7 +95,8 @@ is "$(others)" "start again: the same command with another --out"
 grep -q 'the case gives the fluid up to 9 m/s, but its speed of sound is only 10 m/s' err ||
     fail "$(cat err)"
 
-# stop NAME ARGUMENTS...: the options of a run that a signal ends. There is nothing to mend: it restarts.
+# stop NAME ARGUMENTS...: the options of a run that a signal ends. There is nothing to mend: it
+# restarts.
 stop() {
     local name=$1
     shift

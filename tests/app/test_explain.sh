@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
-# What --explain and tools/budget.py say: in the unit that suits, and as it follows from the cost of a particle.
+# What --explain and tools/budget.py say: in the unit that suits, and as it follows from the cost of
+# a particle.
 . tests/support/shell.sh
 export OMP_NUM_THREADS=1
 still=(cases/still_water.cfg --set "dp=20 mm" --set "wall=80 mm")
-explain() { "$sphfsi" --explain "${still[@]}" "$@" 2>/dev/null >"$dir/said" || fail "--explain $*"; }
+explain() { "$sphfsi" --explain "${still[@]}" "$@" 2>/dev/null >"$dir/said" ||
+    fail "--explain $*"; }
 says() { grep -q -- "$1" "$dir/said" || fail "no '$1': $(cat "$dir/said")"; }
 
 explain
 # Peaks of single instants are not a result; a mean over time has no such line.
 cp cases/templates/baffle.cfg "$dir/baffle.cfg"
 "$sphfsi" --explain "$dir/baffle.cfg" 2>/dev/null >"$dir/instants" || fail "--explain baffle"
-grep -q '^  \[probe load\]: rows are of single instants' "$dir/instants" || fail "no line on single instants"
-"$sphfsi" --explain "$dir/baffle.cfg" --set "load.average=1 ms" 2>/dev/null >"$dir/instants" || fail "average"
+grep -q '^  \[probe load\]: rows are of single instants' "$dir/instants" ||
+    fail "no line on single instants"
+"$sphfsi" --explain "$dir/baffle.cfg" --set "load.average=1 ms" 2>/dev/null >"$dir/instants" ||
+    fail "average"
 grep -q 'single instants' "$dir/instants" && fail "a mean is not a single instant"
 
 # The file of snapshots is as large as its points.
@@ -40,7 +44,8 @@ for row in "0.5 s 1" "2000 min 60" "2e5 h 3600"; do
          /nine of ten runs take/ { sub(";", "", $10)
              low = $6 * ($7 == "s" ? 1 : $7 == "min" ? 60 : 3600)
              high = $9 * ($10 == "s" ? 1 : $10 == "min" ? 60 : 3600) }
-         END { a = low / whole / 0.9 - 1; b = high / whole / 1.4 - 1; exit a * a > 1e-4 || b * b > 1e-4 }' \
+         END { a = low / whole / 0.9 - 1; b = high / whole / 1.4 - 1; exit a * a > 1e-4 ||
+             b * b > 1e-4 }' \
         "$dir/said" || fail "the band is not 0.9 to 1.4 of the time: $(cat "$dir/said")"
 done
 [ "$(grep -c '% of a step' "$dir/said")" -ge 3 ] || fail "no phases"
@@ -50,8 +55,10 @@ says 'cost with 2 threads'
 explain --until 1e6
 says 'disk at most [0-9.]* GB'
 
-# A budget lists round spacings, each once, coarsest first, whose time is from a tenth of it to three times.
-"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null || { echo "cffi or numpy is missing"; exit 77; }
+# A budget lists round spacings, each once, coarsest first, whose time is from a tenth of it to
+# three times.
+"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||
+    { echo "cffi or numpy is missing"; exit 77; }
 budget() { "${PYTHON:-python3}" tools/budget.py "$@" >"$dir/said" 2>/dev/null || fail "budget $*"; }
 budget 20s "${still[@]}"
 awk '

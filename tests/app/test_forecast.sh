@@ -10,13 +10,16 @@ explain() { "$SPHFSI" --explain "${still[@]}" 2>/dev/null; }
 
 explain | grep -q 'cost with 1 thread, measured in 0.3 s of trial steps' || fail "no measurement"
 explain | grep -q 'nine of ten runs take .* s to .* s;' || fail "no band of the time"
-explain | grep -q 'its time is not included' && fail "time of a search for rest that is not asked for"
+explain | grep -q 'its time is not included' &&
+    fail "time of a search for rest that is not asked for"
 "$SPHFSI" --explain "${still[@]}" --set relax.tolerance=0.02 2>/dev/null |
-    grep -q '\[relax\].* its time is not included' || fail "the search for rest is counted in silence"
+    grep -q '\[relax\].* its time is not included' ||
+        fail "the search for rest is counted in silence"
 # Water without a floor leaves the domain within the trial steps; a run of 5 s has some thousands.
 "$SPHFSI" --explain "${still[@]}" --until 5 --set tank.shape='box -0.1, -0.1, 0, 0.4' \
     >"$work/said" 2>/dev/null
-grep -Eq 'about [0-9.e+]+ steps of 0?\.?[0-9.e-]*[1-9]' "$work/said" || fail "$(grep steps "$work/said")"
+grep -Eq 'about [0-9.e+]+ steps of 0?\.?[0-9.e-]*[1-9]' "$work/said" ||
+    fail "$(grep steps "$work/said")"
 # Steps: 10 % for a flow, exact but for a step a row for a lone solid.
 steps_of() { sed -n 's/^ *about \([0-9.e+]*\) steps of [0-9].*/\1/p' | awk '{printf "%.0f", $1}'; }
 near() { awk -v a="$1" -v b="$2" -v e="$3" 'BEGIN { exit !(a > b*(1-e) && a < b*(1+e)) }'; }
@@ -32,10 +35,12 @@ near "$want" "$got" 0.01 || fail "cantilever: $want steps foreseen, $got taken"
 
 # A budget: the finest spacing within it, costs that grow as dp shrinks, and what is no time.
 budget() { "${PYTHON:-python3}" tools/budget.py "$@"; }
-"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null || { echo "cffi or numpy is missing"; exit 77; }
+"${PYTHON:-python3}" -c 'import cffi, numpy' 2>/dev/null ||
+    { echo "cffi or numpy is missing"; exit 77; }
 budget 20s cases/still_water.cfg --set "wall=80 mm" >"$work/budget" 2>/dev/null || fail "no budget"
 grep -q '^finest dp within the budget: --set dp=0\.0' "$work/budget" || fail "$(cat "$work/budget")"
-awk '/^  dp .* (fits|too long|bodies)/ { if (n++ && $8 < last) exit 1; last = $8 }' "$work/budget" ||
+awk '/^  dp .* (fits|too long|bodies)/ { if (n++ && $8 < last) exit 1; last = $8 }' \
+    "$work/budget" ||
     fail "costs do not grow: $(cat "$work/budget")"
 # A probe with its own interval: each of its times ends a step.
 probe=(cases/templates/dam_break.cfg --until 0.05)
@@ -62,21 +67,26 @@ key=cfl
     fail "$(cat "$work/said")"
 grep -q '^expected error at accuracy = draft' "$work/said" ||
     fail "a run with a preset does not say what error to expect: $(cat "$work/said")"
-grep -Eq '^  water: [0-9]+ particles (over its height: error of about|across, fewer)' "$work/said" ||
+grep -Eq '^  water: [0-9]+ particles (over its height: error of about|across, fewer)' \
+    "$work/said" ||
     fail "without evidence: $(cat "$work/said")"
-"$SPHFSI" --explain cases/gate.cfg 2>&1 | grep -q '^expected error with scheme = paper, at accuracy' ||
+"$SPHFSI" --explain cases/gate.cfg 2>&1 |
+    grep -q '^expected error with scheme = paper, at accuracy' ||
     fail "no word of the scheme that the error is of"
 "$SPHFSI" --explain cases/templates/baffle.cfg >"$work/said" 2>&1
-grep -q '^  baffle: 4 particles across: error of the tip displacement about [0-9.]* % to' "$work/said" ||
+grep -q '^  baffle: 4 particles across: error of the tip displacement about [0-9.]* % to' \
+    "$work/said" ||
     fail "no word of the body's error: $(cat "$work/said")"
 grep -q 'Dam break and elastic gate\|warning.*interval' "$work/said" &&
     fail "rows of other cases, or a false warning"
-"$SPHFSI" --explain tests/stability/wedge.cfg 2>&1 | grep -q '^  wedge: .* error unknown, because' ||
+"$SPHFSI" --explain tests/stability/wedge.cfg 2>&1 |
+    grep -q '^  wedge: .* error unknown, because' ||
     fail "an error of the tip of a body that moves freely"
 "$SPHFSI" --explain cases/templates/baffle.cfg --set output.ledger_interval=1e-9 \
     --set baffle.damping_time=0.01 --set numerics.fixed_step=1e-6 >"$work/said" 2>&1
 for key in ledger_interval 'damping_time = 0.01' 'fixed_step limits'; do
-    grep -q "^warning: --set: .*$key" "$work/said" || fail "no warning of $key: $(grep warning "$work/said")"
+    grep -q "^warning: --set: .*$key" "$work/said" ||
+        fail "no warning of $key: $(grep warning "$work/said")"
 done
 "$SPHFSI" --effective cases/cantilever.cfg --set accuracy=fine | grep -q '^h_over_dp = 1.8' ||
     fail "fine is not what presets.c says"

@@ -14,7 +14,8 @@ quantity = displacement
 body = a
 point = 0.05, 0.05'
 
-# says STATUS WORDS TEXT [OPTION]: the run ends so, and a line begins with the place and these words.
+# says STATUS WORDS TEXT [OPTION]: the run ends so, and a line begins with the place and these
+# words.
 says() {
     echo "$3" >"$case"
     "$sphfsi" ${4:+"$4"} "$case" --quiet --threads 1 --out "$dir/run" >"$dir/output" 2>&1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A run that seeks rest first: what it says, its times, and that a search which was cut goes on with the
-# same bits.
+# A run that seeks rest first: what it says, its times, and that a search which was cut goes on with
+# the same bits.
 . tests/support/shell.sh
 export OMP_NUM_THREADS=1
 cat >"$dir/bar.cfg" <<'END'
@@ -26,18 +26,21 @@ grep -q '^at rest after .* s and [0-9]* stops: over the last' "$dir/output" ||
     fail "what was found is not said"
 # It hangs by rho g L^2/(2 E), L = 0.18 m, from the first row on.
 awk -F, 'NR > 1 { y = $3 / (-1000 * 9.81 * 0.18^2 / 2e5) - 1; if (y * y > 9e-4) bad = $0 }
-    NR == 2 && $1 != 0 { bad = $0 } END { if (bad) print bad; exit bad != "" }' "$dir/whole/probes.csv" ||
+    NR == 2 && $1 != 0 { bad = $0 } END { if (bad) print bad; exit bad != "" \
+        }' "$dir/whole/probes.csv" ||
     fail "the bar does not hang at rest"
 # SIGINT in the search, some times, then to the end.
 for k in 1 2 3; do
-    "$sphfsi" "$dir/bar.cfg" --out "$dir/cut" $([ $k = 1 ] || echo --restart) >"$dir/output" 2>&1 & pid=$!
+    "$sphfsi" "$dir/bar.cfg" --out "$dir/cut" $([ $k = 1 ] ||
+        echo --restart) >"$dir/output" 2>&1 & pid=$!
     sleep "0.0$k"
     kill -INT $pid 2>/dev/null
     wait $pid
     [ -e "$dir/cut/summary.json" ] || break
 done
 if ls "$dir"/cut/*.ckpt >/dev/null 2>&1; then
-    "$sphfsi" "$dir/bar.cfg" --out "$dir/cut" --restart >"$dir/output" 2>&1 || fail "it does not go on"
+    "$sphfsi" "$dir/bar.cfg" --out "$dir/cut" --restart >"$dir/output" 2>&1 ||
+        fail "it does not go on"
     [ "$(hash "$dir/cut")" = "$(hash "$dir/whole")" ] || fail "a search that was cut ends elsewhere"
 fi
 [ $failures = 0 ] || exit 1

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The templates have nothing to warn of when they start. The one with a lifted plate and the one with a splash
-# (at half its size) run to their end without a warning, and no water is lost.
+# The templates have nothing to warn of when they start. The one with a lifted plate and the one
+# with a splash (at half its size) run to their end without a warning, and no water is lost.
 set -u
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT

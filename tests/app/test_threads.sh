@@ -23,8 +23,10 @@ export OMP_NUM_THREADS=100000
 expect 0 'OMP_NUM_THREADS = 100000 is too many' "${large[@]}" --out "$dir/variable"
 expect 0 'OMP_NUM_THREADS = 100000 is too many' "${large[@]}" --explain
 unset OMP_NUM_THREADS
-[ "$(threads "$dir/many")" -le $((4 * cores)) ] || fail "$(threads "$dir/many") threads on $cores cores"
-[ "$(threads "$dir/variable")" = "$(threads "$dir/many")" ] || fail "OMP_NUM_THREADS has another limit"
+[ "$(threads "$dir/many")" -le $((4 * cores)) ] ||
+    fail "$(threads "$dir/many") threads on $cores cores"
+[ "$(threads "$dir/variable")" = "$(threads "$dir/many")" ] ||
+    fail "OMP_NUM_THREADS has another limit"
 [ "$(hash "$dir/many")" = "$(hash "$dir/one")" ] || fail "bits depend on the number of threads"
 
 # --- a number that is asked for is taken on a busy machine, too; the default is fewer there ---
@@ -37,11 +39,13 @@ if [ "$cores" -gt 1 ]; then
     "$sphfsi" "${large[@]}" --out "$dir/busy" >"$dir/output" 2>&1 || fail "a busy machine"
     env -u OMP_WAIT_POLICY "$sphfsi" "${large[@]}" --threads 2 --out "$dir/asked" \
         >"$dir/asked.txt" 2>&1 || fail "--threads 2"
-    env -u OMP_WAIT_POLICY OMP_NUM_THREADS=2 "$sphfsi" "${large[@]}" --out "$dir/set" >"$dir/set.txt" 2>&1 ||
+    env -u OMP_WAIT_POLICY OMP_NUM_THREADS=2 "$sphfsi" "${large[@]}" --out "$dir/set" \
+        >"$dir/set.txt" 2>&1 ||
         fail "OMP_NUM_THREADS=2"
     kill "${busy[@]}"
     wait "${busy[@]}" 2>/dev/null
-    grep -q 'busy: 1 of .* cores idle, so the run uses 1 thread; .* give --threads [2-9]' "$dir/output" ||
+    grep -q 'busy: 1 of .* cores idle, so the run uses 1 thread; .* give --threads [2-9]' \
+        "$dir/output" ||
         fail "a busy machine is not said"
     [ "$(threads "$dir/busy")" = 1 ] || fail "a busy machine: $(threads "$dir/busy") threads"
     [ "$(threads "$dir/asked")" = 2 ] || fail "--threads 2: $(threads "$dir/asked") threads"
@@ -55,7 +59,8 @@ fi
 
 # --- gcc's runtime waits as long as a wake-up takes, unless the user says how long ---
 unset OMP_WAIT_POLICY GOMP_SPINCOUNT
-rounds() { OMP_DISPLAY_ENV=verbose "$@" 2>&1 | sed -n "s/.*GOMP_SPINCOUNT = '\(.*\)'/\1/p" | xargs; }
+rounds() { OMP_DISPLAY_ENV=verbose "$@" 2>&1 | sed -n "s/.*GOMP_SPINCOUNT = '\(.*\)'/\1/p" |
+    xargs; }
 two=("$sphfsi" cases/still_water.cfg --set "title=two  words" --effective --threads 2)
 theirs=$(rounds "${two[@]}" --threads 1)
 if [ -n "$theirs" ]; then

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What a run touches, by the system's own account (strace): nothing is made, written, renamed or removed
-# outside of its folder, no other program is started, no connection is opened. And a clock that steps
-# back, wall time and monotonic, by a library in front of the C library's.
+# What a run touches, by the system's own account (strace): nothing is made, written, renamed or
+# removed outside of its folder, no other program is started, no connection is opened. And a clock
+# that steps back, wall time and monotonic, by a library in front of the C library's.
 . tests/support/shell.sh
 case=$(realpath tests/fault/tiny.cfg)
 calls=0
@@ -18,7 +18,7 @@ static long calls;
 int clock_gettime(clockid_t id, struct timespec *t)
 {
     calls++;
-    /* Wall time: an hour back at every call. Monotonic: on by a minute, and back by a day at times. */
+    /* Wall time: an hour back at every call. Monotonic: on by a minute, back by a day at times. */
     t->tv_sec = id == CLOCK_REALTIME ? 1000000000 - 3600 * calls
                                      : 1000000 + 60 * calls - 86400 * (calls / 37);
     t->tv_nsec = 0;
@@ -41,11 +41,15 @@ END
     # A sanitizer's runtime wants to come first.
     if LD_PRELOAD=$dir/clock.so "$sphfsi" --version >/dev/null 2>&1; then
         LD_PRELOAD=$dir/clock.so timeout 60 "$sphfsi" "$case" --quiet --out "$dir/clock" \
-            --set output.checkpoint_minutes=5 >"$dir/output" 2>&1 || fail "clock stepping back: status $?"
-        [ "$(hash "$dir/clock")" = "$(hash "$dir/whole")" ] || fail "clock stepping back: other bits"
-        cmp "$dir/clock/probes.csv" "$dir/whole/probes.csv" || fail "clock stepping back: probes.csv"
+            --set output.checkpoint_minutes=5 >"$dir/output" 2>&1 ||
+                fail "clock stepping back: status $?"
+        [ "$(hash "$dir/clock")" = "$(hash "$dir/whole")" ] ||
+            fail "clock stepping back: other bits"
+        cmp "$dir/clock/probes.csv" "$dir/whole/probes.csv" ||
+            fail "clock stepping back: probes.csv"
         # Five minutes are five looks at this clock: the cadence goes on behind a step back.
-        [ "$(ls "$dir"/clock/step-*.ckpt | wc -l)" = 2 ] || fail "clock stepping back: no checkpoints"
+        [ "$(ls "$dir"/clock/step-*.ckpt | wc -l)" = 2 ] ||
+            fail "clock stepping back: no checkpoints"
         clock="one run with its clocks stepping back"
     fi
 fi

@@ -16,9 +16,11 @@ names=$("$sphfsi" --new) || fail "--new without a name"
 [ "$(wc -l <<<"$names")" -ge 4 ] || fail "--new lists '$names'"
 for name in $names; do
     "$sphfsi" --new "$name" >"$name.cfg" || fail "--new $name"
-    "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] || fail "--preview $name"
+    "$sphfsi" --preview "$name.cfg" >/dev/null && [ -s "preview-$name.svg" ] ||
+        fail "--preview $name"
 done
-refuses 1 '--set H=0.15 has no unit, but the case has `H = 0.3 m`: give one' dam_break.cfg --set H=0.15
+refuses 1 '--set H=0.15 has no unit, but the case has `H = 0.3 m`: give one' dam_break.cfg \
+    --set H=0.15
 # A bonded body does not move freely.
 cat >bonded.cfg <<'END'
 dp = 5 mm
@@ -66,9 +68,11 @@ for cell in '`0.3`; `scheme = paper`: `0`' '`neo_hookean`; `scheme = paper`: `pa
     '`4` with only fluid, `0` with fluid and solids; `scheme = paper`: `0`'; do
     grep -qF "| $cell |" keys || fail "--keys gives the scheme's default: $cell"
 done
-"$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "enabled effects" out || fail "--explain"
+"$sphfsi" --explain cantilever.cfg --threads 1 >out && grep -q "enabled effects" out ||
+    fail "--explain"
 "$sphfsi" --explain cantilever.cfg --set "plate.lattice_angle=20 deg" --threads 1 >out 2>err &&
-    grep -q "solid plate\] lattice at 20 degrees, cells of .* area off by .* bending stiffness" out ||
+    grep -q "solid plate\] lattice at 20 degrees, cells of .* area off by .* bending stiffness" \
+        out ||
     fail "--explain of a turned lattice"
 [ "$(grep -c 'lattice at' out)" = 1 ] || fail "--explain: $(grep 'lattice at' out)"
 # Every 50 ms to 1 s, and at the start.
@@ -83,13 +87,16 @@ if [ -c /dev/full ]; then
     done
     "$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out unsaid >/dev/full 2>err ||
         fail "a run whose messages cannot be written"
-    grep -q "lines of this run are lost" err || fail "messages of a run to a full device: $(cat err)"
+    grep -q "lines of this run are lost" err ||
+        fail "messages of a run to a full device: $(cat err)"
 fi
 
 # Closed standard streams: no result file takes their numbers, so no message lands in one.
 "$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out plain >/dev/null 2>&1 || fail "a run"
-"$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out closed 0<&- >&- 2>&- || fail "closed streams"
-cmp plain/ledger.csv closed/ledger.csv && cmp plain/probes.csv closed/probes.csv || fail "messages in results"
+"$sphfsi" cantilever.cfg --until 1e-3 --threads 1 --out closed 0<&- >&- 2>&- ||
+    fail "closed streams"
+cmp plain/ledger.csv closed/ledger.csv && cmp plain/probes.csv closed/probes.csv ||
+    fail "messages in results"
 
 # A terminal that goes away (SIGHUP) leaves a checkpoint; nohup keeps the run going.
 "$sphfsi" cantilever.cfg --quiet --threads 1 --out hangup >out & pid=$!

@@ -60,7 +60,8 @@ expect 0 "fork from $ckpt" "$case" --fork "$ckpt" --out "$dir/slopes" "${go[@]}"
 # Places of friction that the run did not have.
 (cat "$case"; printf '[contact smooth]\nfriction = 0\n') >"$dir/smooth.cfg"
 expect 0 'simulated' "$dir/smooth.cfg" --threads 1 --until 0.01 --out "$dir/smooth"
-expect 0 'fork from' "$dir/smooth.cfg" --fork "$dir/smooth" --out "$dir/rough" --threads 1 --until 0.011 \
+expect 0 'fork from' "$dir/smooth.cfg" --fork "$dir/smooth" --out "$dir/rough" --threads 1 --until \
+    0.011 \
     --set smooth.friction=0.1
 # A fork that changes nothing but where it begins goes the same way, by the folder's newest one.
 expect 0 'simulated' "$case" --threads 1 --until 0.03 --out "$dir/whole"
@@ -76,7 +77,8 @@ expect 0 'simulated' "$case" --fork "$ckpt" --out "$dir/cut" --threads 1 --until
 expect 0 'restart from' "$case" --out "$dir/cut" --restart "${go[@]}" --set gate.young=4e6
 [ "$(hash "$dir/cut")" = "$(hash "$dir/stiff")" ] || fail "a restart in a fork changes bits"
 
-# --- fork: the interface impulse is cleared where no sub-steps are taken, and the ledger books it ---
+# --- fork: the interface impulse is cleared where no sub-steps are taken, and the ledger books it
+# ---
 cat >"$dir/free.cfg" <<'CASE'
 dp = 1 cm
 end_time = 0.1
@@ -101,12 +103,16 @@ momentum() { # the first of the ledger's rows: of fluid and structure less the i
              NR == 2 { print $at }' "$dir/$1/ledger.csv"
 }
 expect 0 'simulated' "$dir/free.cfg" --threads 1 --until 0.02 --out "$dir/free"
-expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/soft" \
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out \
+    "$dir/soft" \
     --set block.young=1e4
-expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/single" \
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out \
+    "$dir/single" \
     --set block.young=1e4 --set numerics.multirate=off
-expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out "$dir/impulse"
-expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.0205 --out "$dir/short" \
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.021 --out \
+    "$dir/impulse"
+expect 0 'fork from' "$dir/free.cfg" --fork "$dir/free" --threads 1 --until 0.0205 --out \
+    "$dir/short" \
     --set numerics.multirate=on --set numerics.fixed_step=2e-5
 [ -n "$(momentum single)" ] || fail "no momentum in the ledger"
 [ "$(momentum soft)" = "$(momentum single)" ] || fail "an interface impulse stays"
@@ -118,7 +124,8 @@ cp "$case" "$dir/moving.cfg"
 sed -i 's/^\[solid gate\]/motion = push\n\n[motion push]\nvelocity = 0.1, 0\nstart = 0.02 s\n\n&/' \
     "$dir/moving.cfg"
 expect 0 'fork from' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/moving" "${go[@]}"
-expect 1 'particle of .wall .*would jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" "${go[@]}" \
+expect 1 'particle of .wall .*would jump' "$dir/moving.cfg" --fork "$ckpt" --out "$dir/jump" \
+    "${go[@]}" \
     --set push.start=0
 
 # --- fork: a tank that turns goes on where it is; one that would turn by a jump is refused ---
@@ -130,7 +137,8 @@ expect 1 'particle of .wall tank. would jump' "${roll[@]}" --until 0.022 --fork 
 expect 1 'particle of .wall tank. would jump' "${roll[@]}" --until 0.022 --fork "$dir/roll" \
     --out "$dir/starts" --set 'roll.start=0.02 s'
 
-# --- fork: a clamp that stops holds where it stands, on any number of threads; one that would jump ---
+# --- fork: a clamp that stops holds where it stands, on any number of threads; one that would jump
+# ---
 cat >"$dir/still.cfg" <<'CASE'
 dp = 1 cm
 end_time = 4 ms

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A disk that fills up, at every stage of a run, on a real file system without room: status 2 and a
-# sentence with the path; what was good stays good; with room again the run goes on to the same bits.
+# sentence with the path; what was good stays good; with room again the run goes on to the same
+# bits.
 # FULL_STEPS: how many sizes of disk to try (8; make faults tries more).
 set -u
 sphfsi=$(realpath "${SPHFSI:-./sphfsi}")

@@ -63,7 +63,8 @@ expect 0 '' "$dir/windows.cfg" --out "$dir/windows"
 
 # --- names ---
 cp "$case" "$dir/...cfg"
-(cd "$dir" && mkdir -p sub && cd sub && expect 1 "'..' cannot be the name of the folder" ../...cfg &&
+(cd "$dir" && mkdir -p sub && cd sub &&
+    expect 1 "'..' cannot be the name of the folder" ../...cfg &&
     [ -z "$(ls)" ] || fail "a case named by dots: wrote beside itself")
 long=$(printf 'x%.0s' {1..300})
 expect 1 'File name too long' "$case" --out "$dir/$long"
@@ -125,13 +126,15 @@ mkfifo "$dir/run/step-000000160.ckpt"
 echo torn >"$dir/run/step-000000180.ckpt.part"
 expect 0 'step-000000170.ckpt: is not a valid checkpoint: .*; the one before it is tried' "$case" \
     --out "$dir/run" --restart
-[ "$(hash "$dir/run")" = "$(hash "$dir/whole")" ] || fail "strangers beside checkpoints change the bits"
+[ "$(hash "$dir/run")" = "$(hash "$dir/whole")" ] ||
+    fail "strangers beside checkpoints change the bits"
 [ ! -e "$dir/run/step-000000180.ckpt.part" ] || fail "an unfinished checkpoint stays for ever"
 [ -e "$dir/run/step-7.ckpt" ] || fail "a file of another's was removed"
 expect 1 'is not a file' "$case" --out "$dir/run" --restart "$dir/run/step-000000150.ckpt"
 expect 1 'is not a file' "$case" --out "$dir/run" --restart "$dir/run/step-000000160.ckpt"
 expect 1 'is not a file' --inspect "$dir/run/step-000000160.ckpt"
-expect 1 'contains no valid checkpoint\|contains no checkpoint' "$case" --fork "$dir/sub" --out "$dir/no"
+expect 1 'contains no valid checkpoint\|contains no checkpoint' "$case" --fork "$dir/sub" --out \
+    "$dir/no"
 
 # --- from an older one: the later one belongs to a future that is run anew ---
 expect 0 '' "$case" --out "$dir/older" --set output.checkpoint_interval=10ms

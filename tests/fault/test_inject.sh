@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The n-th call of the system that makes, writes, syncs, renames or removes a file fails, or kills the
-# program before it is done (strace --inject), for n from 1 to the last: a sentence and status 2, or no
-# harm; afterwards the run goes on, or is begun anew where there was no checkpoint, to the same bits.
-# INJECT_STRIDE=1 tries every n (make faults), 30 every thirtieth.
+# The n-th call of the system that makes, writes, syncs, renames or removes a file fails, or kills
+# the program before it is done (strace --inject), for n from 1 to the last: a sentence and status
+# 2, or no harm; afterwards the run goes on, or is begun anew where there was no checkpoint, to the
+# same bits. INJECT_STRIDE=1 tries every n (make faults), 30 every thirtieth.
 set -u
 # The leak checker of a sanitized program cannot work under another tracer.
 export ASAN_OPTIONS=detect_leaks=0
@@ -15,7 +15,8 @@ strace -f -qq -o "$dir/trace" -e trace=none -e inject=fsync:error=EIO true 2>/de
     exit 77
 }
 failures=0
-arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=1ms --set output.probe_interval=0.1ms
+arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=1ms \
+    --set output.probe_interval=0.1ms
     --set output.ledger_interval=0.2ms --set output.snapshot_interval=0.4ms
     --set output.checkpoint_interval=0.4ms)
 run=$dir/run
@@ -46,7 +47,8 @@ inject() {
 finish() {
     local what=$1
     if compgen -G "$run/step-*.ckpt" >/dev/null; then
-        "$sphfsi" "${arguments[@]}" --out "$run" --restart >"$dir/output" 2>&1 || fail "$what: no restart"
+        "$sphfsi" "${arguments[@]}" --out "$run" --restart >"$dir/output" 2>&1 ||
+            fail "$what: no restart"
         again=$((again + 1))
     else
         rm -rf "$run"
@@ -72,8 +74,8 @@ for call in rename fsync unlink link ftruncate write pwrite64; do
     done
 done
 
-# A restart from the older of two checkpoints, while it removes the later one and cuts rows and snapshots:
-# a kill must not leave the later one beside rows that were cut.
+# A restart from the older of two checkpoints, while it removes the later one and cuts rows and
+# snapshots: a kill must not leave the later one beside rows that were cut.
 begun=$dir/whole
 for call in unlink ftruncate rename; do
     for ((n = 1; n < 20; n += 1 + stride / 10)); do
@@ -85,7 +87,8 @@ done
 begun=''
 
 # HDF5 writes by pwrite64 and cuts by ftruncate; all else is of the program itself.
-for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:ENOSPC fallocate:ENOSPC \
+for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:ENOSPC \
+    fallocate:ENOSPC \
     pwrite64:ENOSPC pwrite64:EIO mkdir:EACCES; do
     for ((n = 1 + RANDOM % stride; ; n += stride)); do
         what="${call#*:} at ${call%:*} $n"
@@ -101,9 +104,11 @@ for call in rename:EIO fsync:EIO unlink:EPERM link:EMLINK ftruncate:EIO write:EN
     done
 done
 
-# A snapshot that is lost while the run goes on, since the disk takes its time to say so: no checkpoint later
-# than it may stay, or a run that goes on would lack it. The times at which it is said do not matter.
-lose() { # STATUS of a run whose file of snapshots fails to be synced; the arguments that it has beside
+# A snapshot that is lost while the run goes on, since the disk takes its time to say so: no
+# checkpoint later than it may stay, or a run that goes on would lack it. The times at which it is
+# said do not matter.
+lose() { # STATUS of a run whose file of snapshots fails to be synced; the arguments that it has \
+    beside
     strace -f -qq -o "$dir/trace" -e trace=fsync -P "$run/fields.vtkhdf.spare" \
         -e inject=fsync:error=EIO:delay_exit=300000:when=1 \
         "$sphfsi" "${arguments[@]}" --out "$run" "$@" >"$dir/output" 2>&1
@@ -111,7 +116,8 @@ lose() { # STATUS of a run whose file of snapshots fails to be synced; the argum
     [ $status = 2 ] && grep -q '"exit_reason": "input_output"' "$run/summary.json" ||
         fail "lost snapshot: exit status $status"
 }
-arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=60ms --set output.probe_interval=1ms
+arguments=(tests/fault/tiny.cfg --quiet --threads 1 --set end_time=60ms \
+    --set output.probe_interval=1ms
     --set output.snapshot_interval=30ms)
 rm -rf "$dir/whole" "$run"
 "$sphfsi" "${arguments[@]}" --out "$dir/whole" >"$dir/output" 2>&1 || fail "the long run itself"
@@ -119,7 +125,8 @@ lose
 finish "first snapshot lost"
 # The last one: its loss is known after all else has been done.
 rm -rf "$run"
-"$sphfsi" "${arguments[@]}" --out "$run" --until 0.03 >"$dir/output" 2>&1 || fail "the long run, cut"
+"$sphfsi" "${arguments[@]}" --out "$run" --until 0.03 >"$dir/output" 2>&1 ||
+    fail "the long run, cut"
 lose --restart
 finish "last snapshot lost"
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `make install` to a folder of its own; a program outside of the source tree finds the library there by
-# pkg-config and by CMake's find_package, and couples its own motion.
+# `make install` to a folder of its own; a program outside of the source tree finds the library
+# there by pkg-config and by CMake's find_package, and couples its own motion.
 set -u
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
@@ -15,7 +15,8 @@ fail() {
 }
 
 export OMP_NUM_THREADS=1
-SETUP=no make -s install PREFIX="$dir/usr" >"$dir/log" 2>&1 || { cat "$dir/log"; fail "make install"; }
+SETUP=no make -s install PREFIX="$dir/usr" >"$dir/log" 2>&1 ||
+    { cat "$dir/log"; fail "make install"; }
 "$dir/usr/bin/sphfsi" --version >/dev/null || fail "the installed program does not run"
 cp examples/spring_wall.c "$dir"
 cd "$dir" || exit 1
@@ -31,10 +32,12 @@ ways=0
 if command -v pkg-config >/dev/null; then
     export PKG_CONFIG_PATH=$dir/usr/lib/pkgconfig
     cc spring_wall.c $(pkg-config --cflags --libs sphfsi) -o spring_wall || fail "pkg-config"
-    readelf -d spring_wall 2>/dev/null | grep -q 'NEEDED.*hdf5' && fail "pkg-config: links HDF5 by itself"
+    readelf -d spring_wall 2>/dev/null | grep -q 'NEEDED.*hdf5' &&
+        fail "pkg-config: links HDF5 by itself"
     LD_LIBRARY_PATH=$dir/usr/lib moves pkg-config
     rm spring_wall
-    cc spring_wall.c $(pkg-config --cflags --static --libs sphfsi | sed 's/-lsphfsi/-l:libsphfsi.a/') \
+    cc spring_wall.c $(pkg-config --cflags --static --libs sphfsi |
+        sed 's/-lsphfsi/-l:libsphfsi.a/') \
         -o spring_wall || fail "pkg-config --static"
     moves pkg-config-static
     rm spring_wall
@@ -63,6 +66,7 @@ fi
 # Symbols: programs see sphfsi_... and nothing else.
 if command -v nm >/dev/null; then
     { nm -g --defined-only usr/lib/libsphfsi.a; nm -D --defined-only usr/lib/libsphfsi.so; } |
-        awk 'NF == 3 { n++; if ($3 !~ /^sphfsi_/) { print $3; bad = 1 } } END { exit bad || n < 40 }' ||
+        awk 'NF == 3 { n++; if ($3 !~ /^sphfsi_/) { print $3; bad = 1 } }
+             END { exit bad || n < 40 }' ||
         fail "names without sphfsi_ are seen, or none"
 fi

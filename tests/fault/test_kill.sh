@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# kill -9 at random moments, again and again, until the run is through: the same final bits, rows and
-# snapshots as one that was never killed. KILLS=50 for the long form (make faults).
+# kill -9 at random moments, again and again, until the run is through: the same final bits, rows
+# and snapshots as one that was never killed. KILLS=50 for the long form (make faults).
 set -u
 sphfsi=${SPHFSI:-./sphfsi}
 kills=${KILLS:-4}
@@ -70,6 +70,6 @@ while [ $killed -lt "$kills" ] || [ $finished = no ]; do
             ;;
     esac
 done
-echo "found: killed $killed times in $chains runs, $in_checkpoint times while a checkpoint was being" \
-    "written, $anew times before there was one; $failures differences"
+echo "found: killed $killed times in $chains runs, $in_checkpoint times while a checkpoint" \
+    "was being written, $anew times before there was one; $failures differences"
 [ $failures = 0 ] || exit 1

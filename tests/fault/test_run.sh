@@ -27,7 +27,7 @@ expect 1 'ledger_interval = 1e-12 s gives 2e+10 rows' "$case" --out "$dir/none" 
     --set output.ledger_interval=1e-12
 expect 1 'ledger_interval = 1e-11 s gives 1e+14 rows until 1000 s' "$case" --out "$dir/none" \
     --set output.ledger_interval=1e-11 --until 1000
-expect 1 'the run needs about 3.* steps of .* until end_time = 1e.09 s, more than the limit of 1e.10' \
+expect 1 'needs about 3.* steps of .* until end_time = 1e.09 s, more than the limit of 1e.10' \
     "$case" --out "$dir/none" --set end_time=1e9 --set output.ledger_interval=1 \
     --set output.probe_interval=1 --set output.snapshot_interval=1e6
 [ ! -e "$dir/none" ] || fail "wrong input made a folder"
@@ -97,7 +97,8 @@ before=$(missed "$dir/missed")
 [ "$before" -gt 0 ] || fail "no snapshot was missed"
 expect 0 'restart from' "$case" --out "$dir/missed" --restart --set output.snapshot_interval=1ms \
     --set output.snapshot_failure=go_on
-[ "$(missed "$dir/missed")" = "$before" ] || fail "missed: $before, restarted $(missed "$dir/missed")"
+[ "$(missed "$dir/missed")" = "$before" ] ||
+    fail "missed: $before, restarted $(missed "$dir/missed")"
 
 # --- signals ---
 still=tests/fault/still.cfg

@@ -64,7 +64,8 @@ class Bench:
 
     def report(self):
         """The text, what is wrong, and what stderr says."""
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()) as errors:
+        with contextlib.redirect_stdout(io.StringIO()), \
+            contextlib.redirect_stderr(io.StringIO()) as errors:
             wrong = validation_report.write_report(self.folder, {}, self.kept(), SPHFSI.version)
         return (self.folder / "validation.md").read_text(), wrong, errors.getvalue()
 
@@ -163,7 +164,8 @@ def test_interrupted(bench):
     interrupt = edit_summary(lambda s: s.update(exit_reason="interrupted", version=old))
     interrupt(folder)
     said, runner = bench.run(WAVE, any_version=True)
-    assert said.startswith(f"continues {WAVE}") and said.count("\n") == 1 and not runner.failed, said
+    assert said.startswith(f"continues {WAVE}") and said.count("\n") == 1 and not runner.failed, \
+        said
     assert json.loads((folder / "summary.json").read_text())["restarted_from"]
     interrupt(folder)
     for path in folder.glob("*.ckpt"):
@@ -196,9 +198,11 @@ def test_kept(bench):
     whole = archive.read_bytes()
     (bench.spec(WAVE).folder / "summary.json").write_text("{")
     said, _ = bench.run(WAVE, "store", keep=True)
-    assert f"{WAVE} is not kept: " in said and "not valid JSON" in said and archive.read_bytes() == whole
+    assert f"{WAVE} is not kept: " in said and "not valid JSON" in said and \
+        archive.read_bytes() == whole
     text, wrong, _ = bench.report()
-    assert not wrong and "finished (3)" in text and "what is kept of it stands instead" in text, wrong
+    assert not wrong and "finished (3)" in text and "what is kept of it stands instead" in text, \
+        wrong
     with zipfile.ZipFile(archive) as file:
         texts = {name: file.read(name).decode() for name in file.namelist()}
     texts["summary.json"] = json.dumps({**json.loads(texts["summary.json"]), "derived": {}})
@@ -223,9 +227,12 @@ def test_unforeseen(bench):
         text, wrong, errors = bench.report()
     finally:
         validation_checks.spin, validation_cases.plate, validation_report.balance = whole
-    assert "**Not reported: KeyError: 'lost'.**" in text and "| L/dp = 20 | *KeyError: 'lost'* |" in text
-    assert "| KeyError: 'lost' | **not judged** |" in text and f"| {WAVE} | *KeyError: 'lost'* |" in text
-    assert wrong and "KeyError: 'lost'" in wrong[0] and "Traceback" in errors and "fails" in errors, wrong
+    assert "**Not reported: KeyError: 'lost'.**" in text and \
+        "| L/dp = 20 | *KeyError: 'lost'* |" in text
+    assert "| KeyError: 'lost' | **not judged** |" in text and \
+        f"| {WAVE} | *KeyError: 'lost'* |" in text
+    assert wrong and "KeyError: 'lost'" in wrong[0] and "Traceback" in errors and \
+        "fails" in errors, wrong
     assert "finished (3)" in text
 
 

@@ -86,7 +86,8 @@ def test_before_a_run():
     plan = case.explain(threads=1)
     assert plan["particles"] == {"fluid": 100, "wall": 204, "solid": 45}, plan["particles"]
     assert "100 particles" in str(plan) and plan["cost"]["threads"] == 1
-    assert plan["time_step_bounds"][plan["time_step_bound"]] == min(plan["time_step_bounds"].values())
+    bounds = plan["time_step_bounds"]
+    assert bounds[plan["time_step_bound"]] == min(bounds.values())
     assert plan["parameters"]["solid"]["gate"]["poisson"] == 0.4
     assert any("2012" in line for line in case.cite()), case.cite()
 
@@ -106,7 +107,8 @@ def test_views():
     assert np.array_equal(fluid["velocity"][:, 0], fluid.vx)
     raises(sphfsi.InputError, "the nearest name is vx", fluid.__getitem__, "vxx")
     raises(AttributeError, "no field 'stress'", getattr, fluid, "stress")
-    assert np.isnan(simulation.probe("M1")[2:]).all() and np.isfinite(simulation.probe("M1")[:2]).all()
+    assert np.isnan(simulation.probe("M1")[2:]).all() and \
+        np.isfinite(simulation.probe("M1")[:2]).all()
     kept = x.copy()
     del simulation, fluid
     assert np.array_equal(x, kept)  # a view keeps what it shows
@@ -161,7 +163,8 @@ def test_runs():
     assert "%" in said.getvalue() and "t 0.02 s" in said.getvalue(), said.getvalue()
     raises(sphfsi.InputError, "runs/a", case.run, "runs/a")
     probes, ledger = run.probes(), run.ledger()
-    assert probes["time_s"][0] == 0 and len(probes["time_s"]) > 100 and "kinetic_J_per_m" in dir_of(ledger)
+    assert probes["time_s"][0] == 0 and len(probes["time_s"]) > 100 and \
+        "kinetic_J_per_m" in dir_of(ledger)
     assert dir_of(run.probes("M1")) == ["time_s", "M1_dx_m", "M1_dy_m"]
     raises(sphfsi.BadFile, "no column of a probe M7", run.probes, "M7")
     assert np.allclose(run.times, [0, 0.005, 0.01, 0.015, 0.02])
@@ -177,7 +180,8 @@ def test_runs():
                               run.snapshot(0.02).fluid.pressure)
         sphfsi.plot_fields([run, other], 0.01, field="velocity", out="two.png")
         sphfsi.plot_probes(["runs/a", "runs/b"], "M1_dx_m", out="two-probes.png")
-        assert Path("two.png").stat().st_size > 1000 and Path("two-probes.png").stat().st_size > 1000
+        assert Path("two.png").stat().st_size > 1000 and \
+            Path("two-probes.png").stat().st_size > 1000
         panels = [axes.get_ylabel() for axes in other.plot_probes().axes]
         assert panels == ["displacement (mm)"], panels
     raises(sphfsi.BadFile, "no fluid field speed", run.plot_fields, field="speed")

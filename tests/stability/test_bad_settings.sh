@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Settings that lead to a blow-up: refused, or accepted with a sentence that says what will go wrong.
+# Settings that lead to a blow-up: refused, or accepted with a sentence that says what will go
+# wrong.
 . tests/support/shell.sh
 
 # says STATUS WORDS CASE SETTINGS...: explaining the case ends so and says so.
@@ -23,13 +24,15 @@ says 1 'poisson' beam.cfg nu=0.6
 says 1 'is 1 particle thick' gate.cfg 'thickness=5 mm'
 says 0 'only 2 particles thick' gate.cfg 'thickness=10 mm'
 says 2 'fixed_step = .* s exceeds the solid.s stable step' beam.cfg 'numerics.fixed_step=0.07 ms'
-says 0 'fixed_step = 0.00025 s (C_CFL = 0.741) is above 0.6' column.cfg 'numerics.fixed_step=0.25 ms'
+says 0 'fixed_step = 0.00025 s (C_CFL = 0.741) is above 0.6' column.cfg \
+    'numerics.fixed_step=0.25 ms'
 says 0 'numerics.cfl = 0.5 is above 0.2' column.cfg integrator=verlet numerics.cfl=0.5
 says 0 'numerics.cfl = 0.5 is above 0.4' column.cfg integrator=symplectic numerics.cfl=0.5
 says 0 'numerics.cfl = 0.7 is above 0.6' column.cfg integrator=leapfrog numerics.cfl=0.7
 says 0 'has no clamp, and a .load. acts on it' free.cfg
 says 0 'has no clamp, and gravity acts on it' settle.cfg
-says 0 'than the kernel.s reach .* numerics.sides = one prevents that' gate.cfg numerics.h_over_dp=2 \
+says 0 'than the kernel.s reach .* numerics.sides = one prevents that' gate.cfg \
+    numerics.h_over_dp=2 \
     'thickness=15 mm'
 "$sphfsi" tests/stability/gate.cfg --set numerics.h_over_dp=2 --set 'thickness=15 mm' \
     --set numerics.sides=one --explain >"$dir/output" 2>&1
@@ -44,9 +47,11 @@ says 0 'shifting_speed = largest with gravity raises a free surface' column.cfg 
     water.shifting_speed=largest
 says 0 'is above 5' column.cfg water.shifting=10 water.shifting_speed=largest \
     numerics.cfl=0.6
-says 0 '.solid plate., 0.3 times as dense as .* numerics.fixed_step = 0.0001 s; use at most 8.27e-05 s' \
+says 0 \
+    '.solid plate., 0.3 times as dense .* numerics.fixed_step = 0.0001 s; use at most 8.27e-05 s' \
     thin.cfg integrator=leapfrog plate.density=300 numerics.fixed_step=1e-4
-says 0 'added_mass *8.265e-05 s .* <- limits the step' thin.cfg integrator=leapfrog plate.density=300
+says 0 'added_mass *8.265e-05 s .* <- limits the step' thin.cfg integrator=leapfrog \
+    plate.density=300
 says 1 'particles start in one cell of .* limit of 320' gate.cfg numerics.h_over_dp=2 \
     'thickness=100 mm' gate.dp=dp/3
 says 0 'unstable at any time step' beam.cfg beam.hourglass_form=printed beam.gradient=linear

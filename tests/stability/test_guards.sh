@@ -11,7 +11,8 @@ stopped() {
     local got=$?
     [ $got = 2 ] || fail "$name: exit status $got instead of 2"
     grep -q -- "$sentence" "$dir/output" || fail "$name: does not say '$sentence'"
-    [ "$(grep -c -- "$warning" "$dir/output")" = 1 ] || fail "$name: does not warn once of '$warning'"
+    [ "$(grep -c -- "$warning" "$dir/output")" = 1 ] ||
+        fail "$name: does not warn once of '$warning'"
     ls "$dir/$name"/*.ckpt >/dev/null 2>&1 || fail "$name: no checkpoint"
     [ -s "$dir/$name/fields.vtkhdf" ] || fail "$name: no snapshot"
     grep -q '"exit_reason": *"guard"' "$dir/$name/summary.json" || fail "$name: summary.json"
@@ -40,7 +41,8 @@ $tank
 CASE
 
 # Density: a wall that is driven into water which cannot give way.
-stopped density 'density deviates by' 'fluid particle [0-9]* at (.*) m has \(rho/rho0 - 1\|speed\)' <<CASE
+stopped density 'density deviates by' \
+    'fluid particle [0-9]* at (.*) m has \(rho/rho0 - 1\|speed\)' <<CASE
 scheme = paper
 dp = 1 cm
 end_time = 1

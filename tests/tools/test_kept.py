@@ -106,7 +106,8 @@ def test_version(bench):
     bench.rewrite("summary.json", lambda old: old.replace('"finished"', '"guard"'))
     bench.rewrite("measured.json", lambda old: "{}")
     halted, lines = bench.report()
-    assert "*failed at t = " in halted and f"unfinished or failed (1): {NAME}" in halted and not lines, lines
+    assert "*failed at t = " in halted and f"unfinished or failed (1): {NAME}" in halted and \
+        not lines, lines
     said, _ = bench.run()
     assert said == "", said
     found = {"0.0.1+old": ["a"], "1.0": ["b", "c"]}

@@ -157,7 +157,8 @@ def test_other_constants_are_judged_apart():
                                            (20, ["numerics.sides=both"], 82.416))]
     rows = [line for line in turek_hron.headline(kept) if "| uy amplitude |" in line]
     assert len(rows) == 2, rows
-    assert "20 (ramp=0.3 s, kick=1.2 m/s)" in rows[0] and "+5.0 % | 3 % | **missed**" in rows[0], rows
+    assert "20 (ramp=0.3 s, kick=1.2 m/s)" in rows[0] and "+5.0 % | 3 % | **missed**" in rows[0], \
+        rows
     assert "20 (numerics.sides=both)" in rows[1] and "+1.0 % | 3 % | met" in rows[1], rows
 
 

@@ -75,8 +75,8 @@ def relaxed_elastica(load, n=200):
         rest[0], slope[0, 0] = angle[0], 1
         for k in range(1, n + 1):
             right = angle[k + 1] if k < n else angle[n - 1]  # theta'(1) = 0
-            rest[k] = angle[k - 1] - 2 * angle[k] + right + step**2 * load * (1 -
-                                                                              s[k]) * np.cos(angle[k])
+            rest[k] = angle[k - 1] - 2 * angle[k] + right + \
+                step**2 * load * (1 - s[k]) * np.cos(angle[k])
             slope[k, k] = -2 - step**2 * load * (1 - s[k]) * np.sin(angle[k])
             slope[k, k - 1] += 1
             slope[k, min(k + 1, 2 * n - k - 1)] += 1

@@ -52,7 +52,8 @@ def check_case(page, case):
     page.wait(DONE, 300)
     assert state(page) == "finished", page.run("document.getElementById('problems').textContent")
     here, native = page.run("document.body.dataset.hash"), native_of(page)
-    assert here == native and len(here) == 16, f"{case}: {here} in the page, {native} of the native program"
+    assert here == native and len(here) == 16, \
+        f"{case}: {here} in the page, {native} of the native program"
     assert "the same bits" in page.run("document.getElementById('verdict').textContent")
     print(f"{case}: {here}, {page.run('document.body.dataset.seconds')} s")
 
@@ -141,7 +142,8 @@ def check_picture(page, folder):
     scene = np.asarray(Image.open(folder / "page.png").convert("RGB").crop(box), float)
     spread = scene.max(axis=2) - scene.min(axis=2)
     coloured = scene[spread > 40]
-    assert len(coloured) > 0.05 * spread.size, f"{len(coloured)} of {spread.size} pixels have a colour"
+    assert len(coloured) > 0.05 * spread.size, \
+        f"{len(coloured)} of {spread.size} pixels have a colour"
     assert len({tuple(c) for c in (coloured // 32).tolist()}) > 8, "the water has one colour only"
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Static analysis of src/: cppcheck, clang-tidy (.clang-tidy), gcc -fanalyzer. tools/dev/analyze.sh [FILE...]
-# Prints every finding that is not explained in place, by a suppression with its reason beside the line;
-# fails if there is one. A tool that is not there is named and passed over.
+# Static analysis of src/: cppcheck, clang-tidy (.clang-tidy), gcc -fanalyzer. tools/dev/analyze.sh
+# [FILE...] Prints every finding that is not explained in place, by a suppression with its reason
+# beside the line; fails if there is one. A tool that is not there is named and passed over.
 set -u
 cd "$(dirname "$0")/../.."
 files=("$@")
@@ -22,7 +22,8 @@ report() {
 }
 
 if command -v cppcheck >/dev/null; then
-    cppcheck --enable=warning,portability,performance --std=c11 --inline-suppr --quiet -Iinclude -Isrc \
+    cppcheck --enable=warning,portability,performance --std=c11 --inline-suppr --quiet -Iinclude \
+        -Isrc \
         --suppress=missingIncludeSystem --template='{file}:{line}: {message} [{id}]' "${files[@]}" \
         >"$findings" 2>&1
     report cppcheck "$(cppcheck --version | cut -d' ' -f2)"
@@ -40,11 +41,12 @@ else
     echo "clang-tidy is not there"
 fi
 
-# Its search for what is not set takes vectors that are filled item by item, and fields that only some laws
-# load, for unset; cppcheck and memcheck look for that.
+# Its search for what is not set takes vectors that are filled item by item, and fields that only
+# some laws load, for unset; cppcheck and memcheck look for that.
 if gcc -fanalyzer -E -x c /dev/null >/dev/null 2>&1; then
     for file in "${files[@]}"; do
-        gcc -fanalyzer -Wno-analyzer-use-of-uninitialized-value "${flags[@]}" -c -o /dev/null "$file" 2>&1
+        gcc -fanalyzer -Wno-analyzer-use-of-uninitialized-value "${flags[@]}" -c -o /dev/null \
+            "$file" 2>&1
     done | grep ': warning: ' >"$findings"
     report "gcc -fanalyzer" "$(gcc -dumpfullversion)"
 else

@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Fuzzes the readers with libFuzzer, ASan and UBSan: tools/dev/fuzz.sh [SECONDS for each target] [TARGET...]
-# Targets: case expr motion reference series checkpoint. Needs clang with its runtime (Debian: clang
-# libclang-rt-14-dev).
-# What was run is appended to tests/fuzz/counts.txt, from the fuzzer's own log; failing inputs land in
-# build/fuzz/found. Found inputs grow in build/fuzz/; KEEP=1 adds those that reach new code to the corpus,
-# tests/fuzz/corpus.tar.gz, whose bytes depend on the inputs only.
+# Fuzzes the readers with libFuzzer, ASan and UBSan: tools/dev/fuzz.sh [SECONDS for each target]
+# [TARGET...] Targets: case expr motion reference series checkpoint. Needs clang with its runtime
+# (Debian: clang libclang-rt-14-dev).
+# What was run is appended to tests/fuzz/counts.txt, from the fuzzer's own log; failing inputs land
+# in build/fuzz/found. Found inputs grow in build/fuzz/; KEEP=1 adds those that reach new code to
+# the corpus, tests/fuzz/corpus.tar.gz, whose bytes depend on the inputs only.
 set -eu
 cd "$(dirname "$0")/../.."
 if ! command -v clang >/dev/null; then
-    echo "fuzz: clang and its runtime are missing; on Debian: sudo apt-get install clang libclang-rt-14-dev"
+    echo "fuzz: clang and its runtime are missing; on Debian:" \
+        "sudo apt-get install clang libclang-rt-14-dev"
     exit 1
 fi
 seconds=${1:-60}
@@ -54,7 +55,8 @@ for target in "${targets[@]}"; do
     length=4096 mutator=()
     [ "$target" != checkpoint ] || length=8192 mutator=(tests/fuzz/mutate.c)
     clang "${flags[@]}" -fsanitize=$sanitize,fuzzer -DTARGET="fuzz_$target" \
-        -Wl,--wrap=scene_sample -o "$program" tests/fuzz/entry.c "${mutator[@]}" "${objects[@]}" $libs -lm
+        -Wl,--wrap=scene_sample -o "$program" tests/fuzz/entry.c "${mutator[@]}" "${objects[@]}" \
+            $libs -lm
     mkdir -p "$build/work-$target"
     result=0
     "$program" -max_total_time="$seconds" -max_len=$length -timeout=20 -rss_limit_mb=2048 \
@@ -63,14 +65,16 @@ for target in "${targets[@]}"; do
     [ $result = 0 ] || status=1
     count=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$target.log")
     [ -s $counts ] || echo "# target executions seconds exit_status version compiler date" >$counts
-    echo "$target ${count:-0} $seconds $result $version $compiler $(date +%Y-%m-%d)" | tee -a $counts
+    echo "$target ${count:-0} $seconds $result $version $compiler $(date +%Y-%m-%d)" |
+        tee -a $counts
     if [ "${KEEP:-}" ]; then
         "$program" -merge=1 -timeout=20 "$build/corpus/$target" "$build/work-$target" \
             >"$build/$target-merge.log" 2>&1 || status=1
     fi
 done
 if [ "${KEEP:-}" ]; then
-    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=go-w,u+rw -C $build -cf - corpus |
+    tar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=go-w,u+rw -C $build -cf \
+        - corpus |
         gzip -9n >$corpus
 fi
 ls "$build/found"

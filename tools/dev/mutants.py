@@ -336,7 +336,8 @@ def counted(results, name="verdict"):
     """(found, of so many that are not equivalent, share in words)"""
     count = Counter(r[name] for r in results)
     real = count["found"] + count["not found"] + count["not run"]
-    return count["found"], real, f"{100 * count['found'] / real:.1f} %" if real else "an unknown share"
+    return count["found"], real, f"{100 * count['found'] / real:.1f} %" if real \
+        else "an unknown share"
 
 
 def samples(results):

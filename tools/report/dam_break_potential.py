@@ -25,12 +25,13 @@ from pathlib import Path
 
 import numpy as np
 
-TABLE = Path(__file__).resolve().parents[2] / "cases" / "reference" / "dam_break_front_potential.csv"
+ROOT = Path(__file__).resolve().parents[2]
+TABLE = ROOT / "cases" / "reference" / "dam_break_front_potential.csv"
 CORNER = 0.02
 END, ROWS = 1.8, 36
 HEAD = """\
-# COMPUTED: front of a dam break on a dry bed, x/H against t sqrt(g/H), x from the wall behind the column of
-# H x H. Potential flow, free at t = 0: tools/report/dam_break_potential.py.
+# COMPUTED: front of a dam break on a dry bed, x/H against t sqrt(g/H), x from the wall behind the
+# column of H x H. Potential flow, free at t = 0: tools/report/dam_break_potential.py.
 # {error}
 time_nd,front_nd
 """

@@ -150,7 +150,8 @@ def judge(row):
     """`passes`, `gains`, `stopped` or `left out`."""
     if row["result"] not in ("finished", "stopped"):
         return "left out"
-    return "stopped" if row["result"] == "stopped" else "gains" if row["in_run"] > LIMIT else "passes"
+    return "stopped" if row["result"] == "stopped" else "gains" if row["in_run"] > LIMIT \
+        else "passes"
 
 
 def grid_size():

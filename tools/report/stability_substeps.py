@@ -65,7 +65,8 @@ def motion(case, settings):
 def difference(one, other):
     """Root mean square of the distance of two motions, m."""
     times = one.keys() & other.keys()
-    return float(f"{math.sqrt(sum(math.dist(one[t], other[t])**2 for t in times) / len(times)):.3g}")
+    square = sum(math.dist(one[t], other[t])**2 for t in times) / len(times)
+    return float(f"{math.sqrt(square):.3g}")
 
 
 def motions():

@@ -3,7 +3,7 @@
 import csv
 import io
 
-from common import np
+from common import fill, np
 from study_points import SCENES
 from study_results import CROSSING, across, cost, finished, main_error, percent
 from study_tables import table
@@ -13,15 +13,7 @@ from study_tables import table
 # point.
 DRAFT_WORSE, FINE_COST, FINE_ERROR, WORST = 1.1, 4, 0.9, 1.5
 
-RULE = f"""Each number is a geometric mean over all cases of the kind: the cost or the main error over that
-of the defaults at the same resolution. Settings that choose a model instead of numerics (viscosity,
-diffusion, forces of the solid) are left to the case.
-
-* `draft` is the cheapest setting with at most {DRAFT_WORSE:g} times the error.
-* `fine` is the most exact setting on the front that costs at most {FINE_COST:g} times as much. Its
-  error must be at most {FINE_ERROR:g} times that of the defaults.
-* Neither may fail, or be more than {WORST:g} times worse, in any point. If no setting qualifies, the
-  preset is the defaults."""
+RULE = fill("accuracy_rule.md", draft=DRAFT_WORSE, cost=FINE_COST, error=FINE_ERROR, worst=WORST)
 
 
 def mean(values):

@@ -182,7 +182,8 @@ def forecast_section(path):
                 f"{machine_text(data['machine'])}.\n\n"
                 f"{forecast_table(data)}")
     except (ValueError, KeyError, TypeError) as problem:
-        raise BadFile(f"{path}: not the forecasts of tools/report/forecast.py ({problem})") from None
+        raise BadFile(f"{path}: not the forecasts of tools/report/forecast.py "
+                      f"({problem})") from None
 
 
 def write(data, out, evidence=None):

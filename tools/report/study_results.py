@@ -36,7 +36,8 @@ def seconds(p, key):
     """Median and spread over the repeats."""
     values = sorted(t[key] for t in p["timing"])
     middle = np.median(values)
-    return f"{middle:.3g}" if len(values) == 1 else f"{middle:.3g} ({values[0]:.3g}-{values[-1]:.3g})"
+    return f"{middle:.3g}" if len(values) == 1 \
+        else f"{middle:.3g} ({values[0]:.3g}-{values[-1]:.3g})"
 
 
 def main_error(case):
@@ -130,7 +131,8 @@ class Study:
     def ratios(self, p, error):
         """Error and cost over those of the defaults at the same resolution; None where unknown."""
         base = self.base_at(p["case"], p["level"])
-        if not base or not finished(p) or not p["errors"].get(error) or not base["errors"].get(error):
+        if not base or not finished(p) or not p["errors"].get(error) or \
+            not base["errors"].get(error):
             return None
         return p["errors"][error] / base["errors"][error], cost(p) / cost(base)
 

@@ -176,9 +176,9 @@ def knob_rows(study, case, error):
             cells, gains = {}, []
             for p in points:
                 ratios = study.ratios(p, error)
+                zero = f" {CROSSING}" if finished(p) and study.crosses(p, error) else ""
                 cells[p["level"]] = f"**{p['outcome']}**" if not finished(p) else \
-                    f"{ratios[0]:.2f} / {ratios[1]:.2f}{f' {CROSSING}' if study.crosses(p, error) else ''}" \
-                    if ratios else "-"
+                    f"{ratios[0]:.2f} / {ratios[1]:.2f}{zero}" if ratios else "-"
                 gains.append(study.gain(p, error))
             gains = [g for g in gains if g]
             yield (float(np.exp(np.mean(np.log(gains)))) if gains else 0, knob, value, cells,

@@ -319,7 +319,8 @@ def judged(best, quantity, part, limit):
     """What the finest run shows of a target, in words: its error, and whether it is met."""
     if part == "cost":
         used = best["cpu_seconds"] / 3600
-        return f"{used:.2g} core-hours | {limit} core-hours | {'met' if used <= limit else '**missed**'}"
+        word = "met" if used <= limit else "**missed**"
+        return f"{used:.2g} core-hours | {limit} core-hours | {word}"
     found, wanted = best["series"][quantity], REFERENCE[best["case"]][quantity]
     if found["state"] == "periodic" or found["state"].startswith("steady") and part == "mean":
         size = wanted[("mean", "amplitude", "frequency").index(part)]

@@ -317,7 +317,8 @@ def dry_target(report, case, *names):
     for name in names:
         def dry(name=name):
             bodies, walls, share = pressed_in(report.run(name))
-            return f"{bodies} in bodies, {walls} in walls, {100 * share:.0f} % of the snapshots", share == 0
+            return f"{bodies} in bodies, {walls} in walls, {100 * share:.0f} % of the snapshots", \
+                share == 0
         report.try_target(case, f"no water pressed into bodies or walls, {BY_NAME[name].words}",
                           dry)
 

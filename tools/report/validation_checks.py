@@ -275,7 +275,8 @@ def impact(report):
         name = report.first(f"impact-60-{smoothing}", f"impact-30-{smoothing}")
         found, short, row = (float(curve(report.run(name), "P1", n)[1].max()) for n in (5, 2, 1))
         low = sensors[0][2]
-        words = f"{found:.2f} rho g H, measured {low:g} ({short:.2f} over 2 ms, {row:.2f} over 1 ms)"
+        words = (f"{found:.2f} rho g H, measured {low:g} ({short:.2f} over 2 ms, "
+                 f"{row:.2f} over 1 ms)")
         return words, abs(found / low - 1) <= 0.25
     for smoothing, words in kernels:
         report.try_target("dry dam break", IMPACT.format(words), lambda h=smoothing: target(h))
@@ -300,7 +301,8 @@ def beam(report):
         late = time >= 0.8 * time[-1]  # two periods
         x, y = metrics.elastica(number(run, "load"))
         off = np.hypot(dx[late].mean() / length + 1 - x, dy[late].mean() / length - y)
-        return dx[late].mean() / length, dy[late].mean() / length, x - 1, y, off, np.ptp(dy[late]) / length
+        return dx[late].mean() / length, dy[late].mean() / length, x - 1, y, off, \
+            np.ptp(dy[late]) / length
 
     def cells(run):
         dx, dy, x, y, off, left = measure(run)

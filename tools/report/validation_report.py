@@ -167,7 +167,8 @@ class Report:
             if len(full) < len(runs) and path.is_file():
                 return self.standing(path, caption)
             if not full:
-                return ["*No figure: the snapshots are not kept, and it has not been drawn before.*", ""]
+                return ["*No figure: the snapshots are not kept, and it has not been drawn "
+                        "before.*", ""]
             runs = full
         done = subprocess.run([sys.executable, str(TOOLS / f"{tool}.py"),
                                *(str(run.folder) for run in runs),

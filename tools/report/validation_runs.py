@@ -341,7 +341,8 @@ class Runner:
         if reason not in ENDED and not list(spec.folder.glob("*.ckpt")):
             return "other", "it was interrupted and has no checkpoint"
         if not self.any_version and version != self.program.version:
-            return "other", f"it is by version {version}, not {self.program.version} (--any-version takes it)"
+            return "other", \
+                f"it is by version {version}, not {self.program.version} (--any-version takes it)"
         if reason not in ENDED:
             return "interrupted", ""
         try:

@@ -80,7 +80,8 @@ def incline(run):
     norm = G / math.sqrt(1 + slope ** 2)
     table = run.table()
     start = run.constants["settle"] + 0.5 * run.constants["rise"]
-    return norm, slope, friction, table["time_s"], table["block_cx_m"] - table["block_cx_m"][0], start
+    return norm, slope, friction, table["time_s"], table["block_cx_m"] - table["block_cx_m"][0], \
+        start
 
 
 def slide_of(limit):

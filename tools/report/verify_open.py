@@ -12,7 +12,8 @@ The scenes are cases/verify/open_*.cfg. The figures are kept in docs/open_verifi
 import math
 import tempfile
 
-from common import ROOT, BadFile, CaseRun, case_of, cell, judged, np, number, run_scenes, runfiles, table
+from common import ROOT, BadFile, CaseRun, case_of, cell, judged, np, number, run_scenes, \
+    runfiles, table
 from sphfsi.snapshots import KINDS, Snapshots
 
 REPORT = ROOT / "docs" / "open_verification.md"
