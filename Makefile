@@ -76,7 +76,7 @@ COMPILE := $(CC) $(COMMON) $(OPT-$(CONFIG)) $(MARCH) $(OMP) $(WARN) -Iinclude -I
 LINK     = $(COMPILE) $(LDFLAGS) -o $@ $(filter %.o %.a,$^) $(HDF5_LIBS) -lm
 # Dirty is what the program is made of, not a report that was written anew.
 DESCRIBE := $(shell git describe --always --exclude='*' 2>/dev/null && \
-                    { test -z "$$(git status --porcelain -- src include data cases/templates \
+                    { test -z "$$(git status --porcelain -- src include cases/templates \
                                     Makefile CMakeLists.txt)" || \
                       echo -dirty; })
 DESCRIBE := $(subst $() -dirty,-dirty,$(DESCRIBE))
@@ -93,7 +93,7 @@ PROGRAM := $(if $(filter build/release,$(B)),sphfsi,$(B)/sphfsi)
 LIB_OBJ := $(patsubst %.c,$(B)/%.o,$(filter-out src/app/main.c,$(wildcard src/*/*.c))) \
            $(B)/src/app/embedded.o
 # Texts that the program carries.
-EMBEDDED := $(sort $(wildcard cases/templates/*.cfg data/*))
+EMBEDDED := $(sort $(wildcard cases/templates/*.cfg src/app/data/*))
 BENCHES := $(patsubst bench/%.c,$(B)/bench_%,$(wildcard bench/*.c))
 SUPPORT := $(patsubst %.c,$(B)/%.o,$(wildcard tests/support/*.c))
 # Tests of one folder of src/ each, and of the tools.

@@ -20,7 +20,7 @@ flags="-std=gnu11 -O2 -DNDEBUG -ffp-contract=off -fno-math-errno -fno-trapping-m
 -Wno-format-truncation -Iinclude -Isrc -Itests/support -isystem $unity
 -DUNITY_INCLUDE_DOUBLE -DSPHFSI_VERSION=\"neon\""
 rm -f $out/lib.a
-sh tools/embed.sh $out/embedded.c cases/templates/*.cfg data/*
+sh tools/embed.sh $out/embedded.c cases/templates/*.cfg src/app/data/*
 for file in src/*/*.c $out/embedded.c tests/support/*.c; do
     if [ "$file" = src/app/main.c ] ||
         grep -Eq '<hdf5.h>|"output/snapshot' "$file"; then continue; fi

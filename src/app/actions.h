@@ -59,7 +59,7 @@ enum err inspect_file(const char *path, const struct sphfsi_options *o, struct d
 /* Prints every section and key with type, unit, default, range, meaning and example, in Markdown. */
 void manual_keys(const struct sphfsi_options *o);
 
-/* Writes the example of a key to `text`: from data/key_examples.cfg, or its default; "" if it has none. */
+/* Writes the example of a key to `text`: from src/app/data/key_examples.cfg, or its default; "". */
 struct param;
 void manual_example(const struct param *p, char *text, size_t size);
 

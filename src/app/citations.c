@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * The publications of the methods that a scene uses: data/citations.txt. */
+ * The publications of the methods that a scene uses: src/app/data/citations.txt. */
 #include "app/embedded.h"
 #include "app/actions.h"
 #include "case/effects.h"
@@ -26,7 +26,7 @@ static bool probes_material(const struct scene *scene)
 static void say_source(const char *key, const struct sphfsi_options *o)
 {
     const size_t length = strlen(key);
-    const char *line = embedded_text("data/citations.txt");
+    const char *line = embedded_text("src/app/data/citations.txt");
     while (strncmp(line, key, length) != 0 || line[length] != ':') line += strcspn(line, "\n") + 1;
     line += length + 2;
     session_say(o, "%.*s", (int)strcspn(line, "\n"), line);

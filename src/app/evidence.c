@@ -19,7 +19,7 @@ static void read_field(const char *line, int k, char field[EVIDENCE_TEXT])
 
 const char *evidence_first(void)
 {
-    const char *text = embedded_text("data/evidence.csv");
+    const char *text = embedded_text("src/app/data/evidence.csv");
     while (*text == '#') text = csv_next_line(text);
     return csv_next_line(text); /* behind the names of the columns */
 }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * What the accuracy study measured: data/evidence.csv, which `make accuracy` writes. */
+ * What the accuracy study measured: src/app/data/evidence.csv, which `make accuracy` writes. */
 #ifndef SPHFSI_APP_EVIDENCE_H
 #define SPHFSI_APP_EVIDENCE_H
 

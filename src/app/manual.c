@@ -73,7 +73,8 @@ void manual_example(const struct param *p, char *text, size_t size)
     const char *const word = section_table[p->section].word;
     const size_t length = strlen(word);
     bool inside = p->section == SECTION_top;
-    for (const char *line = embedded_text("data/key_examples.cfg"), *next; line; line = next) {
+    for (const char *line = embedded_text("src/app/data/key_examples.cfg"), *next; line;
+         line = next) {
         const int end = (int)strcspn(line, "\n");
         next = line[end] ? line + end + 1 : NULL;
         if (line[0] == '[')

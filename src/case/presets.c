@@ -37,7 +37,7 @@ static const struct preset {
     {true, SCENE_SOLID, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
     {true, SCENE_COUPLED, SCHEME_STANDARD, ANY, SECTION_solid, "law", LAW_NEO_HOOKEAN},
     /* accuracy: `standard` has no rows. With fluid no setting of the study was reliably more accurate:
-     * there `fine` means a smaller dp. What each row buys: data/evidence.csv, measured by the study of
+     * there `fine` means a smaller dp. What each row buys: src/app/data/evidence.csv, measured by the study of
      * tools/report/accuracy.toml, where [preset] names the points that stand for these rows. */
     {false, SCENE_FLUID, ACCURACY_DRAFT, INTEGRATOR_LEAPFROG, SECTION_numerics, "cfl", 0.5},
     {false, SCENE_COUPLED, ACCURACY_DRAFT, ANY, SECTION_numerics, "sound_factor", 5},

@@ -32,7 +32,7 @@ flags=(-std=gnu11 -O2 -g -ffp-contract=off -fno-math-errno -fno-omit-frame-point
 # Objects are made anew when a source, or a header or a table, is newer.
 newest=$(ls -t src/*/*.h src/*/*.def tests/support/*.h tools/dev/fuzz.sh | head -n 1)
 objects=()
-sh tools/embed.sh $build/embedded.c cases/templates/*.cfg data/*
+sh tools/embed.sh $build/embedded.c cases/templates/*.cfg src/app/data/*
 for file in src/*/*.c $build/embedded.c tests/support/fuzz.c; do
     [ $file != src/app/main.c ] || continue
     object=$build/$(echo "$file" | tr / _).o

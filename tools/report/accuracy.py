@@ -183,7 +183,7 @@ def main():
     args.data = args.data or (own if args.study.resolve() == STUDY
                               else args.study.with_name("results.json"))
     ours = args.data.resolve() == own
-    evidence = ROOT / "data" / "evidence.csv" if ours else None
+    evidence = ROOT / "src" / "app" / "data" / "evidence.csv" if ours else None
     if args.report:
         return study_report.write(args.data, args.out, evidence)
     study = read_study(args.study)

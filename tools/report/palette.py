@@ -46,11 +46,11 @@ def indexed(image, size=256):
     return small
 
 
-def shrink(path, texts, width=1500):
+def shrink(path, texts=None, width=1500):
     """Makes a picture file small: at most `width` pixels wide, from a palette. `texts` are written
     into it, {name: text}."""
     words = PngImagePlugin.PngInfo()
-    for name, text in texts.items():
+    for name, text in (texts or {}).items():
         words.add_text(name, text)
     with Image.open(path) as image:
         image = image.convert("RGB")

@@ -10,6 +10,7 @@ from pathlib import Path
 from matplotlib.ticker import LogFormatter
 
 from common import COLOURS, ROOT, WIDTH, BadFile, np, plt, fill, read_text, save
+from palette import shrink
 from study_points import SCENES
 from study_presets import fronts, preset_table, write_evidence
 from study_results import (CROSSING, Study, across, against, cost, finished, machine_text,
@@ -93,6 +94,7 @@ def draw_case(study, case, path):
     figure.suptitle(study.cases[case].get("title", case), fontsize=10)
     figure.tight_layout()
     save(figure, path)
+    shrink(path)
     plt.close(figure)
 
 

@@ -23,6 +23,8 @@ from pathlib import Path
 
 import numpy as np
 
+from palette import shrink
+
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases" / "turek_hron"
 KEPT = ROOT / "docs" / "turek_hron.json"
@@ -426,7 +428,9 @@ def pictures(run):
         axis.set_ylabel(f"{name}, {UNIT[name]}")
     axes[-1].set_xlabel("time, s")
     name = Path(run).name.replace("-", "_")
-    fig.savefig(ROOT / "docs" / "img" / f"turek_hron_{name}.png", dpi=80, bbox_inches="tight")
+    path = ROOT / "docs" / "img" / f"turek_hron_{name}.png"
+    fig.savefig(path, dpi=80, bbox_inches="tight")
+    shrink(path)
 
 
 def main():
