@@ -140,10 +140,8 @@ SPHFSI_INLINE void rates_of_cluster(const struct fluid *f, struct particles *p, 
     for (int row = 0; row < ROWS; row++) a[row] = fluid_at(sides, own + row * GROUPS, k, fx);
     struct cluster_sums s = {.approach = top->approach};
     sum_fluid(&neighbours[KIND_FLUID], a, k, fx, chunk, &s);
-    if (!(neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n)) {
-        if (FX_ENERGY_ACCOUNT && p->body_power)
-            store_four(p->body_power + i, (four_double){0}, count);
-    } else if (FX_ENERGY_ACCOUNT && f->finds_body_power) {
+    const bool near_bodies = neighbours[KIND_WALL].n || neighbours[KIND_SOLID].n;
+    if (FX_ENERGY_ACCOUNT && near_bodies && f->finds_body_power) {
         find_body_power(f, p, i, count, neighbours, a, k, fx, &s);
     } else {
         for (int kind = KIND_WALL; kind < KIND_COUNT; kind++)
