@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * Inside of the reader of case files: what its files share. Others use case/scene.h.
  *
- * The format. Lines of `key = value`, `[section]` or `[section NAME]`, and comments from # to the end
- * of the line. Keys before the first section are the top of the file. [constants] names free numbers;
- * a constant may use others, in any order, and the numbers at the top. Which keys there are, their
- * units, ranges and defaults: case/params.def. Values by type:
+ * The format. Lines of `key = value`, `[section]` or `[section NAME]`, and comments from # to the
+ * end of the line. Keys before the first section are the top of the file. [constants] names free
+ * numbers; a constant may use others, in any order, and the numbers at the top. Which keys there
+ * are, their units, ranges and defaults: case/params.def. Values by type:
  *
  *   number       arithmetic with units, functions, constants: case/expr.h
  *   vector       two numbers with a comma between them
@@ -16,8 +16,8 @@
  *                unite (`minus` regions are taken out of all of them)
  *
  * `like = NAME` takes the values, but not the regions, of an earlier section of the same kind as
- * defaults. --set key=value and --set section.key=value replace an entry, or add it, before anything
- * is evaluated; the section is NAME, `kind NAME`, or the word of an unnamed section. */
+ * defaults. --set key=value and --set section.key=value replace an entry, or add it, before
+ * anything is evaluated; the section is NAME, `kind NAME`, or the word of an unnamed section. */
 #ifndef SPHFSI_CASE_CASE_H
 #define SPHFSI_CASE_CASE_H
 
@@ -137,7 +137,8 @@ enum err case_shape(struct reader *r, const struct entry *e, struct shape_list *
 enum err case_value(struct reader *r, const struct entry *e, const struct param *p, void *section)
     SPHFSI_CHECKED;
 
-/* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case wins. */
+/* What `scheme` and `accuracy` choose stands in for the defaults, so that a key of the case
+ * wins. */
 void case_apply_presets(struct reader *r);
 
 /* case/check_effects.c: effects that need or exclude each other, keys without their effect. */
@@ -145,7 +146,8 @@ enum err case_check_effects(struct reader *r) SPHFSI_CHECKED;
 /* case/check.c: checks that involve several values. Those whose values depend on a problem already
  * stored are left out. */
 enum err case_check(struct reader *r) SPHFSI_CHECKED;
-/* A name that no section has; `also`: another kind of section that may be meant; the same kind: none. */
+/* A name that no section has; `also`: another kind of section that may be meant; the same kind:
+ * none. */
 enum err case_no_section(struct reader *r, int line, const char *what, const char *given,
                          enum section_id kind, enum section_id also);
 /* case/check_motion.c */
@@ -157,8 +159,8 @@ enum err case_check_output(struct reader *r) SPHFSI_CHECKED;
 /* case/check_probes.c */
 enum err case_check_probes(struct reader *r) SPHFSI_CHECKED;
 
-/* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place of
- * the key, or with the table's name and line. The caller closes `csv`, also after a failure. */
+/* case/table.c: opens the text table `name` given by a key of a line. Messages begin with the place
+ * of the key, or with the table's name and line. The caller closes `csv`, also after a failure. */
 struct csv;
 enum err table_open(const struct scene *scene, struct csv *csv, const char *name, int line,
                     const char *key, struct diag *d) SPHFSI_CHECKED;

@@ -7,8 +7,8 @@
 
 enum { NAME_TEXT = 2 * SCENE_NAME };
 
-/* What goes together and what does not: the one calls for the other, which the case must name, or not
- * both. */
+/* What goes together and what does not: the one calls for the other, which the case must name, or
+ * not both. */
 static const struct rule {
     enum effect effect;
     enum { NEEDS, EXCLUDES } verb;
@@ -28,8 +28,8 @@ static const struct rule {
     {EFFECT_RELAX, EXCLUDES, EFFECT_OUTFLOW, "flow through a boundary is no state of rest"},
 };
 
-/* A key that means nothing without its effect: refused where the effect is off and the key has a value
- * other than its default. */
+/* A key that means nothing without its effect: refused where the effect is off and the key has a
+ * value other than its default. */
 static const struct owned {
     enum section_id section;
     const char *key;

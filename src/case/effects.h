@@ -38,8 +38,8 @@ enum {
 #undef EFFECT
 };
 
-/* PAIR_x: FX_x of an effect that has a law in the pair sums by the column `pairs`. PAIR_EFFECTS: all of
- * them; SURFACE_EFFECTS: those of walls and structures. */
+/* PAIR_x: FX_x of an effect that has a law in the pair sums by the column `pairs`. PAIR_EFFECTS:
+ * all of them; SURFACE_EFFECTS: those of walls and structures. */
 enum {
 #define PAIR_NONE(name)
 #define PAIR_WITH_FLUID(name) PAIR_##name = FX_##name,
@@ -65,9 +65,9 @@ enum {
 #undef EFFECT
 };
 
-/* The effects of a pair sum, a type of its own: FX_x cannot be tested in it, and PAIR_HAS(set, x) does
- * not compile unless the column `pairs` has x. So PAIR_EFFECTS masks no law. That no bit is without a
- * law is tested in tests/agree/test_kernels.c. */
+/* The effects of a pair sum, a type of its own: FX_x cannot be tested in it, and PAIR_HAS(set, x)
+ * does not compile unless the column `pairs` has x. So PAIR_EFFECTS masks no law. That no bit is
+ * without a law is tested in tests/agree/test_kernels.c. */
 struct pair_set {
     effect_set fx;
 };

@@ -42,7 +42,8 @@ static double way_between(const struct scene_motion *m, int c, double from, doub
            9;
 }
 
-/* Rows of the way at equal times until the end of the case, so that it is a function of time alone. */
+/* Rows of the way at equal times until the end of the case, so that it is a function of time
+ * alone. */
 static enum err load_way(struct scene *s, const struct scene_motion *m, struct scene_table *table,
                          struct diag *d)
 {

@@ -182,8 +182,8 @@ bool case_name(void *context, const char *name, struct quantity *q, char why[EXP
     return false;
 }
 
-/* For the end of a message about quantities that do not fit: a --set that leaves out the unit which a
- * constant has in the file; or "". */
+/* For the end of a message about quantities that do not fit: a --set that leaves out the unit which
+ * a constant has in the file; or "". */
 static const char *unit_left_out(struct reader *r, char text[300])
 {
     for (int k = 0; k < r->n_constants; k++) {

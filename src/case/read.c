@@ -142,8 +142,8 @@ static void drop_rivals(struct reader *r, int section)
     }
 }
 
-/* `like` copies no regions: a copy of a clamped body that has neither a clamp of its own nor a bond moves
- * freely. */
+/* `like` copies no regions: a copy of a clamped body that has neither a clamp of its own nor a bond
+ * moves freely. */
 static void warn_of_lost_clamp(struct reader *r, int section, const struct entry *like)
 {
     const struct case_section *cs = &r->sections[section];

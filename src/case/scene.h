@@ -6,8 +6,8 @@
 
 #include "base/base.h"
 
-/* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0, and
- * |rho/rho0 - 1|. */
+/* Above these the fluid is no longer weakly compressible, and a warning is given: speed over c0,
+ * and |rho/rho0 - 1|. */
 #define SPEED_WARNING 0.3
 #define DENS_WARNING 0.1
 
@@ -34,7 +34,8 @@ struct number_list {
     double *value;
 };
 
-/* Up to two expressions in x and y, or in x, y and t, or one in t; see case/expr.h. NULL: not given. */
+/* Up to two expressions in x and y, or in x, y and t, or one in t; see case/expr.h. NULL: not
+ * given. */
 struct expr;
 struct scene_expr {
     struct expr *e[2];
@@ -149,8 +150,7 @@ struct scene_points {
     double *x, *y;
     int32_t *body;    /* index of the section among those of its kind */
     uint8_t *clamped; /* solids: 1 if a clamp holds the particle; otherwise NULL */
-    int32_t *
-        open; /* fluid: number of the open boundary whose buffer it belongs to, from 1, or 0; or NULL */
+    int32_t *open; /* fluid: the open boundary, from 1, whose buffer it belongs to, or 0; or NULL */
 };
 
 /* The lattice that a region is sampled on. Cell (i, j) has its centre at origin + ((i, j) + 1/2)
@@ -356,7 +356,8 @@ const struct scene_contact *scene_contact_of(const struct scene *s, int a, int b
  * scheme. */
 double scene_contact_gap(const struct scene *s, const struct scene_contact *c);
 
-/* The k-th name of a list with commas between them, without blanks around it; false: there are fewer. */
+/* The k-th name of a list with commas between them, without blanks around it; false: there are
+ * fewer. */
 bool scene_listed(const char *list, int k, char name[SCENE_TEXT]);
 
 /* The two names of `a, b`; false: the text has another form. */
@@ -365,8 +366,8 @@ bool scene_pair(const char *text, char name[2][SCENE_TEXT]);
 /* FILE:LINE, with a very long path shortened; 0: --set; LINE_NONE: FILE. */
 enum { LOCATION_TEXT = 300, LINE_NONE = -1 };
 void scene_location(const struct scene *s, int line, char place[LOCATION_TEXT]);
-/* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. For that of a key see
- * scene_line in case/params.h. */
+/* A warning, and an ERR_INPUT by diag_add, that begin with the place of a line. For that of a key
+ * see scene_line in case/params.h. */
 void warn_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)
     SPHFSI_PRINTF(4, 5);
 enum err fail_at(struct diag *d, const struct scene *scene, int line, const char *format, ...)

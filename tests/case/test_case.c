@@ -92,7 +92,8 @@ static void test_pairs_of_names(void)
         TEST_ASSERT_FALSE_MESSAGE(scene_pair(bad[k], name), bad[k]);
 }
 
-/* The buffer is as deep as the kernel reaches and one particle more: h = 1.35 dp needs four of them. */
+/* The buffer is as deep as the kernel reaches and one particle more: h = 1.35 dp needs four of
+ * them. */
 static void test_depth_of_an_open_boundary(void)
 {
     parse("dp = 1 mm\nend_time = 1 s\n[fluid w]\nshape = box 0, 0, 20 mm, 20 mm\n"
@@ -189,8 +190,8 @@ static void test_scheme(void)
     TEST_ASSERT_EQUAL_INT(MASS_EQUAL, scene.fluid[0].particle_mass);
 }
 
-/* A key that the case gives wins, and leaves no other key of the scheme in the way; the effective case, which
- * gives them all, is the same scene. */
+/* A key that the case gives wins, and leaves no other key of the scheme in the way; the effective
+ * case, which gives them all, is the same scene. */
 static void test_a_key_wins_over_the_scheme(void)
 {
     parse(TOP "[numerics]\nh_over_dp = 1.6\nsolid_h_over_dp = 1.8\n" WATER

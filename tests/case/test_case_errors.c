@@ -490,8 +490,8 @@ static void refuses_all(const char *text, int n_sets, const char *const *sets, c
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
 
-/* Sorted by line, each once, and nothing that only follows from another: H and `b` are known to be lost,
- * poisson may be what is misspelt, young is given. */
+/* Sorted by line, each once, and nothing that only follows from another: H and `b` are known to be
+ * lost, poisson may be what is misspelt, young is given. */
 static void test_all_problems_of_a_case_are_reported(void)
 {
     static const char *const sets[] = {"output.probe_intervall=1"};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Cases at the limits of what is read: lengths, depths and counts, tables, values that only together are
- * wrong. */
+ * Cases at the limits of what is read: lengths, depths and counts, tables, values that only
+ * together are wrong. */
 #include "case/params.h"
 #include "case/scene.h"
 #include "check/check.h"

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Names of other sections are checked in the same run as values, and places of probes are needed. */
+ * Names of other sections are checked in the same run as values, and places of probes are
+ * needed. */
 #include "case/scene.h"
 #include "geometry/load.h"
 #include "unity.h"
@@ -22,8 +23,8 @@ static void refuses_all(const char *text, const char *want)
     TEST_ASSERT_EQUAL_STRING(want, said);
 }
 
-/* Names and values in one run, and nothing that follows from a wrong value: [solid a] may have a clamp,
- * and its motion may be any. */
+/* Names and values in one run, and nothing that follows from a wrong value: [solid a] may have a
+ * clamp, and its motion may be any. */
 static void test_names_are_checked_beside_wrong_values(void)
 {
     refuses_all(TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\nyoung = 1 Mpa\nclamp = bix 0\n"
@@ -93,8 +94,8 @@ static void test_a_folder_is_no_file(void)
     TEST_ASSERT_EQUAL_STRING(".: is a folder; a case is a regular file", d.text);
 }
 
-/* What a section lacks that others are like is told of it alone; so is a constant that cannot have its name,
- * without its uses. */
+/* What a section lacks that others are like is told of it alone; so is a constant that cannot have
+ * its name, without its uses. */
 static void test_what_follows_from_a_problem_is_none(void)
 {
     refuses_all(TOP "[solid a]\nshape = box 0, 0, 10 mm, 20 mm\n"

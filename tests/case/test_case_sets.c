@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * Settings of the command line that name what is not there, and numbers, units and sections that only just
- * are none: each is refused with what would be right. */
+ * Settings of the command line that name what is not there, and numbers, units and sections that
+ * only just are none: each is refused with what would be right. */
 #include "geometry/load.h"
 #include "unity.h"
 

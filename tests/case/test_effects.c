@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The active set follows from what the case says, and from nothing else; who called for an effect is
- * known; phases and field groups follow from the set. */
+ * The active set follows from what the case says, and from nothing else; who called for an effect
+ * is known; phases and field groups follow from the set. */
 #include "rig.h"
 #include "unity.h"
 
@@ -153,8 +153,8 @@ static void test_a_set_is_named_as_the_caller(void)
     TEST_ASSERT_EQUAL_STRING("--set: [fluid w] artificial_viscosity", text);
 }
 
-/* Fluid only: no field of a solid; solid only: no cells, no packed fields, no field of a fluid; a wall that
- * neither fluid nor solid meets is nothing. */
+/* Fluid only: no field of a solid; solid only: no cells, no packed fields, no field of a fluid; a
+ * wall that neither fluid nor solid meets is nothing. */
 static void test_nothing_is_allocated_that_is_not_needed(void)
 {
     rig_open(&rig, TOP FLUID WALL, NULL);

@@ -198,7 +198,8 @@ static void test_length_and_depth_are_bounded(void)
         "the expression has more than 1024 operations; use [constants] for parts of it", why);
 }
 
-/* With its time fixed an expression has the same bits everywhere; what has no x or y is a number. */
+/* With its time fixed an expression has the same bits everywhere; what has no x or y is a
+ * number. */
 static void test_at_a_fixed_time(void)
 {
     static const char *const texts[] = {"x + y*t",

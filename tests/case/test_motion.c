@@ -120,8 +120,8 @@ static struct motion_point moved_point(double t, double X, double Y)
     return motion_of_point(&m, X, Y);
 }
 
-/* A quarter turn a second about (1, 2): (3, 2) goes to (1, 4), with velocity (pi/2) 2 to the left and
- * acceleration (pi/2)^2 2 towards the centre. */
+/* A quarter turn a second about (1, 2): (3, 2) goes to (1, 4), with velocity (pi/2) 2 to the left
+ * and acceleration (pi/2)^2 2 towards the centre. */
 static void test_rotation_by_hand(void)
 {
     must_read("kind = rotation\ncentre = 1, 2\nangle = pi/2\nstop = 2\n");
@@ -138,8 +138,8 @@ static void test_rotation_by_hand(void)
     TEST_ASSERT_TRUE(late.v[0] == 0 && late.v[1] == 0 && late.a[0] == 0 && late.a[1] == 0);
 }
 
-/* Velocity and acceleration are the derivatives of the place (central differences over 2e-4 s are good
- * to 1e-8 of f'''), and distances do not change. All three sources of the angle together. */
+/* Velocity and acceleration are the derivatives of the place (central differences over 2e-4 s are
+ * good to 1e-8 of f'''), and distances do not change. All three sources of the angle together. */
 static void test_rotation_is_rigid_and_smooth(void)
 {
     write_table("0 0 0\n0.5 0.4 0\n1 0.2 0\n");
@@ -189,8 +189,8 @@ static void test_table_is_smooth_and_does_not_overshoot(void)
     }
 }
 
-/* x = 0.1 sin(2 pi t) + 0.3: from where the body is; velocity and acceleration by hand. After the stop it
- * rests where it has come to. */
+/* x = 0.1 sin(2 pi t) + 0.3: from where the body is; velocity and acceleration by hand. After the
+ * stop it rests where it has come to. */
 static void test_expression_by_hand(void)
 {
     must_read("kind = expression\nx = 0.1*sin(2*pi*t) + 0.3\nstart = 0.5\nstop = 1.75\n");
@@ -228,7 +228,8 @@ static void test_expression_as_rotation_and_polynomial(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.5, motion_at(&scene, 0, 0.75).d[1]);
 }
 
-/* Every function of the language: derivatives against central differences, at times where none has a kink. */
+/* Every function of the language: derivatives against central differences, at times where none has
+ * a kink. */
 static void test_derivatives_of_every_function(void)
 {
     static const char *const each[] = {"sqrt(t + 1)",
@@ -395,7 +396,8 @@ static void read_warned(const char *text, const char *table)
     scene_free(&scene);
 }
 
-/* What moves in its last row stops there; what rests there, or lasts as long as the run, does not. */
+/* What moves in its last row stops there; what rests there, or lasts as long as the run, does
+ * not. */
 static void test_a_table_that_ends_in_motion_is_warned_of(void)
 {
     static const char moved[] = HEAD "kind = table\nfile = test_motion.tmp\n";
