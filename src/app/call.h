@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * One call of the public header: its options with the callbacks guarded, what it borrowed of the host's
- * thread, its result and sentence. */
+ * One call of the public header: its options with the callbacks guarded, what it borrowed of the
+ * host's thread, its result and sentence. */
 #ifndef SPHFSI_TIME_CALL_H
 #define SPHFSI_TIME_CALL_H
 

@@ -36,8 +36,8 @@ static bool matters_to_restart(const struct place *p)
            has_key(p, "snapshot_precision");
 }
 
-/* Keys that the state depends on: positions and masses of particles, the kernel, the equation of state, and
- * the fields of the integrator. */
+/* Keys that the state depends on: positions and masses of particles, the kernel, the equation of
+ * state, and the fields of the integrator. */
 static bool matters_to_fork(const struct place *p)
 {
     static const char *const kept[] = {

@@ -21,8 +21,8 @@ bool due_now(const struct due *u, double time, bool at_end);
 /* Records an output at `time` and moves on to the next. */
 void due_pass(struct due *u, double time);
 
-/* The time up to which a restart at `time` keeps rows. The last row of a run may be between two multiples of
- * the interval; a restart drops it, as an uninterrupted run would not have it. */
+/* The time up to which a restart at `time` keeps rows. The last row of a run may be between two
+ * multiples of the interval; a restart drops it, as an uninterrupted run would not have it. */
 double due_kept_until(double interval, double time);
 
 #endif

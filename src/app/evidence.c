@@ -42,8 +42,8 @@ bool evidence_next(const char **rest, struct evidence *row)
     return true;
 }
 
-/* Least and largest error of the study's cases of a kind, each at its finest resolution that is no finer than
- * n; `coarser`: than all of a case. */
+/* Least and largest error of the study's cases of a kind, each at its finest resolution that is no
+ * finer than n; `coarser`: than all of a case. */
 struct band {
     double low, high;
     bool coarser;

@@ -236,8 +236,8 @@ static void text_of_bytes(double bytes, char text[32])
 }
 
 /* Measured over forecast time: 0.90 to 1.39 in 23 runs on a loaded machine, 13 of them
- * violent dam breaks, impacts and jets; 18 below 1.2. In the shipped gate and sluice a step gets dearer as
- * the water spreads. */
+ * violent dam breaks, impacts and jets; 18 below 1.2. In the shipped gate and sluice a step gets
+ * dearer as the water spreads. */
 static const double least_of_forecast = 0.9, most_of_forecast = 1.4;
 
 static void say_cost(const struct simulation *s, const struct unit_costs *c,

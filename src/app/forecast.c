@@ -9,22 +9,23 @@
 #include <string.h>
 
 enum { FIRST_STEPS = 20, ROWS_MEASURED = 5 };
-/* Wall time of the first steps, which are not measured, at most; of the measured steps; and of a repeat, which
- * is short, so that other work on the machine does not disturb all of them. */
+/* Wall time of the first steps, which are not measured, at most; of the measured steps; and of a
+ * repeat, which is short, so that other work on the machine does not disturb all of them. */
 static const double first_seconds = 0.1, measured_seconds = 0.2, repeat_seconds = 0.005;
 
 /* --- measurement --- */
 
-/* The least wall time per step of all repeats, since other work on the machine can only add to it, and the
- * least time of each phase. Not every repeat sorts, so sorting counts with its mean, limited to 5 % of a
- * step. */
+/* The least wall time per step of all repeats, since other work on the machine can only add to it,
+ * and the least time of each phase. Not every repeat sorts, so sorting counts with its mean,
+ * limited to 5 % of a step. */
 struct least {
     double step, phase[PHASE_COUNT], sort_mean;
     int64_t steps, substeps, evaluations;
     int64_t n_start; /* fluid particles */
 };
 
-/* Whether half of the fluid of the start is still there: what falls out of the domain costs nothing. */
+/* Whether half of the fluid of the start is still there: what falls out of the domain costs
+ * nothing. */
 static bool has_fluid_of_start(const struct simulation *sim, int64_t n_start)
 {
     return 2 * sim->kind[KIND_FLUID].n >= n_start;
@@ -78,8 +79,8 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
 {
     const double end = sim->scene->top.end_time;
     struct least least = {.n_start = sim->kind[KIND_FLUID].n};
-    /* The first steps include the first touch of memory and the first sort, and find the bounds of the time
-     * step. A guard that stops the run in them is reported. */
+    /* The first steps include the first touch of memory and the first sort, and find the bounds of
+     * the time step. A guard that stops the run in them is reported. */
     const double start = wall_clock();
     int first = 0;
     do {
@@ -98,8 +99,8 @@ static enum err measure_steps(struct unit_costs *c, struct simulation *sim, stru
     return ERR_OK;
 }
 
-/* The time of all rows of the run by what one takes now, the least of several. The first row may evaluate the
- * rates anew, which is counted with the steps. */
+/* The time of all rows of the run by what one takes now, the least of several. The first row may
+ * evaluate the rates anew, which is counted with the steps. */
 static enum err measure_rows(struct unit_costs *c, struct simulation *sim, struct diag *d)
 {
     const double end = sim->scene->top.end_time;
@@ -131,8 +132,8 @@ enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct d
 
 /* --- the run --- */
 
-/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its mean was
- * 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
+/* The step of Eq. 28b with an estimate of the pairs' approach speed. In the five shipped flows its
+ * mean was 0.6 to 0.9 of `max_speed`. Without `max_speed` the largest value so far is used. */
 static double expected_step(const struct simulation *s)
 {
     const double limit = timestep_fluid_limit(s), fixed = s->scene->numerics.fixed_step;
@@ -143,8 +144,9 @@ static double expected_step(const struct simulation *s)
     return limit * s->fluid.k.c0 / (s->fluid.k.c0 + approach);
 }
 
-/* Number of steps, which must end at every output time. Only the shortest interval counts, also of a probe
- * that has its own, or the grid that has all of them (T-34d): the others are usually multiples of it. */
+/* Number of steps, which must end at every output time. Only the shortest interval counts, also of
+ * a probe that has its own, or the grid that has all of them (T-34d): the others are usually
+ * multiples of it. */
 static double count_steps(const struct simulation *s, double dt)
 {
     const struct scene_output *const out = &s->scene->output;
@@ -158,7 +160,8 @@ static double count_steps(const struct simulation *s, double dt)
     return s->scene->top.end_time / piece * max2(1, ceil(piece / dt - 1e-6));
 }
 
-/* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run. */
+/* Bytes of all files: rows, two checkpoints, and uncompressed snapshots twice, as during the run.
+ */
 static double disk_bytes(const struct simulation *sim)
 {
     enum { BYTES_OF_SNAPSHOT = 140, BYTES_OF_ROW = 18 }; /* a particle; a number */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * The cost of a run: the number of steps from the bounds of the time step, the time of a step from a
- * measurement of this scene on this machine. */
+ * The cost of a run: the number of steps from the bounds of the time step, the time of a step from
+ * a measurement of this scene on this machine. */
 #ifndef SPHFSI_APP_FORECAST_H
 #define SPHFSI_APP_FORECAST_H
 
@@ -24,8 +24,8 @@ struct forecast {
     double memory, disk; /* bytes; disk: at most, while it runs */
 };
 
-/* Measures the scene's first steps for 0.3 s, and takes the least of several repeats. Advances the simulation
- * by these steps. */
+/* Measures the scene's first steps for 0.3 s, and takes the least of several repeats. Advances the
+ * simulation by these steps. */
 enum err forecast_measure(struct unit_costs *c, struct simulation *sim, struct diag *d)
     SPHFSI_CHECKED;
 

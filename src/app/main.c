@@ -82,8 +82,8 @@ static void on_signal(int number)
         requests.stop = number;
 }
 
-/* A second SIGINT while the checkpoint is written ends the program immediately; a second SIGTERM does not,
- * since batch systems send several. */
+/* A second SIGINT while the checkpoint is written ends the program immediately; a second SIGTERM
+ * does not, since batch systems send several. */
 static void install_signals(void)
 {
     struct sigaction once = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
@@ -95,7 +95,8 @@ static void install_signals(void)
     struct sigaction inherited;
     if (sigaction(SIGHUP, NULL, &inherited) == 0 && inherited.sa_handler != SIG_IGN)
         sigaction(SIGHUP, &again, NULL);
-    /* A file that may not grow further is a failed write, which is reported; so is a closed pipe. */
+    /* A file that may not grow further is a failed write, which is reported; so is a closed pipe.
+     */
     signal(SIGXFSZ, SIG_IGN);
     signal(SIGPIPE, SIG_IGN);
 }
@@ -127,7 +128,8 @@ static void remaining(double seconds, char text[32])
         snprintf(text, 32, "%.1f h", seconds / 3600);
 }
 
-/* One line that is updated on a terminal; elsewhere one for each tenth of the run or half a minute. */
+/* One line that is updated on a terminal; elsewhere one for each tenth of the run or half a minute.
+ */
 static void on_progress(void *context, const struct sphfsi_progress *p)
 {
     struct command *c = context;
@@ -258,8 +260,8 @@ static int unknown_option(const char *argument)
     return complain("unknown option %s%s", argument, "");
 }
 
-/* Whether the word after an option with an optional operand is its operand. After --restart it is the
- * checkpoint, unless no case has been named yet and it does not end in .ckpt. */
+/* Whether the word after an option with an optional operand is its operand. After --restart it is
+ * the checkpoint, unless no case has been named yet and it does not end in .ckpt. */
 static int is_operand(const struct command *c, const struct option *option, const char *next)
 {
     if (!next || next[0] == '-') return 0;
@@ -331,8 +333,8 @@ static enum sphfsi_status carry_out(struct command *c)
     return SPHFSI_OK;
 }
 
-/* Whether all of the output has reached the standard output. The results of a run are in its files, so what
- * it lost is only said. */
+/* Whether all of the output has reached the standard output. The results of a run are in its files,
+ * so what it lost is only said. */
 static int output_is_out(int run)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return 1;
@@ -367,8 +369,9 @@ static int execute(struct command *c)
     return sphfsi_exit_status(status, requests.stop);
 }
 
-/* A result file must not get the number of a standard stream that the caller has closed: messages would
- * be written into it. /dev/null is opened for reading, so that writing to the stream still fails. */
+/* A result file must not get the number of a standard stream that the caller has closed: messages
+ * would be written into it. /dev/null is opened for reading, so that writing to the stream still
+ * fails. */
 static void fill_standard_streams(void)
 {
     int fd;
@@ -378,8 +381,8 @@ static void fill_standard_streams(void)
 }
 
 #if defined __linux__ && defined _OPENMP && !defined __clang__
-/* Seconds that a wait should spin before the thread sleeps: about what sleeping and waking up cost, so that
- * a wait never costs more than twice the best (Karlin et al. 1991). */
+/* Seconds that a wait should spin before the thread sleeps: about what sleeping and waking up cost,
+ * so that a wait never costs more than twice the best (Karlin et al. 1991). */
 static const double spin_time = 33e-6;
 
 static double clock_seconds(void)
@@ -389,7 +392,8 @@ static double clock_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Rounds of gcc's waiting loop in the spin time; the shortest of some measurements is the undisturbed one. */
+/* Rounds of gcc's waiting loop in the spin time; the shortest of some measurements is the
+ * undisturbed one. */
 static long spin_rounds(void)
 {
     enum { ROUNDS = 1000, TRIES = 4 };
@@ -407,10 +411,11 @@ static long spin_rounds(void)
     return lrint(fmin(fmax(ROUNDS * spin_time / least, 100), 300000));
 }
 
-/* gcc's OpenMP runtime lets a waiting thread spin for milliseconds, which beside other programs takes their
- * cores and delays its own team. It reads the number of rounds before main, so the program starts itself
- * again with that number, unless the user has chosen one; the process stays the same. Started by name of
- * the dynamic linker (AT_BASE 0), /proc/self/exe would be that linker. */
+/* gcc's OpenMP runtime lets a waiting thread spin for milliseconds, which beside other programs
+ * takes their cores and delays its own team. It reads the number of rounds before main, so the
+ * program starts itself again with that number, unless the user has chosen one; the process stays
+ * the same. Started by name of the dynamic linker (AT_BASE 0), /proc/self/exe would be that linker.
+ */
 static void shorten_waits(const struct command *c, char **argv)
 {
     static const char variable[] = "GOMP_SPINCOUNT";

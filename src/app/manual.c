@@ -147,7 +147,8 @@ static void value_of(const struct param *p, double value, char *text, size_t siz
     }
 }
 
-/* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value. */
+/* The cell of the default: what the default scheme sets, by kind of scene, and the paper's value.
+ */
 static void default_cell(const struct param *p, char *cell, size_t size)
 {
     static const char *const kinds[] = {" with only solids", " with only fluid",

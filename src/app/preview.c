@@ -71,7 +71,8 @@ static const struct scene_lattice *lattice_of(const struct scene *scene, enum ki
     return kind == KIND_SOLID ? &scene->solid_lattice[body] : &scene->lattice;
 }
 
-/* The particles of a body, clamped or not: one rectangle for neighbours that follow each other in a row. */
+/* The particles of a body, clamped or not: one rectangle for neighbours that follow each other in a
+ * row. */
 static void put_particles(const struct drawing *g, enum kind kind, int body, int clamped)
 {
     const struct scene_points *const p = &g->scene->points[kind];

@@ -139,8 +139,8 @@ static enum err store(struct run *r, struct diag *d)
     return checkpoint_store(&r->image, r->folder.path, r->checkpoint, d);
 }
 
-/* Decides about a failed snapshot: [output] snapshot_failure says whether the run stops. If not, the next
- * snapshot is tried; the file keeps the earlier ones. */
+/* Decides about a failed snapshot: [output] snapshot_failure says whether the run stops. If not,
+ * the next snapshot is tried; the file keeps the earlier ones. */
 static enum err judge_snapshot(struct run *r, enum err e, double time, struct diag *why)
 {
     if (e != ERR_IO || r->session.scene.output.snapshot_failure == SNAPSHOT_FAILURE_STOP)
@@ -178,8 +178,8 @@ static double phases_so_far(const struct simulation *s)
     return sum;
 }
 
-/* Writes the outputs that are due; at the end of the run, all that were not written at this time. The
- * checkpoint is the last: a restart relies on all others having been written. */
+/* Writes the outputs that are due; at the end of the run, all that were not written at this time.
+ * The checkpoint is the last: a restart relies on all others having been written. */
 static enum err write_due(struct run *r, bool at_end)
 {
     const double begin = wall_clock(), before = phases_so_far(r->s), time = r->s->state.time;
@@ -197,14 +197,16 @@ static enum err write_due(struct run *r, bool at_end)
     }
     if (!at_end && image_fraction * (wall_clock() - r->wall_image) > r->image_cost)
         TRY(capture(r, r->diag));
-    /* Evaluations for output, which the next step reuses, are already counted in their own phases. */
+    /* Evaluations for output, which the next step reuses, are already counted in their own phases.
+     */
     r->s->phase_seconds[PHASE_output] += wall_clock() - begin - (phases_so_far(r->s) - before);
     return ERR_OK;
 }
 
 /* --- time loop --- */
 
-/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark follows. */
+/* Seconds since a mark. The clock of a virtual machine may step back when it migrates; the mark
+ * follows. */
 static double since(double *mark)
 {
     const double now = wall_clock();
@@ -423,8 +425,8 @@ static enum err start_restart(struct run *r)
     return ERR_OK;
 }
 
-/* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in a
- * folder. */
+/* Reads the checkpoint: of a restart the given or the newest one, of a fork a file or the newest in
+ * a folder. */
 static enum err find_checkpoint(struct run *r)
 {
     const struct sphfsi_options *o = r->options;
@@ -464,7 +466,8 @@ static enum err load_checkpoint(struct run *r)
     return ERR_OK;
 }
 
-/* Prepares all files. A restart changes files of the run only after its checkpoint has been checked. */
+/* Prepares all files. A restart changes files of the run only after its checkpoint has been
+ * checked. */
 static enum err begin(struct run *r)
 {
     char part[PATH_BYTES];

@@ -104,8 +104,8 @@ static enum err check_counts(const struct scene *scene, double until, struct dia
     return ERR_OK;
 }
 
-/* The interval nearest to `wish` that is a multiple or a whole fraction of `given`, if that is not 0 or far
- * longer: rows that fall between each other make the steps uneven (T-34d). */
+/* The interval nearest to `wish` that is a multiple or a whole fraction of `given`, if that is not
+ * 0 or far longer: rows that fall between each other make the steps uneven (T-34d). */
 static double in_step_with(double given, double wish)
 {
     if (given == 0 || given > EQUAL_STEPS * wish) return wish;
@@ -114,8 +114,8 @@ static double in_step_with(double given, double wish)
     return fabs(near - wish) < 1e-9 * wish ? wish : near;
 }
 
-/* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes the same
- * rows and takes the same steps as the whole one. */
+/* Default intervals depend on end_time of the case, not on --until, so that a shortened run writes
+ * the same rows and takes the same steps as the whole one. */
 static enum err settle_times(struct scene *scene, double until, struct diag *d)
 {
     struct scene_output *out = &scene->output;
@@ -178,9 +178,9 @@ static void say_busy(int asked, const struct sphfsi_options *o)
                     idle, thread_cores(), asked, idle);
 }
 
-/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it can use;
- * else `offered` or fewer, as its particles and the idle cores are. A lower number than asked for is warned
- * of, a busy machine said. */
+/* The number of threads for a scene: what the options or OMP_NUM_THREADS ask for, within what it
+ * can use; else `offered` or fewer, as its particles and the idle cores are. A lower number than
+ * asked for is warned of, a busy machine said. */
 static int choose_threads(const struct scene *scene, const struct sphfsi_options *o, int offered,
                           struct diag *d)
 {
