@@ -161,8 +161,9 @@ struct block {
     int column, columns;
 };
 
-/* Reads or writes a block of an open dataset. */
-static bool move_block(hid_t set, const struct column *c, struct block b, void *values, bool write)
+/* Reads or writes a block of an open dataset of a column. */
+static bool move_block(hid_t set, const struct column *c, struct block b, hid_t type, void *values,
+                       bool write)
 {
     if (b.rows == 0) return true;
     const int rank = c->width > 1 ? 2 : 1;
@@ -172,9 +173,9 @@ static bool move_block(hid_t set, const struct column *c, struct block b, void *
     bool ok = in_file >= 0 && in_memory >= 0 &&
               H5Sselect_hyperslab(in_file, H5S_SELECT_SET, at, NULL, size, NULL) >= 0;
     if (ok && write)
-        ok = H5Dwrite(set, memory_type(c), in_memory, in_file, H5P_DEFAULT, values) >= 0;
+        ok = H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, values) >= 0;
     else if (ok)
-        ok = H5Dread(set, memory_type(c), in_memory, in_file, H5P_DEFAULT, values) >= 0;
+        ok = H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, values) >= 0;
     H5Sclose(in_memory);
     H5Sclose(in_file);
     return ok;
@@ -193,11 +194,32 @@ bool snapshot_file_append(hid_t root, enum data what, void *value)
     const struct column *const c = &columns[what];
     const hid_t set = H5Dopen2(root, c->name, H5P_DEFAULT);
     const int64_t first = set >= 0 ? add_rows(set, c, 1) : -1;
-    const bool ok = first >= 0 && move_block(set, c, (struct block){first, 1, 0, 1}, value, true);
+    const bool ok = first >= 0 &&
+                    move_block(set, c, (struct block){first, 1, 0, 1}, memory_type(c), value, true);
     return (set < 0 || H5Dclose(set) >= 0) && ok;
 }
 
 /* --- rows of points --- */
+
+/* Converts values in place to their type in the file; HDF5 would allocate and clear a buffer for each
+ * column. An item is not larger than its value in memory. */
+static void narrow(char *values, int64_t n, enum item item, bool doubles)
+{
+    for (int64_t i = 0; i < n; i++) {
+        double real;
+        int64_t integer;
+        memcpy(&real, values + i * (int64_t)sizeof real, sizeof real);
+        memcpy(&integer, values + i * (int64_t)sizeof integer, sizeof integer);
+        const float single = (float)real;
+        const int32_t wide = (int32_t)integer;
+        if (item == REAL && !doubles)
+            memcpy(values + i * (int64_t)sizeof single, &single, sizeof single);
+        else if (item == I32)
+            memcpy(values + i * (int64_t)sizeof wide, &wide, sizeof wide);
+        else if (item == I8 || item == U8)
+            values[i] = (char)integer;
+    }
+}
 
 /* Appends n rows to a dataset, one column at a time, in which HDF5 compresses them. */
 static bool append_rows(hid_t root, const struct snapshot_layout *layout, enum data what, int64_t n,
@@ -210,7 +232,9 @@ static bool append_rows(hid_t root, const struct snapshot_layout *layout, enum d
     bool ok = first >= 0;
     for (int column = 0; ok && column < c->width; column++) {
         values_of(context, what, column, n, values);
-        ok = move_block(set, c, (struct block){first, n, column, 1}, values, true);
+        narrow(values, n, c->item, layout->doubles);
+        ok = move_block(set, c, (struct block){first, n, column, 1},
+                        file_type(c->item, layout->doubles), values, true);
     }
     return H5Dclose(set) >= 0 && ok;
 }
@@ -327,7 +351,7 @@ bool snapshot_file_first(hid_t file, enum data what, int64_t n, void *values)
     const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
     const bool ok = set >= 0 && count_rows(set) >= n &&
                     move_block(set, &columns[what], (struct block){0, n, 0, columns[what].width},
-                               values, false);
+                               memory_type(&columns[what]), values, false);
     H5Dclose(set);
     return ok;
 }
